@@ -1,0 +1,56 @@
+"""The nodal penalty of general finite-element programs, integrated over the overlap ellipse of each contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.options import option, optional, positive
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.contracts import ContactPairs
+
+
+@attrs.frozen
+class Penalty:
+    """p = k_n max(-g, 0): Q = pi k_n delta^2 / (2 sqrt(A B)) for a contact of curvatures A and B.
+
+    Notes
+    -----
+    Without ``stiffness`` the penalty is scaled so that, at ``calibrate_at`` (by default the ball load under the axial load
+    alone), the approach equals Hertz's; at other loads it does not.
+    """
+
+    name: ClassVar[str] = "penalty"
+    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant"})
+    state_size: ClassVar[int] = 0
+    dissipative: ClassVar[bool] = False
+
+    stiffness: float | None = option(
+        None, unit="N/m3", help="pressure per penetration k_n; excludes calibrate_at", rule=optional(positive())
+    )
+    calibrate_at: float | None = option(
+        None, unit="N", help="ball load at which the approach equals Hertz's", rule=optional(positive())
+    )
+
+    def __attrs_post_init__(self) -> None:
+        if self.stiffness is not None and self.calibrate_at is not None:
+            raise ValueError("`stiffness` and `calibrate_at` exclude each other: give one of them")
+
+    def build(self, pairs: ContactPairs) -> np.ndarray:
+        import numpy as np
+
+        if self.stiffness is not None:
+            factor = np.pi * self.stiffness / (2.0 * np.sqrt(pairs.curvature_a * pairs.curvature_b))
+        else:
+            load = pairs.reference_load if self.calibrate_at is None else np.full_like(pairs.hertz_factor, self.calibrate_at)
+            factor = load / np.cbrt(load / pairs.hertz_factor) ** 4
+        return factor[:, None].copy()
+
+    def kernel(self) -> Any:
+        from raceway.core.contact_laws.power import square
+
+        return square

@@ -1,0 +1,192 @@
+"""What a plug-in of each kind must do, as numbered duties.
+
+A plug-in is a frozen attrs class: its fields are its options (declared with ``raceway.options.option``), its class
+attribute ``name`` is the word that a scene writes as ``kind``.  The class is light; ``kernel()`` imports what is
+compiled.  These protocols are one level deep: nothing has to inherit from them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+import attrs
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.core.advance import OnChunk
+    from raceway.core.identification import Identification
+    from raceway.core.record import Motion, Record, Schedule
+    from raceway.core.system import System
+
+
+class ContactLaw(Protocol):
+    """Normal force of a contact as a function of gap and gap rate.  Damping and friction are the core's.
+
+    1. ``discretisations``: a subset of {"resultant", "nodal"}: what the force means (N a pair, or Pa a point).
+    2. ``state_size``: columns of memory a contact; 0 for none.  ``dissipative``: whether a closed cycle loses energy.
+    3. ``build(pairs)``: parameters, an array (n, k) of float64, from ``ContactPairs``.
+    4. ``kernel()``: a function compiled with ``@jit(LAW)``: zero force for gap >= 0, never negative, monotonic in the
+       approach, derivatives exact, ``state_old`` untouched, outputs overwritten whole, no allocation.
+    """
+
+    name: ClassVar[str]
+    discretisations: ClassVar[frozenset[str]]
+    state_size: ClassVar[int]
+    dissipative: ClassVar[bool]
+
+    def build(self, pairs: ContactPairs) -> np.ndarray: ...
+    def kernel(self) -> Any: ...
+
+
+@attrs.frozen(eq=False)
+class ContactPairs:
+    """What a law may know of its contacts; arrays (n,), inner races first, then outer.
+
+    Attributes
+    ----------
+    curvature_a, curvature_b : gap = A x^2 + B y^2 [1/m], x along the major semi-axis
+    contact_modulus : E* [Pa]
+    hertz_factor : K of Q = K delta^1.5 [N/m^1.5]
+    reference_load : load of a ball under the axial load alone [N]
+    area : nodal only, area of a surface point [m2]
+    """
+
+    curvature_a: np.ndarray
+    curvature_b: np.ndarray
+    contact_modulus: np.ndarray
+    hertz_factor: np.ndarray
+    reference_load: np.ndarray
+    area: np.ndarray | None = None
+
+
+class Excitation(Protocol):
+    """A force on the inner ring's reference point as a function of time.
+
+    1. ``frequency_hz``, ``period_s``, ``amplitude_n``: the fundamental line; ``period_s`` None when not periodic.
+    2. ``sense``: +1 turns forward (from +y towards +z), -1 backward, 0 along a fixed direction.
+    3. ``parameters()``: an array (k,) of float64 that the kernel gets.
+    4. ``kernel()``: a function compiled with ``@jit(FORCE)`` that overwrites out (5,) = F_x, F_y, F_z, M_y, M_z.
+    5. ``speed_rpm``, if there is one, is the default of ``kinematics.spin_speed_rpm``; ``ramp_turns``, if there is one,
+       is the time over which the core lets the force grow.
+    """
+
+    name: ClassVar[str]
+
+    @property
+    def frequency_hz(self) -> float: ...
+    @property
+    def period_s(self) -> float | None: ...
+    @property
+    def amplitude_n(self) -> float: ...
+    @property
+    def sense(self) -> int: ...
+    def parameters(self) -> np.ndarray: ...
+    def kernel(self) -> Any: ...
+
+
+class Integrator(Protocol):
+    """A way through time.
+
+    1. ``order``: the exponent of the step in the error, for smooth motions.
+    2. ``implicit``: whether steps above ``System.critical_time_step`` are allowed.  ``inertial``: whether the motion
+       contains inertia forces (K = Re Z + m w^2) or is a series of equilibria.
+    3. ``dissipative``: whether the method removes energy by itself.
+    4. ``advance(system, start, schedule, on_chunk)``: take the steps of the schedule and return a ``Record``; call
+       ``on_chunk(done, total)`` now and then, whose exceptions pass through; on failure raise ``ConvergenceError`` or
+       ``StabilityError`` with the last good state.
+    """
+
+    name: ClassVar[str]
+    order: ClassVar[int]
+    implicit: ClassVar[bool]
+    inertial: ClassVar[bool]
+    dissipative: ClassVar[bool]
+
+    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record: ...
+
+
+class Identifier(Protocol):
+    """From recorded motion, or from the equilibrium, to a dynamic stiffness.
+
+    1. ``needs``: a subset of {"record", "speeds", "equilibrium"}.
+    2. ``definition``: one sentence: secant or tangent, of which signals.
+    3. ``identify(records, equilibrium, model)``: an ``Identification``; ``model`` offers ``mass_used``,
+       ``excitation``, ``scene`` and ``system``.
+    """
+
+    name: ClassVar[str]
+    needs: ClassVar[frozenset[str]]
+    definition: ClassVar[str]
+
+    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification: ...
+
+
+class Mesher(Protocol):
+    """Bodies to hexahedra.
+
+    1. ``mesh(bearing)``: the meshes of the bodies, by name.
+    """
+
+    name: ClassVar[str]
+
+    def mesh(self, bearing: Any) -> Any: ...
+
+
+class Format(Protocol):
+    """A file format.
+
+    1. ``suffixes``: file endings with the dot.  2. ``read(path)``, ``write(path, what)``.
+    """
+
+    name: ClassVar[str]
+    suffixes: ClassVar[tuple[str, ...]]
+
+    def read(self, path: Any) -> Any: ...
+    def write(self, path: Any, what: Any) -> None: ...
+
+
+class Report(Protocol):
+    """A result for a person.
+
+    1. ``write(result, folder)``: writes files into the folder and returns their paths.
+    """
+
+    name: ClassVar[str]
+
+    def write(self, result: Any, folder: Any) -> list[Any]: ...
+
+
+#: kind -> (registration hook, what a class of that kind must have)
+KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "contact_law": (
+        "raceway_contact_laws",
+        ("discretisations", "state_size", "dissipative", "build", "kernel"),
+    ),
+    "excitation": (
+        "raceway_excitations",
+        ("frequency_hz", "period_s", "amplitude_n", "sense", "parameters", "kernel"),
+    ),
+    "integrator": ("raceway_integrators", ("order", "implicit", "inertial", "dissipative", "advance")),
+    "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
+    "mesher": ("raceway_meshers", ("mesh",)),
+    "format": ("raceway_formats", ("suffixes", "read", "write")),
+    "report": ("raceway_reports", ("write",)),
+}
+
+
+def broken_duties(kind: str, plugin: Any) -> list[str]:
+    """What keeps a class from being a plug-in of a kind; empty when nothing does."""
+    if not isinstance(plugin, type):
+        return [f"{plugin!r} is not a class"]
+    faults = []
+    if not isinstance(plugin.__dict__.get("name"), str):
+        faults.append("has no class attribute `name` (a string)")
+    if not attrs.has(plugin):
+        faults.append("is not an attrs class (decorate it with @attrs.frozen)")
+    faults += [f"has no `{duty}`" for duty in KINDS[kind][1] if not hasattr(plugin, duty) and not _is_field(plugin, duty)]
+    return faults
+
+
+def _is_field(plugin: type, name: str) -> bool:
+    return attrs.has(plugin) and name in attrs.fields_dict(plugin)

@@ -1,0 +1,112 @@
+"""Drives one compiled loop in chunks, so that progress can be shown and a stop is honoured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from raceway.core.integrators import (
+    BALLS,
+    CONTACT_FORCE,
+    COUNTERS,
+    EVALUATIONS,
+    PENETRATION,
+    REASON,
+    RESIDUAL,
+    ROWS,
+    UNBOUNDED,
+)
+from raceway.core.record import Motion, Record, Schedule
+from raceway.core.system import System
+from raceway.errors import ConvergenceError, StabilityError
+
+#: Called between chunks with the steps done and the steps in all.
+OnChunk = Callable[[int, int], None]
+_CHUNK = 20_000
+
+
+def advance(
+    loop: Any,
+    system: System,
+    start: Motion,
+    schedule: Schedule,
+    coefficients: np.ndarray,
+    on_chunk: OnChunk | None = None,
+) -> Record:
+    """Take all steps of a schedule.
+
+    Parameters
+    ----------
+    loop : kernel with the signature ``raceway.core.signatures.LOOP``
+    coefficients : (k,) the method's own numbers
+
+    Raises
+    ------
+    ConvergenceError, StabilityError
+        With the reason, the time and the last good motion in ``state``.
+    """
+    z = system.ball_count
+    rows = np.zeros((schedule.steps // schedule.stride, 16))
+    probes = np.zeros((len(rows), 3, 2 * z))
+    counters = np.zeros(COUNTERS)
+    motion = np.zeros((4, 5))
+    motion[0], motion[1], motion[2] = start.q, start.v, start.a
+    motion[3] = -system.mass @ start.a
+    ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
+    done = 0
+    while done < schedule.steps:
+        count = min(_CHUNK, schedule.steps - done)
+        taken = loop(
+            system.kernel, system.law, system.force, system.law_params, system.scalars, system.table,
+            system.force_params, system.mass, system.damping, system.stiffness, system.free, system.load,
+            coefficients, schedule.dt, schedule.ramp, done, count, motion, ball, before, memory,
+            schedule.stride, rows, probes, counters,
+        )  # fmt: skip
+        done += taken
+        if taken < count:
+            raise _failure(system, schedule, done, motion, ball, counters)
+        if on_chunk is not None:
+            on_chunk(done, schedule.steps)
+    kept = int(counters[ROWS])
+    rows, probes = rows[:kept], probes[:kept]
+    return Record(
+        time=rows[:, 0],
+        displacement=rows[:, 1:6],
+        velocity=rows[:, 6:11],
+        force=rows[:, 11:16],
+        gap=probes[:, 0],
+        contact_force=probes[:, 1],
+        ball=probes[:, 2].reshape(kept, z, 2),
+        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before),
+        schedule=schedule,
+        counts={
+            "steps": schedule.steps,
+            "evaluations": int(counters[EVALUATIONS]),
+            "max_penetration_m": float(counters[PENETRATION]),
+            "peak_contact_force_n": float(counters[CONTACT_FORCE]),
+        },
+    )
+
+
+def _failure(
+    system: System, schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
+) -> ConvergenceError:
+    when = f"after {done} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {done // schedule.steps_per_turn + 1})"
+    state = {"t": done * schedule.dt, "q": motion[0].copy(), "v": motion[1].copy(), "a": motion[2].copy(), "ball": ball}
+    if counters[REASON] == UNBOUNDED:
+        limit = system.critical_time_step(system.evaluate(motion[0]).stiffness) if np.isfinite(motion).all() else None
+        hint = f"; stable limit of explicit steps there {limit:.3g} s" if limit else ""
+        return StabilityError(
+            f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Take more `integrator.steps_per_turn`, "
+            "add damping, or move away from a resonance.",
+            state,
+        )
+    if counters[REASON] == BALLS:
+        return ConvergenceError(f"the balls found no equilibrium between the races {when}", state)
+    return ConvergenceError(
+        f"the iteration of a step did not converge {when}, residual {counters[RESIDUAL]:.3g} N. "
+        "Take more `integrator.steps_per_turn`.",
+        state,
+    )

@@ -1,0 +1,132 @@
+"""From 1x lines of force and displacement to a complex dynamic stiffness, with its quality figures.
+
+Notes
+-----
+Signals are Re(phasor e^{jwt}).  The line of the displacement that does work with the force counts: with F, x the complex
+1x vectors of force and translation, Z = (F^H F) / (F^H x).  For a fixed direction that is force over displacement along
+it; for a force that turns, the forward (or backward) parts of both.  Z = K - m w^2 + j w C.
+"""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+
+@attrs.frozen
+class Identification:
+    """A dynamic stiffness and how far it can be trusted.
+
+    Attributes
+    ----------
+    dynamic_stiffness : complex, Z = F/x [N/m]
+    mass_used : m of K = Re Z + m w^2 [kg]; 0 where the motion has no inertia
+    equivalent_stiffness, equivalent_damping : K [N/m], C [N s/m]
+    forward_amplitude, backward_amplitude, orbit_major, orbit_minor : of the 1x orbit [m]
+    residual : rms of what is not 1x (mean and drift removed) over the rms of 1x, in the plane of the force
+    spread : largest deviation of a single turn's Z from the whole, relative; None for one turn
+    window : deviation of Z from the other fit (Fourier against least squares), relative; None where there is one only
+    """
+
+    definition: str
+    frequency_hz: float
+    force_amplitude: float
+    dynamic_stiffness: complex
+    mass_used: float
+    forward_amplitude: float
+    backward_amplitude: float
+    orbit_major: float
+    orbit_minor: float
+    residual: float | None = None
+    spread: float | None = None
+    window: float | None = None
+
+    @property
+    def speed(self) -> float:
+        """w [rad/s]."""
+        return 2.0 * np.pi * self.frequency_hz
+
+    @property
+    def equivalent_stiffness(self) -> float:
+        return self.dynamic_stiffness.real + self.mass_used * self.speed**2
+
+    @property
+    def equivalent_damping(self) -> float:
+        return self.dynamic_stiffness.imag / self.speed
+
+    @property
+    def phase_lag_deg(self) -> float:
+        """Lag of the displacement behind the force [deg]."""
+        return float(np.degrees(np.angle(self.dynamic_stiffness)))
+
+
+def stiffness(force: np.ndarray, displacement: np.ndarray) -> complex:
+    """Z [N/m] from the complex 1x vectors (3,) of force and translation; nan when one of them vanishes."""
+    work = np.vdot(force[:3], displacement[:3])
+    power = np.vdot(force[:3], force[:3])
+    return complex(power / work) if abs(work) > 0.0 and abs(power) > 0.0 else complex(np.nan, np.nan)
+
+
+def identification(
+    definition: str,
+    frequency_hz: float,
+    force: np.ndarray,
+    displacement: np.ndarray,
+    mass_used: float,
+    residual: float | None = None,
+    spread: float | None = None,
+    window: float | None = None,
+) -> Identification:
+    """An ``Identification`` from the complex 1x vectors (5,) of force and displacement."""
+    forward = 0.5 * abs(displacement[1] + 1j * displacement[2])
+    backward = 0.5 * abs(displacement[1] - 1j * displacement[2])
+    # Real and imaginary part of the force vector are its values a quarter turn apart; the larger semi-axis is its amplitude.
+    turning = np.sort(np.linalg.svd(np.array([force[:3].real, force[:3].imag]), compute_uv=False))
+    return Identification(
+        definition=definition,
+        frequency_hz=frequency_hz,
+        force_amplitude=float(turning[-1]),
+        dynamic_stiffness=stiffness(force, displacement),
+        mass_used=mass_used,
+        forward_amplitude=float(forward),
+        backward_amplitude=float(backward),
+        orbit_major=float(forward + backward),
+        orbit_minor=float(abs(forward - backward)),
+        residual=residual,
+        spread=spread,
+        window=window,
+    )
+
+
+def fit_lines(time: np.ndarray, signal: np.ndarray, frequency_hz: float, harmonics: int) -> tuple[np.ndarray, np.ndarray]:
+    """Least squares of mean, drift and ``harmonics`` multiples of a frequency.
+
+    Parameters
+    ----------
+    time : (n,) [s];  signal : (n, k)
+
+    Returns
+    -------
+    lines : (harmonics, k) complex phasors;  rest : (n, k) what the fit leaves
+    """
+    wt = 2.0 * np.pi * frequency_hz * time[:, None] * np.arange(1, harmonics + 1)
+    span = time - time.mean()
+    basis = np.hstack([np.ones((len(time), 1)), (span / max(np.abs(span).max(), 1e-300))[:, None], np.cos(wt), np.sin(wt)])
+    solution, *_ = np.linalg.lstsq(basis, signal, rcond=None)
+    lines = solution[2 : 2 + harmonics] - 1j * solution[2 + harmonics :]
+    return lines, signal - basis @ solution
+
+
+def fourier_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
+    """1x phasor (k,) of a signal (n, k) over whole turns, after its drift over those turns is removed."""
+    kernel = np.exp(-2j * np.pi * frequency_hz * time)
+    samples_per_turn = round(1.0 / (frequency_hz * (time[1] - time[0])))
+    turns = max(len(time) // samples_per_turn, 1)
+    means = signal[: turns * samples_per_turn].reshape(turns, samples_per_turn, -1).mean(axis=1)
+    centres = time[: turns * samples_per_turn].reshape(turns, samples_per_turn).mean(axis=1)
+    slope = np.zeros(signal.shape[1])
+    if turns > 1:
+        offset = centres - centres.mean()
+        slope = offset @ (means - means.mean(axis=0)) / (offset @ offset)
+    straight = signal - means.mean(axis=0) - (time - centres.mean())[:, None] * slope
+    return 2.0 * (kernel[:, None] * straight).mean(axis=0)

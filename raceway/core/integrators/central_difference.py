@@ -1,0 +1,94 @@
+"""Central differences in the velocity form: explicit in the contacts, implicit in the constant linear damping.
+
+Notes
+-----
+v(1/2) = v0 + dt/2 a0,  q1 = q0 + dt v(1/2),  (M + dt/2 C) a1 = F1 - f(q1, v0 + dt a0) - K q1 - C v(1/2),
+v1 = v(1/2) + dt/2 a1.  Contact forces that depend on the rate see the predicted velocity v0 + dt a0, so that the order
+stays 2 with damped contacts.  Stable for dt < 2 / (largest natural frequency of the tangent).
+
+References
+----------
+Belytschko, Liu, Moran: Nonlinear Finite Elements for Continua and Structures, box 6.1.
+"""
+
+import numpy as np
+
+from raceway.core.dense import solve
+from raceway.core.integrators import note_step, outer_force
+from raceway.core.jit import jit
+from raceway.core.signatures import LOOP
+
+
+@jit(LOOP)
+def central_difference(
+    system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
+    dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
+):  # fmt: skip
+    """See ``raceway.core.integrators``."""
+    z = ball.shape[0]
+    work = np.zeros((16, 2 * z))
+    f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
+    q, half, guess, a, outer, time = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(1)
+    known, trial = np.empty((z, 2)), np.empty((z, 2))
+    law_new = law_state.copy()
+    gain = 1.5 / dt
+    inverse = np.zeros((5, 5))
+    for column in range(5):
+        J, rhs = np.zeros((5, 5)), np.zeros(5)
+        for i in range(5):
+            for j in range(5):
+                J[i, j] = (mass[i, j] + 0.5 * dt * damping[i, j]) * free[i] * free[j]
+            if free[i] == 0.0:
+                J[i, i] = 1.0
+        rhs[column] = free[column]
+        if not solve(J, rhs):
+            counters[1] = 2.0
+            return 0
+        for i in range(5):
+            inverse[i, column] = rhs[i]
+    for step in range(count):
+        number = first + step + 1
+        t = number * dt
+        time[0] = t
+        outer_force(force, t, force_params, ramp, outer)
+        for i in range(5):
+            half[i] = motion[1, i] + 0.5 * dt * motion[2, i]
+            guess[i] = motion[1, i] + dt * motion[2, i]
+            q[i] = motion[0, i] + dt * half[i]
+        for k in range(z):
+            for c in range(2):
+                known[k, c] = (0.5 * ball_before[k, c] - 2.0 * ball[k, c]) / dt
+                trial[k, c] = 2.0 * ball[k, c] - ball_before[k, c]
+        counters[0] += 1.0
+        status = system(
+            t, dt, q, guess, trial, gain, known, law, law_params, law_state, law_new, scalars, table, work, f, K, C
+        )
+        if status != 0:
+            counters[1] = 1.0
+            return step
+        for i in range(5):
+            rest = load[i] + outer[i] - f[i]
+            for j in range(5):
+                rest -= damping[i, j] * half[j] + stiffness[i, j] * q[j]
+            f[i] = rest
+        bounded = True
+        for i in range(5):
+            a[i] = 0.0
+            for j in range(5):
+                a[i] += inverse[i, j] * f[j]
+            if not abs(q[i]) < 1.0 or not np.isfinite(a[i]):
+                bounded = False
+        if not bounded:
+            counters[1] = 3.0
+            return step
+        for i in range(5):
+            motion[0, i] = q[i]
+            motion[1, i] = half[i] + 0.5 * dt * a[i]
+            motion[2, i] = a[i]
+            motion[3, i] = 0.0
+        for k in range(z):
+            for c in range(2):
+                ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
+        law_state[:, :] = law_new
+        note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)
+    return count

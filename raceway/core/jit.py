@@ -1,0 +1,140 @@
+"""The one decorator for compiled kernels, of the core and of third parties.
+
+numba keys a cached function by its own source file alone: a kernel that calls a core function would keep calling
+the old one after an edit.  So the cache lives in a folder named by a hash of the package's sources and of the
+versions that produce machine code.  When that folder cannot be written, kernels are compiled in memory, after one
+warning.  numba's global settings are left as they were found.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+
+from raceway.errors import PluginError
+
+#: Seconds spent in compiling (until a run takes them) and in reading the cache, and how many kernels of each.
+clock: dict[str, float] = {"compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0}
+
+
+def take_compile_seconds() -> float:
+    """Seconds of compiling since the last call: each is billed to one run."""
+    seconds, clock["compile_s"] = clock["compile_s"], 0.0
+    return seconds
+
+
+def cache_root() -> Path:
+    """The user's cache folder of this package (``RACEWAY_CACHE_DIR`` overrides it)."""
+    if chosen := os.environ.get("RACEWAY_CACHE_DIR"):
+        return Path(chosen)
+    from platformdirs import user_cache_path
+
+    return user_cache_path("raceway", appauthor=False)
+
+
+@cache
+def source_key() -> str:
+    """Hash of the package's Python sources and of the versions that produce machine code."""
+    import llvmlite
+    import numpy
+
+    digest = hashlib.sha256()
+    package = Path(__file__).resolve().parent.parent
+    for folder in ("core", "contact_laws", "integrators", "plugins"):
+        for path in sorted((package / folder).rglob("*.py")):
+            digest.update(path.relative_to(package).as_posix().encode())
+            digest.update(path.read_bytes())
+    versions = (sys.version, numba.__version__, llvmlite.__version__, numpy.__version__)
+    digest.update(repr(versions).encode())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def kernel_folder() -> Path | None:
+    """The folder that this process reads and writes compiled kernels in; None when it cannot be written."""
+    folder = cache_root() / "kernels" / source_key()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as probe:
+            probe.write(b"raceway" * 1024)
+            probe.flush()
+        return folder
+    except OSError as why:
+        warnings.warn(
+            f"compiled kernels cannot be kept in {folder} ({why.strerror or why}); compiling in memory, which costs "
+            "some ten seconds a run. Set RACEWAY_CACHE_DIR to a folder that can be written.",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        return None
+
+
+@contextmanager
+def _numba_cache_in(folder: Path) -> Iterator[None]:
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def jit(signature: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a kernel for one explicit signature, now, through the cache.
+
+    Parameters
+    ----------
+    signature : numba signature
+        For instance ``raceway.core.signatures.LAW``.
+
+    Raises
+    ------
+    PluginError
+        When numba cannot compile the function for that signature; the message names function and file.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        start = time.perf_counter()
+        try:
+            kernel = _compile(function, signature)
+        except numba.core.errors.NumbaError as why:
+            code = function.__code__
+            reason = str(why).strip().splitlines()
+            first = next((line for line in reason if line.strip()), "unknown reason")
+            raise PluginError(
+                f"kernel `{function.__qualname__}` ({Path(code.co_filename).name}, line {code.co_firstlineno}) does "
+                f"not compile for the signature {signature}: {first.strip()}"
+            ) from why
+        hit = sum(kernel.stats.cache_hits.values()) > 0
+        clock["load_s" if hit else "compile_s"] += time.perf_counter() - start
+        clock["loaded" if hit else "compiled"] += 1
+        return kernel
+
+    return decorate
+
+
+def _compile(function: Callable[..., Any], signature: Any) -> Any:
+    folder = kernel_folder()
+    if folder is not None:
+        try:
+            with _numba_cache_in(folder):
+                return numba.njit(signature, cache=True)(function)
+        except (OSError, EOFError, ValueError, RuntimeError) as why:
+            # A full disk, a truncated cache file, or a source that numba cannot locate.
+            warnings.warn(
+                f"the kernel cache in {folder} did not serve `{function.__qualname__}` ({why}); compiled in memory",
+                RuntimeWarning,
+                stacklevel=3,
+            )
+    return numba.njit(signature)(function)

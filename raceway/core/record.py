@@ -1,0 +1,79 @@
+"""What a time integration starts from, is asked for, and leaves behind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+
+@attrs.frozen(eq=False)
+class Motion:
+    """State of the ring and the balls at one time.
+
+    Attributes
+    ----------
+    q, v, a : (5,) displacement, velocity, acceleration (of generalised-alpha: its own a)
+    ball, ball_before : (Z, 2) positions of the balls now and one step earlier [m]
+    """
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    ball: np.ndarray
+    ball_before: np.ndarray
+
+
+@attrs.frozen(eq=False)
+class Schedule:
+    """Times of an integration: ``steps`` steps of ``dt`` [s], every ``stride``-th recorded, from time zero.
+
+    Attributes
+    ----------
+    steps_per_turn : int
+    turns : int
+    ramp : float, the excitation grows smoothly over this time [s]
+    """
+
+    dt: float
+    steps_per_turn: int
+    turns: int
+    stride: int = 1
+    ramp: float = 0.0
+
+    @property
+    def steps(self) -> int:
+        return self.steps_per_turn * self.turns
+
+
+@attrs.frozen(eq=False)
+class Record:
+    """Sampled motion of the inner ring's reference point, with forces.
+
+    Attributes
+    ----------
+    time : (n,) [s]
+    displacement, velocity, force : (n, 5) motion and outer (excitation) force
+    gap, contact_force : (n, 2 Z) inner races first [m, N];  ball : (n, Z, 2) [m]
+    final : Motion
+    counts : dict with steps, evaluations, max_penetration_m, peak_contact_force_n
+    """
+
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    ball: np.ndarray
+    final: Motion
+    schedule: Schedule
+    counts: dict[str, Any]
+
+    def last(self, turns: int) -> Record:
+        """The part that belongs to the last turns."""
+        first = self.schedule.steps - turns * self.schedule.steps_per_turn
+        keep = self.time > (first + 0.5 * self.schedule.stride) * self.schedule.dt
+        names = ("time", "displacement", "velocity", "force", "gap", "contact_force", "ball")
+        return attrs.evolve(self, **{name: getattr(self, name)[keep] for name in names})

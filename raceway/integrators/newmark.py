@@ -1,0 +1,42 @@
+"""Newmark's method."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway.options import between, inside, option
+
+if TYPE_CHECKING:
+    from raceway.core.advance import OnChunk
+    from raceway.core.record import Motion, Record, Schedule
+    from raceway.core.system import System
+
+
+@attrs.frozen
+class Newmark:
+    """Average acceleration by default: second order, no dissipation, unconditionally stable on linear systems."""
+
+    name: ClassVar[str] = "newmark"
+    order: ClassVar[int] = 2
+    implicit: ClassVar[bool] = True
+    inertial: ClassVar[bool] = True
+    dissipative: ClassVar[bool] = False
+
+    gamma: float = option(0.5, help="0.5: second order, no dissipation", rule=between(0.5, 1.0))
+    beta: float = option(0.25, help="0.25: average acceleration", rule=inside(0.0, 1.0))
+    tolerance: float = option(1e-9, help="residual of a step's iteration over the largest force", rule=inside(0.0, 1e-3))
+
+    def __attrs_post_init__(self) -> None:
+        if 2.0 * self.beta < self.gamma:
+            raise ValueError(f"`beta` = {self.beta:g} must be at least gamma / 2 = {self.gamma / 2:g}: else steps are not unconditionally stable")
+
+    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
+        import numpy as np
+
+        from raceway.core.advance import advance
+        from raceway.core.integrators.implicit import implicit
+
+        coefficients = np.array([0.0, 0.0, self.beta, self.gamma, self.tolerance])
+        return advance(implicit, system, start, schedule, coefficients, on_chunk)

@@ -1,0 +1,35 @@
+"""The orbit as a series of equilibria."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway.options import inside, option
+
+if TYPE_CHECKING:
+    from raceway.core.advance import OnChunk
+    from raceway.core.record import Motion, Record, Schedule
+    from raceway.core.system import System
+
+
+@attrs.frozen
+class QuasiStatic:
+    """No inertia and no rates: what the bearing would do if it turned infinitely slowly under the same forces."""
+
+    name: ClassVar[str] = "quasi_static"
+    order: ClassVar[int] = 2
+    implicit: ClassVar[bool] = True
+    inertial: ClassVar[bool] = False
+    dissipative: ClassVar[bool] = False
+
+    tolerance: float = option(1e-11, help="residual of an equilibrium over the sum of forces", rule=inside(0.0, 1e-3))
+
+    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
+        import numpy as np
+
+        from raceway.core.advance import advance
+        from raceway.core.integrators.quasi_static import quasi_static
+
+        return advance(quasi_static, system, start, schedule, np.array([self.tolerance]), on_chunk)

@@ -1,0 +1,113 @@
+"""How options are declared: attrs fields that carry a unit, a help text and a rule with a remedy.
+
+Scene tables and plug-ins' classes use the same few functions, so that checking, the JSON schema and ``--help`` all read
+one declaration.  A rule raises ``ValueError`` with the whole sentence that the user will see.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import attrs
+
+Rule = Callable[[Any, Any, Any], None]
+
+
+def option(default: Any = attrs.NOTHING, *, unit: str = "", help: str = "", rule: Rule | None = None) -> Any:
+    """An attrs field for one key of a scene.
+
+    Parameters
+    ----------
+    default : value when the key is absent; without it the key is required
+    unit : for people and for the schema, "" for a pure number
+    help : one sentence
+    rule : validator, called as ``rule(None, attribute, value)``
+    """
+    metadata = {"unit": unit, "help": help, "rule": getattr(rule, "words", "")}
+    return attrs.field(default=default, validator=rule or (lambda *_: None), metadata=metadata)
+
+
+def nearest(word: str, choices: Iterable[str]) -> str:
+    """`` (did you mean 'x'?)`` or nothing."""
+    close = difflib.get_close_matches(str(word).lower(), list(choices), n=1, cutoff=0.55)
+    return f" (did you mean '{close[0]}'?)" if close else ""
+
+
+def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
+    def check(_instance: Any, _attribute: Any, value: Any) -> None:
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(f"must be a finite number: {words}")
+        if not test(value):
+            raise ValueError(f"must be {words}")
+
+    check.words = words  # type: ignore[attr-defined]
+    check.facts = facts  # type: ignore[attr-defined]
+    return check
+
+
+def positive() -> Rule:
+    return _rule("greater than 0", lambda v: v > 0, exclusiveMinimum=0)
+
+
+def at_least(low: float) -> Rule:
+    return _rule(f"at least {low:g}", lambda v: v >= low, minimum=low)
+
+
+def above(low: float) -> Rule:
+    return _rule(f"greater than {low:g}", lambda v: v > low, exclusiveMinimum=low)
+
+
+def between(low: float, high: float) -> Rule:
+    return _rule(f"from {low:g} to {high:g}", lambda v: low <= v <= high, minimum=low, maximum=high)
+
+
+def inside(low: float, high: float) -> Rule:
+    return _rule(
+        f"greater than {low:g} and less than {high:g}", lambda v: low < v < high, exclusiveMinimum=low, exclusiveMaximum=high
+    )
+
+
+def finite() -> Rule:
+    return _rule("a finite number", lambda v: True)
+
+
+def one_of(*choices: str) -> Rule:
+    listed = ", ".join(repr(c) for c in choices)
+
+    def check(_instance: Any, _attribute: Any, value: Any) -> None:
+        if value not in choices:
+            raise ValueError(f"must be one of {listed}{nearest(value, choices)}")
+
+    check.words = f"one of {listed}"  # type: ignore[attr-defined]
+    check.facts = {"enum": list(choices)}  # type: ignore[attr-defined]
+    return check
+
+
+def word_or(rule: Rule, *choices: str) -> Rule:
+    """A number that obeys ``rule``, or one of a few words."""
+    listed = ", ".join(repr(c) for c in choices)
+    number = getattr(rule, "words", "a number")
+
+    def check(instance: Any, attribute: Any, value: Any) -> None:
+        if isinstance(value, str):
+            if value not in choices:
+                raise ValueError(f"must be {listed} or a number {number}{nearest(value, choices)}")
+        else:
+            rule(instance, attribute, value)
+
+    check.words = f"{listed} or a number {number}"  # type: ignore[attr-defined]
+    check.facts = {"words": list(choices), **getattr(rule, "facts", {})}  # type: ignore[attr-defined]
+    return check
+
+
+def optional(rule: Rule) -> Rule:
+    def check(instance: Any, attribute: Any, value: Any) -> None:
+        if value is not None:
+            rule(instance, attribute, value)
+
+    check.words = getattr(rule, "words", "")  # type: ignore[attr-defined]
+    check.facts = getattr(rule, "facts", {})  # type: ignore[attr-defined]
+    return check

@@ -1,0 +1,194 @@
+"""What a scene needs, what is left out and why, and what it will cost.  Nothing is built, meshed or compiled here.
+
+The model builder obeys the plan; it decides nothing of this by itself.
+"""
+
+from __future__ import annotations
+
+from math import asin, pi, sqrt
+from typing import Any
+
+import attrs
+
+from raceway.errors import Mistake, SceneError
+from raceway.scene import Scene
+
+#: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
+_STEP_S = {"weightless": 1.6e-6, "inertial": 4.0e-6}
+_START_S = 0.6
+
+
+@attrs.frozen
+class Part:
+    """One part of the model or of the program, kept or left out, and why."""
+
+    part: str
+    why: str
+
+
+@attrs.frozen
+class Plan:
+    """Decisions and predictions for one scene.
+
+    Attributes
+    ----------
+    balls : "weightless" (races in series) or "inertial" (two unknowns each, centrifugal force)
+    free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
+    turns : turns that are integrated
+    dofs : unknowns of the ring and of the balls
+    time_step_s, predicted_wall_s : None in a static scene; predictions
+    """
+
+    kept: tuple[Part, ...]
+    left_out: tuple[Part, ...]
+    balls: str
+    free: tuple[int, ...]
+    turns: int
+    dofs: int
+    time_step_s: float | None
+    predicted_steps: int
+    predicted_wall_s: float
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "kept": [attrs.asdict(p) for p in self.kept],
+            "left_out": [attrs.asdict(p) for p in self.left_out],
+            "dofs": self.dofs,
+            "time_step_s": self.time_step_s,
+            "predicted_steps": self.predicted_steps,
+            "predicted_wall_s": self.predicted_wall_s,
+        }
+
+
+def make_plan(scene: Scene) -> Plan:
+    """Decide what a scene needs.
+
+    Raises
+    ------
+    SceneError
+        For combinations that cannot run, each with the reason and the remedy.
+    """
+    refuse_what_cannot_run(scene)
+    kept: list[Part] = []
+    left_out: list[Part] = []
+
+    def decide(needed: bool, part: str, why: str, why_not: str) -> bool:
+        (kept if needed else left_out).append(Part(part, why if needed else why_not))
+        return needed
+
+    dynamic = scene.excitation is not None
+    tilts = decide(scene.supports.tilt != "locked", "tilts", "supports.tilt lets the ring tilt", "supports.tilt is locked")
+    free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
+    inertia = scene.kinematics.ball_inertia and scene.spin_speed > 0.0
+    why_not = "kinematics.ball_inertia is false" if scene.spin_speed > 0.0 else "nothing turns: no spin speed"
+    decide(inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not)
+    decide(scene.contact.damping > 0.0, "contact damping", "contact.damping is set", "contact.damping is 0")
+    decide(False, "friction", "", "contact.friction is 0")
+    decide(False, "elastic bodies and mesh", "", "bodies.kind is rigid: only contacts deform")
+    gyroscopic = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
+    decide(gyroscopic, "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts", "no polar inertia on free tilts")
+    uses_record = dynamic and "record" in scene.identifier.method.needs
+    unused = "the scene is static" if not dynamic else f"identifier '{scene.identifier.kind}' needs the equilibrium only"
+    decide(uses_record, f"time integration ({scene.integrator.kind})", "the identifier needs recorded motion", unused)
+    turns = scene.integrator.turns if uses_record else 0
+    if uses_record and not scene.integrator.method.inertial and scene.contact.law.state_size == 0 and turns > 1:
+        left_out.append(Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn"))
+        turns = 1
+    steps_per_turn = _predicted_steps_per_turn(scene) if uses_record else 0
+    steps = steps_per_turn * turns
+    balls = "inertial" if inertia else "weightless"
+    each = _STEP_S[balls] * scene.bearing.ball_count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
+    period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
+    return Plan(
+        kept=tuple(kept),
+        left_out=tuple(left_out),
+        balls=balls,
+        free=free,
+        turns=turns,
+        dofs=sum(free) + scene.bearing.ball_count * (2 if inertia else 1),
+        time_step_s=period / steps_per_turn if uses_record else None,
+        predicted_steps=steps,
+        predicted_wall_s=_START_S + 1.5 * steps * each,
+    )
+
+
+def refuse_what_cannot_run(scene: Scene) -> None:
+    """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
+    faults: list[Mistake] = []
+
+    def refuse(bad: bool, path: str, value: Any, why: str) -> None:
+        if bad:
+            faults.append(Mistake(path, value, why))
+
+    kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
+    refuse(scene.bodies.kind != "rigid", "bodies.kind", scene.bodies.kind, "is not available yet: use 'rigid'")
+    refuse(scene.mesh is not None, "mesh", None, "rigid bodies have no mesh: leave the table out")
+    law = contact.law
+    if contact.discretisation not in law.discretisations:
+        choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
+        faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
+    elif contact.discretisation == "nodal":
+        faults.append(Mistake("contact.discretisation", "nodal", "rigid bodies have no surface points: use 'resultant'"))
+    not_yet = "is not available yet: leave it out"
+    refuse(contact.friction > 0.0, "contact.friction", contact.friction, not_yet)
+    refuse(kinematics.orbiting, "kinematics.orbiting", True, not_yet)
+    refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, not_yet)
+    refuse(kinematics.radial_expansion != 0.0, "kinematics.radial_expansion", kinematics.radial_expansion, not_yet)
+    refuse(kinematics.ring_growth, "kinematics.ring_growth", True, not_yet)
+    for seat in ("outer_seat", "inner_seat"):
+        value = getattr(scene.supports, seat)
+        refuse(value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")
+    if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
+        faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
+    if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
+        mass, tilt = ring_inertia(scene)
+        if scene.rotor.mass + mass <= 0.0:
+            why = "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own"
+            faults.append(Mistake("rotor.mass", scene.rotor.mass, why))
+        if scene.supports.tilt != "locked" and scene.rotor.transverse_inertia + tilt <= 0.0:
+            why = "free tilts need an inertia: set it, or give bearing.bore and bearing.width"
+            faults.append(Mistake("rotor.transverse_inertia", scene.rotor.transverse_inertia, why))
+    if faults:
+        raise SceneError(faults)
+
+
+def ring_inertia(scene: Scene) -> tuple[float, float]:
+    """Mass [kg] and transverse inertia [kg m2] of the inner ring; zeros when bore or width are not known.
+
+    Notes
+    -----
+    A hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h), less the groove's circular segment.
+    """
+    b = scene.bearing
+    if b.bore is None or b.width is None:
+        return 0.0, 0.0
+    d, depth = b.ball_diameter, shoulder_height(scene)
+    bottom = b.pitch_diameter - d
+    land = bottom + 2.0 * depth
+    groove = b.conformity_inner * d
+    half = sqrt(max(2.0 * groove * depth - depth * depth, 0.0))
+    segment = groove * groove * asin(min(half / groove, 1.0)) - half * (groove - depth)
+    solid = b.rings.density * pi / 4.0 * (land**2 - b.bore**2) * b.width
+    cut = b.rings.density * segment * pi * (bottom + 1.2 * depth)
+    mass = solid - cut
+    inner, outer = b.bore / 2.0, land / 2.0
+    transverse = mass * (3.0 * (inner**2 + outer**2) + b.width**2) / 12.0
+    return mass, transverse
+
+
+def shoulder_height(scene: Scene) -> float:
+    """Depth of the grooves [m]: given, or 0.2 D."""
+    return scene.bearing.shoulder_height or 0.2 * scene.bearing.ball_diameter
+
+
+def _predicted_steps_per_turn(scene: Scene) -> int:
+    """The scene's number; for 'auto' 360, or what a rough stiffness asks of an explicit method."""
+    given = scene.integrator.steps_per_turn
+    if isinstance(given, int):
+        return given
+    if scene.integrator.method.implicit:
+        return 360
+    from raceway.estimate import highest_frequency
+
+    period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
+    return max(360, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)

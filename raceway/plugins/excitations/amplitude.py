@@ -1,0 +1,67 @@
+"""The amplitude law, which both directions of excitation share."""
+
+from __future__ import annotations
+
+from math import pi
+
+import attrs
+
+from raceway.options import at_least, between, finite, one_of, option, optional, positive
+
+
+@attrs.frozen(kw_only=True)
+class Amplitude:
+    """Options of a harmonic force: how large it is at a speed, and when it peaks."""
+
+    speed_rpm: float = option(unit="r/min", help="whirl speed = spin speed", rule=positive())
+    amplitude: str = option(
+        "unbalance",
+        help="'unbalance': load_share * unbalance * w^2; 'constant': the same force at every speed",
+        rule=one_of("unbalance", "constant"),
+    )
+    unbalance: float | None = option(
+        None, unit="kg m", help="mass times eccentricity of the whole rotor", rule=optional(at_least(0.0))
+    )
+    load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
+    force: float | None = option(
+        None, unit="N", help="amplitude = 'constant': the force on this bearing", rule=optional(at_least(0.0))
+    )
+    reference_speed_rpm: float | None = option(
+        None,
+        unit="r/min",
+        help="amplitude = 'constant' without force: the unbalance force at this speed",
+        rule=optional(positive()),
+    )
+    phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
+    ramp_turns: float = option(0.0, help="turns over which the force grows smoothly from zero", rule=at_least(0.0))
+
+    def __attrs_post_init__(self) -> None:
+        if self.amplitude == "unbalance" and self.unbalance is None:
+            raise ValueError("`amplitude` = 'unbalance' needs the key `unbalance` (kg m)")
+        if self.amplitude == "constant" and self.force is None:
+            if self.unbalance is None or self.reference_speed_rpm is None:
+                raise ValueError(
+                    "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to "
+                    "compute it from"
+                )
+
+    @property
+    def whirl_speed(self) -> float:
+        """W [rad/s]."""
+        return self.speed_rpm * pi / 30.0
+
+    @property
+    def frequency_hz(self) -> float:
+        return self.speed_rpm / 60.0
+
+    @property
+    def period_s(self) -> float:
+        return 60.0 / self.speed_rpm
+
+    @property
+    def amplitude_n(self) -> float:
+        """F0 on this bearing [N]."""
+        if self.amplitude == "constant" and self.force is not None:
+            return self.force
+        speed = self.speed_rpm if self.amplitude == "unbalance" else (self.reference_speed_rpm or 0.0)
+        return self.load_share * (self.unbalance or 0.0) * (speed * pi / 30.0) ** 2

@@ -1,0 +1,38 @@
+"""Two orthogonal forces in quadrature: the force of a rotor's unbalance, which turns."""
+
+from __future__ import annotations
+
+from math import radians
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.options import one_of, option
+from raceway.plugins.excitations.amplitude import Amplitude
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+@attrs.frozen(kw_only=True)
+class Bidirectional(Amplitude):
+    """F_y = F0 cos(W t - lag), F_z = F0 sin(W t - lag); backward whirl changes the sign of F_z."""
+
+    name: ClassVar[str] = "bidirectional"
+
+    whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
+
+    @property
+    def sense(self) -> int:
+        return 1 if self.whirl == "forward" else -1
+
+    def parameters(self) -> np.ndarray:
+        import numpy as np
+
+        lag = radians(self.phase_lag_deg)
+        return np.array([self.amplitude_n, self.whirl_speed, lag, 1.0, 0.0, 0.0, float(self.sense)])
+
+    def kernel(self) -> Any:
+        from raceway.core.excitations.harmonic import harmonic
+
+        return harmonic

@@ -1,0 +1,48 @@
+"""The 1x line of a Fourier transform over whole turns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+if TYPE_CHECKING:
+    from raceway.core.identification import Identification
+    from raceway.core.record import Record
+
+
+@attrs.frozen
+class Fft1x:
+    """Detrended 1x line of force and displacement over all whole turns; its spread over single turns is reported."""
+
+    name: ClassVar[str] = "fft_1x"
+    needs: ClassVar[frozenset[str]] = frozenset({"record"})
+    definition: ClassVar[str] = "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
+
+    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
+        import numpy as np
+
+        from raceway.core.identification import fit_lines, fourier_line, identification, stiffness
+
+        record, frequency = records[0], model.excitation.frequency_hz
+        force = fourier_line(record.time, record.force, frequency)
+        line = fourier_line(record.time, record.displacement, frequency)
+        whole = stiffness(force, line)
+        other, _ = fit_lines(record.time, np.hstack([record.force, record.displacement]), frequency, 3)
+        per_turn = record.schedule.steps_per_turn // record.schedule.stride
+        turns = len(record.time) // per_turn
+        single = []
+        for turn in range(turns):
+            part = slice(turn * per_turn, (turn + 1) * per_turn)
+            force_1 = fourier_line(record.time[part], record.force[part], frequency)
+            single.append(stiffness(force_1, fourier_line(record.time[part], record.displacement[part], frequency)))
+        motion = record.displacement[:, :3] - record.displacement[:, :3].mean(axis=0)
+        wt = 2.0 * np.pi * frequency * record.time[:, None]
+        pure = (line[:3] * np.exp(1j * wt)).real
+        scale = np.sqrt((pure**2).sum())
+        return identification(
+            self.definition, frequency, force, line, model.mass_used,
+            residual=float(np.sqrt(((motion - pure)[:, 1:] ** 2).sum()) / scale) if scale > 0 else None,
+            spread=float(max(abs(z - whole) for z in single) / abs(whole)) if turns > 1 else None,
+            window=float(abs(stiffness(other[0, :5], other[0, 5:]) - whole) / abs(whole)),
+        )  # fmt: skip

@@ -1,0 +1,152 @@
+"""What a run leaves: numbers with error and cost, as an object and as result.json."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.identification import Identification
+from raceway.core.system import COORDINATES
+from raceway.errors import RacewayError
+from raceway.model import Equilibrium, Model
+from raceway.simulate import Simulation
+
+SCHEMA = 1
+
+
+@attrs.frozen(eq=False)
+class Result:
+    """One run.  ``as_dict`` gives result.json; the arrays stay on the object.
+
+    Attributes
+    ----------
+    identification, simulation : None in a static scene (simulation also where the identifier needs no motion)
+    error, cost, stability, environment : the tables of result.json
+    """
+
+    model: Model
+    equilibrium: Equilibrium
+    identification: Identification | None
+    simulation: Simulation | None
+    error: dict[str, Any]
+    cost: dict[str, Any]
+    stability: dict[str, Any]
+    environment: dict[str, Any]
+    warnings: tuple[str, ...]
+
+    @property
+    def title(self) -> str:
+        return self.model.scene.title
+
+    def as_dict(self) -> dict[str, Any]:
+        return without_nan(
+            {
+                "schema": SCHEMA,
+                "title": self.title,
+                "scene": self.model.scene.as_dict(),
+                "plan": self.model.plan.as_dict(),
+                "equilibrium": equilibrium_table(self.model, self.equilibrium),
+                "identification": self._identification(),
+                "error": self.error,
+                "cost": self.cost,
+                "stability": self.stability,
+                "environment": self.environment,
+                "warnings": list(self.warnings),
+            }
+        )
+
+    def _identification(self) -> dict[str, Any] | None:
+        found = self.identification
+        if found is None:
+            return None
+        z = found.dynamic_stiffness
+        return {
+            "definition": found.definition,
+            "speed_rpm": found.frequency_hz * 60.0,
+            "frequency_hz": found.frequency_hz,
+            "force_amplitude_n": found.force_amplitude,
+            "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
+            "equivalent_stiffness": found.equivalent_stiffness,
+            "equivalent_damping": found.equivalent_damping,
+            "mass_used_kg": found.mass_used,
+            "tilt": self.model.scene.supports.tilt,
+            "phase_lag_deg": found.phase_lag_deg,
+            "forward_amplitude_m": found.forward_amplitude,
+            "backward_amplitude_m": found.backward_amplitude,
+            "orbit": {"major_m": found.orbit_major, "minor_m": found.orbit_minor},
+            "residual": found.residual,
+            "spread": found.spread,
+        }
+
+    def save(self, folder: Path) -> Path:
+        """Write result.json into a folder, whole or not at all.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return write_json(self.as_dict(), folder / "result.json")
+
+
+def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    """The table ``equilibrium`` of result.json."""
+    z = model.geometry.ball_count
+    load_inner, load_outer = equilibrium.contact_force[:z], equilibrium.contact_force[z:]
+    columns = {
+        "azimuth_deg": np.degrees(model.azimuth) % 360.0,
+        "load_inner_n": load_inner,
+        "load_outer_n": load_outer,
+        "contact_angle_inner_deg": np.degrees(equilibrium.angle_inner),
+        "contact_angle_outer_deg": np.degrees(equilibrium.angle_outer),
+    }
+    for race, ellipse, load in (("inner", model.inner, load_inner), ("outer", model.outer, load_outer)):
+        a, b = ellipse.semi_axes(load)
+        columns[f"peak_pressure_{race}_pa"] = ellipse.peak_pressure(load)
+        columns[f"semi_major_{race}_m"] = a
+        columns[f"semi_minor_{race}_m"] = b
+    return {
+        "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
+        "stiffness": equilibrium.stiffness.tolist(),
+        "balls": [{key: float(column[k]) for key, column in columns.items()} for k in range(z)],
+        "iterations": equilibrium.iterations,
+    }
+
+
+def without_nan(value: Any) -> Any:
+    """The same tree with null for numbers that are not finite, and plain Python types."""
+    if isinstance(value, dict):
+        return {str(k): without_nan(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_nan(v) for v in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def write_json(content: Any, path: Path) -> Path:
+    """Write JSON so that a reader sees the old file or the whole new one.
+
+    Raises
+    ------
+    RacewayError
+        Folder or disk that cannot be written.
+    """
+    text = json.dumps(content, indent=1, allow_nan=False) + "\n"
+    scratch = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        scratch.write_text(text, encoding="utf-8")
+        scratch.replace(path)
+    except OSError as why:
+        scratch.unlink(missing_ok=True)
+        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}. Choose another folder with --out.") from None
+    return path

@@ -1,0 +1,168 @@
+"""scene -> plan -> model -> settle -> advance -> identify -> result, and nothing more."""
+
+from __future__ import annotations
+
+import platform
+import resource
+import sys
+import time
+from typing import Any
+
+import numpy as np
+
+from raceway.core.energy import energy_balance
+from raceway.core.identification import Identification
+from raceway.core.jit import take_compile_seconds
+from raceway.errors import ConvergenceError, RacewayError
+from raceway.model import Equilibrium, Model, build_model, settle
+from raceway.plan import make_plan
+from raceway.registry import Registry, default_registry
+from raceway.result import Result
+from raceway.scene import Scene
+from raceway.simulate import OnProgress, Simulation, simulate, step_error
+
+
+def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress | None = None) -> Result:
+    """Compute one scene.
+
+    Parameters
+    ----------
+    on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
+
+    Raises
+    ------
+    SceneError
+        A combination that cannot run.
+    ConvergenceError, StabilityError
+        No solution; ``error.state`` holds the last good arrays.
+    """
+    registry = registry or default_registry()
+    wall = time.perf_counter()
+    try:
+        return _run(scene, registry, on_progress, wall)
+    except RacewayError as error:
+        registry.hook.raceway_run_failed(error=error)
+        raise
+
+
+def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall: float) -> Result:
+    plan = make_plan(scene)
+    registry.hook.raceway_plan_made(plan=plan)
+    model = build_model(scene, plan)
+    built = time.perf_counter()
+
+    def progress(what: str, done: int, total: int) -> None:
+        registry.hook.raceway_chunk_done(done=done, total=total)
+        if on_progress is not None:
+            on_progress(what, done, total)
+
+    equilibrium = settle(model)
+    simulation: Simulation | None = None
+    identification: Identification | None = None
+    error = _no_error("the scene is static: nothing is identified")
+    if scene.excitation is not None:
+        method = scene.identifier.method
+        if "record" in method.needs:
+            simulation = simulate(model, equilibrium, progress)
+        records = [] if simulation is None else [simulation.record]
+        identification = method.identify(records, equilibrium, model)
+        _refuse_no_number(identification)
+        error = _errors(model, equilibrium, simulation, identification)
+    done = time.perf_counter()
+    compile_s = take_compile_seconds()
+    result = Result(
+        model=model,
+        equilibrium=equilibrium,
+        identification=identification,
+        simulation=simulation,
+        error=error,
+        cost=_cost(simulation, done - wall, compile_s, built - wall, done - built),
+        stability=_stability(model, simulation),
+        environment=_environment(scene, registry),
+        warnings=equilibrium.warnings + (simulation.warnings if simulation else ()),
+    )
+    registry.hook.raceway_run_finished(result=result)
+    return result
+
+
+def _refuse_no_number(found: Identification) -> None:
+    if not np.isfinite([found.dynamic_stiffness.real, found.dynamic_stiffness.imag]).all():
+        raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
+
+
+def _no_error(how: str) -> dict[str, Any]:
+    names = ("total", "time_step", "transient", "mesh", "contact", "identification")
+    return {**dict.fromkeys(names), "how": dict.fromkeys(names, how)}
+
+
+def _errors(
+    model: Model, equilibrium: Equilibrium, simulation: Simulation | None, found: Identification
+) -> dict[str, Any]:
+    """The table ``error``: relative errors of Z, each with how it was estimated."""
+    error = _no_error("")
+    how: dict[str, str] = error["how"]
+    how["mesh"] = "rigid bodies have no mesh"
+    how["contact"] = "the law is taken as exact: its own model error is not estimated"
+    if simulation is None:
+        for name in ("time_step", "transient", "identification"):
+            error[name], how[name] = 0.0, "closed form: no motion is recorded"
+    else:
+        error["time_step"], how["time_step"] = step_error(model, equilibrium, simulation, found.dynamic_stiffness)
+        error["transient"] = 0.0 if not model.scene.integrator.method.inertial else found.spread
+        how["transient"] = "largest deviation of a single turn from all turns that are used"
+        error["identification"], how["identification"] = found.window, "Fourier line against least squares"
+    parts = [error[name] for name in ("time_step", "transient", "identification") if error[name] is not None]
+    error["total"] = float(sum(parts)) if parts else None
+    how["total"] = "sum of the estimates that are not null"
+    return error
+
+
+def _cost(simulation: Simulation | None, wall: float, compile_s: float, build: float, solve: float) -> dict[str, Any]:
+    counts = simulation.whole.counts if simulation else {"steps": 0, "evaluations": 0}
+    scale = 1 if sys.platform == "darwin" else 1024
+    return {
+        "wall_s": wall,
+        "compile_s": compile_s,
+        "build_s": max(build, 0.0),
+        "solve_s": solve,
+        "steps": counts["steps"],
+        "newton_iterations": counts["evaluations"],
+        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,
+        "threads": 1,
+    }
+
+
+def _stability(model: Model, simulation: Simulation | None) -> dict[str, Any]:
+    drift = None
+    law = model.scene.contact.law
+    if simulation is not None and model.scene.integrator.method.inertial and law.state_size == 0 and not law.dissipative:
+        if simulation.start != "ramp":
+            drift = energy_balance(model.system, simulation.whole).drift
+    return {
+        "critical_time_step_s": simulation.critical_time_step if simulation else None,
+        "energy_drift": drift,
+        "hourglass_energy_ratio": None,
+        "max_penetration_m": simulation.whole.counts["max_penetration_m"] if simulation else None,
+        "status": "completed",
+    }
+
+
+def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
+    import numba
+
+    from raceway import __version__
+
+    used = [("contact_law", scene.contact.kind), ("integrator", scene.integrator.kind), ("identifier", scene.identifier.kind)]
+    if scene.excitation is not None:
+        used.append(("excitation", scene.excitation.name))
+    entries = [registry.find(kind, name) for kind, name in used]
+    return {
+        "raceway": __version__,
+        "python": platform.python_version(),
+        "numba": numba.__version__,
+        "numpy": np.__version__,
+        "plugins": [
+            {"kind": e.kind, "name": e.name, "distribution": e.distribution, "version": e.version} for e in entries
+        ],
+        "host": f"{platform.system()} {platform.machine()}",
+    }

@@ -1,0 +1,259 @@
+"""The scene: what the user said, as a frozen tree of attrs objects, validated, SI.
+
+``raceway.scene_file`` reads it from TOML.  Each class here is one table of the file; a table with ``kind`` holds the
+chosen plug-in's own options in its last attribute.
+"""
+
+from __future__ import annotations
+
+from math import acos, asin, cos, degrees, pi, radians, sin
+from typing import Any
+
+import attrs
+
+from raceway.options import (
+    at_least,
+    between,
+    finite,
+    inside,
+    one_of,
+    option,
+    optional,
+    positive,
+    word_or,
+)
+
+
+@attrs.frozen
+class Material:
+    young: float = option(212e9, unit="Pa", help="Young's modulus", rule=positive())
+    poisson: float = option(0.29, help="Poisson's ratio", rule=inside(-1.0, 0.5))
+    density: float = option(7810.0, unit="kg/m3", help="density", rule=positive())
+
+
+@attrs.frozen
+class Bearing:
+    ball_diameter: float = option(unit="m", help="D", rule=positive())
+    pitch_diameter: float = option(unit="m", help="d_m", rule=positive())
+    ball_count: int = option(help="Z", rule=at_least(1))
+    conformity_inner: float = option(help="groove radius / ball diameter, inner", rule=inside(0.5, 1.0))
+    conformity_outer: float = option(help="groove radius / ball diameter, outer", rule=inside(0.5, 1.0))
+    contact_angle_deg: float | None = option(
+        None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0))
+    )
+    radial_clearance: float | None = option(
+        None, unit="m", help="internal radial clearance as catalogues give it, on the diameter", rule=optional(at_least(0.0))
+    )
+    bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(positive()))
+    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(positive()))
+    width: float | None = option(None, unit="m", help="width", rule=optional(positive()))
+    shoulder_height: float | None = option(
+        None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(positive())
+    )
+    first_ball_azimuth_deg: float = option(0.0, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=finite())
+    tilt_arm: str = option(
+        "groove",
+        help="arm of tilts and moments: 'groove' (radius of the inner groove centres) or 'pitch' (half the pitch diameter)",
+        rule=one_of("groove", "pitch"),
+    )
+    preset: str | None = option(None, help="name in the catalogue; other keys override it")
+    rings: Material = attrs.field(factory=Material, metadata={"help": "material of both rings"})
+    balls: Material = attrs.field(factory=Material, metadata={"help": "material of the balls"})
+
+    def __attrs_post_init__(self) -> None:
+        d, dm = self.ball_diameter, self.pitch_diameter
+        if d >= dm:
+            raise ValueError(f"`ball_diameter` = {d:g} m must be smaller than `pitch_diameter` = {dm:g} m")
+        if self.ball_count > 1 and sin(pi / self.ball_count) * dm < d:
+            most = int(pi / asin(d / dm))
+            raise ValueError(
+                f"`ball_count` = {self.ball_count} balls of {d:g} m do not fit a pitch circle of {dm:g} m: at most {most}"
+            )
+        if self.bore is not None and self.bore >= dm - d:
+            raise ValueError(f"`bore` = {self.bore:g} m cuts the inner raceway: it must be below d_m - D = {dm - d:g} m")
+        if self.outer_diameter is not None and self.outer_diameter <= dm + d:
+            raise ValueError(
+                f"`outer_diameter` = {self.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = {dm + d:g} m"
+            )
+        self._check_clearance()
+
+    def _check_clearance(self) -> None:
+        clearance, angle = self.radial_clearance, self.contact_angle_deg
+        distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+        if clearance is None:
+            return
+        if clearance >= 2.0 * distance:
+            raise ValueError(
+                f"`radial_clearance` = {clearance:g} m must be below twice the groove-centre distance, {2 * distance:g} m"
+            )
+        if not angle:
+            return
+        fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
+        if abs(fitting - clearance) > 1e-3 * distance:
+            own = degrees(acos(1.0 - clearance / (2.0 * distance)))
+            raise ValueError(
+                f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
+                f"clearance gives {own:.3f} deg, that angle {fitting:.4g} m. Give one of them"
+            )
+
+    @property
+    def contact_angle(self) -> float:
+        """Free contact angle [rad]: given, or from the radial clearance."""
+        if self.radial_clearance and not self.contact_angle_deg:
+            distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+            return acos(1.0 - self.radial_clearance / (2.0 * distance))
+        return radians(self.contact_angle_deg or 0.0)
+
+
+@attrs.frozen
+class Supports:
+    tilt: float | str = option(
+        "locked",
+        unit="N m/rad",
+        help="'locked', 'free' (massless shaft), or the shaft's stiffness against tilts",
+        rule=word_or(positive(), "locked", "free"),
+    )
+    axial: str = option(
+        "force",
+        help="'force': load.axial acts; 'displacement': what load.axial alone gives is held",
+        rule=one_of("force", "displacement"),
+    )
+    outer_seat: float | str = option(
+        "rigid", unit="N/m3", help="outer cylinder: 'rigid' or the bed's stiffness", rule=word_or(positive(), "rigid")
+    )
+    inner_seat: float | str = option(
+        "rigid", unit="N/m3", help="bore: 'rigid' or the bed's stiffness", rule=word_or(positive(), "rigid")
+    )
+
+
+@attrs.frozen
+class Rotor:
+    mass: float = option(0.0, unit="kg", help="carried by this bearing, added to the inner ring's own", rule=at_least(0.0))
+    transverse_inertia: float = option(
+        0.0, unit="kg m2", help="about the reference point, added to the ring's own", rule=at_least(0.0)
+    )
+    polar_inertia: float = option(0.0, unit="kg m2", help="gyroscopic moments on the tilts", rule=at_least(0.0))
+    damping: float = option(0.0, unit="N s/m", help="viscous, on the translations", rule=at_least(0.0))
+
+
+@attrs.frozen
+class Load:
+    axial: float = option(0.0, unit="N", help="positive seats the bearing", rule=finite())
+    radial: tuple[float, float] = option((0.0, 0.0), unit="N", help="along y, z")
+    moment: tuple[float, float] = option((0.0, 0.0), unit="N m", help="about y, z")
+
+
+@attrs.frozen
+class Bodies:
+    kind: str = option("rigid", help="what deforms", rule=one_of("rigid", "condensed", "elastic"))
+
+
+@attrs.frozen
+class Kinematics:
+    orbiting: bool = option(False, help="balls travel at cage speed")
+    ball_inertia: bool = option(True, help="centrifugal force of the balls at cage speed")
+    gyroscopic: str = option(
+        "none", help="gyroscopic moment of the balls: the hypothesis", rule=one_of("none", "outer_race", "shared")
+    )
+    spin_speed_rpm: float | None = option(
+        None, unit="r/min", help="default: excitation.speed_rpm, 0 in a static scene", rule=optional(at_least(0.0))
+    )
+    radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
+    ring_growth: bool = option(False, help="adds the centrifugal growth of the inner ring")
+
+
+@attrs.frozen
+class Contact:
+    kind: str = option("hertz", help="contact law")
+    discretisation: str = option(
+        "resultant", help="one force a ball-race pair, or pressure at points", rule=one_of("resultant", "nodal")
+    )
+    friction: float = option(0.0, help="Coulomb coefficient", rule=at_least(0.0))
+    damping: float = option(0.0, unit="N s/m", help="normal, each contact", rule=at_least(0.0))
+    law: Any = attrs.field(default=None, metadata={"plugin": "contact_law"})
+
+
+@attrs.frozen
+class Integration:
+    kind: str = option("newmark", help="integrator")
+    turns: int = option(12, help="turns of the excitation", rule=between(1, 10_000_000))
+    steps_per_turn: int | str = option(
+        "auto", help="'auto': 360, or more where an explicit step needs it", rule=word_or(between(8, 100_000_000), "auto")
+    )
+    start: str = option(
+        "orbit",
+        help="'orbit': on the steady orbit; 'ramp': the force grows smoothly; 'static': a sudden load",
+        rule=one_of("orbit", "ramp", "static"),
+    )
+    method: Any = attrs.field(default=None, metadata={"plugin": "integrator"})
+
+
+@attrs.frozen
+class Identifying:
+    kind: str = option("fft_1x", help="identifier")
+    method: Any = attrs.field(default=None, metadata={"plugin": "identifier"})
+
+
+@attrs.frozen
+class Scene:
+    """One scene; ``source`` is the tree of plain tables it was made from, presets resolved."""
+
+    title: str
+    bearing: Bearing
+    supports: Supports
+    rotor: Rotor
+    load: Load
+    excitation: Any
+    bodies: Bodies
+    mesh: Any
+    contact: Contact
+    kinematics: Kinematics
+    integrator: Integration
+    identifier: Identifying
+    source: dict[str, Any] = attrs.field(repr=False, eq=False)
+
+    @property
+    def spin_speed(self) -> float:
+        """Speed of the inner ring [rad/s]."""
+        rpm = self.kinematics.spin_speed_rpm
+        if rpm is None:
+            rpm = getattr(self.excitation, "speed_rpm", 0.0) if self.excitation is not None else 0.0
+        return rpm * pi / 30.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """Every key of the scene file with its value, defaults too; loads again as the same scene."""
+        tables: dict[str, Any] = {"title": self.title}
+        for name in TABLES:
+            part = getattr(self, name)
+            if part is not None:
+                tables[name] = _plain(part)
+        if self.excitation is not None:
+            tables["excitation"] = {"kind": self.excitation.name, **_plain(self.excitation)}
+        return tables
+
+
+#: The tables of a scene file, in the order in which people write them.
+TABLES: dict[str, type] = {
+    "bearing": Bearing,
+    "supports": Supports,
+    "rotor": Rotor,
+    "load": Load,
+    "bodies": Bodies,
+    "contact": Contact,
+    "kinematics": Kinematics,
+    "integrator": Integration,
+    "identifier": Identifying,
+}
+
+
+def _plain(part: Any) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    for field in attrs.fields(type(part)):
+        value = getattr(part, field.name)
+        if "plugin" in field.metadata:
+            out.update(_plain(value))
+        elif attrs.has(type(value)):
+            out[field.name] = _plain(value)
+        elif value is not None:
+            out[field.name] = list(value) if isinstance(value, tuple) else value
+    return out

@@ -1,0 +1,203 @@
+"""Reads a scene from TOML: presets, ``--set`` changes, plug-ins' options; all mistakes at once, each with its path."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.catalogue import preset
+from raceway.errors import Mistake, PluginError, SceneError
+from raceway.options import nearest
+from raceway.registry import Registry, default_registry
+from raceway.scene import TABLES, Scene
+from raceway.structure import structure
+
+#: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the default kind (None: the table may be absent).
+_PLUGIN_TABLES = {
+    "excitation": ("excitation", None),
+    "mesh": ("mesher", None),
+    "contact": ("contact_law", "hertz"),
+    "integrator": ("integrator", "newmark"),
+    "identifier": ("identifier", "fft_1x"),
+}
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """The tables of a TOML file.
+
+    Raises
+    ------
+    SceneError
+        A file that is missing, unreadable, empty or malformed, with the line.
+    """
+    path = Path(path)
+    try:
+        text = path.read_bytes().decode("utf-8")
+    except FileNotFoundError:
+        near = sorted(p.name for p in path.parent.glob("*.toml")) if path.parent.is_dir() else []
+        hint = nearest(path.name, near) or (f"; scenes there: {', '.join(near[:5])}" if near else "")
+        raise SceneError.at(str(path), None, f"no such file{hint}") from None
+    except (OSError, UnicodeDecodeError) as why:
+        reason = "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else why.strerror or str(why)
+        raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+    if not text.strip():
+        raise SceneError.at(str(path), None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as why:
+        raise SceneError.at(str(path), None, f"is not valid TOML: {why}") from None
+
+
+def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry | None = None) -> Scene:
+    """A scene from a file, with ``key.path=value`` changes.
+
+    Raises
+    ------
+    SceneError
+        With every mistake that was found.
+    """
+    tables = read_toml(path)
+    for change in changes:
+        key, value = parse_change(change)
+        tables = with_value(tables, key, value)
+    tables.setdefault("title", Path(path).stem)
+    return scene_from_dict(tables, registry)
+
+
+def parse_change(text: str) -> tuple[str, Any]:
+    """``a.b=value`` as key and TOML value; what is not TOML is a string."""
+    key, sign, value = text.partition("=")
+    if not sign or not key.strip():
+        raise SceneError.at(text, None, "must have the form table.key=value, for instance load.axial=400")
+    return key.strip(), parse_value(value)
+
+
+def parse_value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"v = {text.strip()}")["v"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+
+
+def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """A copy of the tables with one value set at a dotted key."""
+    result = copy.deepcopy(dict(tables))
+    *parents, last = key.split(".")
+    table: Any = result
+    for name in parents:
+        table = table.setdefault(name, {})
+        if not isinstance(table, dict):
+            raise SceneError.at(key, value, f"`{name}` is not a table")
+    table[last] = value
+    return result
+
+
+def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None) -> Scene:
+    """A scene from plain tables, as a TOML file would give them.
+
+    Raises
+    ------
+    SceneError
+        With every mistake that was found.
+    """
+    registry = registry or default_registry()
+    mistakes: list[Mistake] = []
+    known = [*TABLES, "excitation", "mesh", "title"]
+    for name in tables:
+        if name not in known:
+            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
+    title = tables.get("title", "untitled")
+    if not isinstance(title, str) or not title.strip():
+        mistakes.append(Mistake("title", title, "must be a string that is not empty"))
+        title = "untitled"
+    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
+    for name in list(plain):
+        if name != "title" and not isinstance(plain[name], dict):
+            mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
+            plain[name] = {}
+    if "bearing" in plain:
+        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
+    else:
+        mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
+    parts: dict[str, Any] = {}
+    for name, cls in TABLES.items():
+        if name in _PLUGIN_TABLES or (name == "bearing" and name not in plain):
+            continue
+        parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
+    for name, (kind, default) in _PLUGIN_TABLES.items():
+        parts[name] = None
+        if name in plain or default is not None:
+            parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)
+    if mistakes:
+        raise SceneError(mistakes)
+    return Scene(title=title, source=plain, **parts)
+
+
+def _with_preset(table: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
+    name = table.get("preset")
+    if name is None:
+        return table
+    try:
+        values = preset(name)
+    except SceneError as error:
+        mistakes += error.mistakes
+        return {**_PLACEHOLDER, **table, "preset": None}
+    merged = {**values, **table}
+    if "radial_clearance" in table and "contact_angle_deg" not in table:
+        merged["contact_angle_deg"] = 0.0
+    if "contact_angle_deg" in table and "radial_clearance" not in table:
+        merged.pop("radial_clearance", None)
+    for part in ("rings", "balls"):
+        if isinstance(table.get(part), dict):
+            merged[part] = {**values.get(part, {}), **table[part]}
+    return merged
+
+
+#: Stands in for a preset that does not exist, so that the other keys of the table are still checked.
+_PLACEHOLDER = {
+    "ball_diameter": 0.01,
+    "pitch_diameter": 0.05,
+    "ball_count": 8,
+    "conformity_inner": 0.52,
+    "conformity_outer": 0.52,
+}
+
+
+def _plugin_table(
+    name: str, kind: str, default: str | None, table: dict[str, Any], registry: Registry, mistakes: list[Mistake]
+) -> Any:
+    """The plug-in's options, or the core's table with the plug-in in its last attribute."""
+    word = table.get("kind", default)
+    names = registry.names(kind)
+    if word is None:
+        mistakes.append(Mistake(f"{name}.kind", None, f"is required: one of {', '.join(names) or '(none installed)'}"))
+        return None
+    if not isinstance(word, str):
+        mistakes.append(Mistake(f"{name}.kind", word, f"must be a string: one of {', '.join(names)}"))
+        return None
+    core = TABLES.get(name)
+    own = [] if core is None else [f.name for f in attrs.fields(core) if "plugin" not in f.metadata]
+    shared = {key: value for key, value in table.items() if key in own}
+    try:
+        plugin = registry.find(kind, word).plugin
+    except PluginError as error:
+        mistakes.append(Mistake(f"{name}.kind", word, str(error)))
+        if core is not None:
+            structure({k: v for k, v in shared.items() if k != "kind"}, core, name, mistakes)
+        return None
+    options = {key: value for key, value in table.items() if key not in own and key != "kind"}
+    known = [*own, *(a.name for a in attrs.fields(plugin))]
+    for key in [k for k in options if k not in known]:
+        rule = f"unknown key{nearest(key, known)}; known for kind '{word}': {', '.join(k for k in known if k != 'kind')}"
+        mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))
+    method = structure(options, plugin, name, mistakes)
+    if core is None:
+        return method
+    frame = structure({**shared, "kind": word}, core, name, mistakes)
+    slot = next(f.name for f in attrs.fields(core) if "plugin" in f.metadata)
+    return None if frame is None or method is None else attrs.evolve(frame, **{slot: method})

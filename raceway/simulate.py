@@ -1,0 +1,153 @@
+"""The middle of a run: from a model and its equilibrium to recorded motion, and to the error of its time step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil
+
+import attrs
+import numpy as np
+
+from raceway.core.orbit import Orbit, steady_orbit
+from raceway.core.record import Motion, Record, Schedule
+from raceway.core.start import at_rest, from_orbit, static_orbit
+from raceway.errors import ConvergenceError, StabilityError
+from raceway.model import Equilibrium, Model
+
+OnProgress = Callable[[str, int, int], None]
+_SAMPLES_PER_TURN = 360
+_SAFETY = 0.8
+
+
+@attrs.frozen(eq=False)
+class Simulation:
+    """A recorded motion.
+
+    Attributes
+    ----------
+    record : the turns that identification uses;  whole : all of them
+    critical_time_step : 2 / (largest frequency of the stiffest state met) [s]
+    start : how it began: "orbit", "ramp", "static"
+    warnings : what a user should know
+    """
+
+    record: Record
+    whole: Record
+    critical_time_step: float | None
+    start: str
+    warnings: tuple[str, ...]
+
+
+def simulate(
+    model: Model, equilibrium: Equilibrium, on_progress: OnProgress | None = None, coarsen: int = 1
+) -> Simulation:
+    """Integrate the plan's turns.
+
+    Parameters
+    ----------
+    coarsen : divides the steps per turn; the recorded samples stay where they were
+
+    Raises
+    ------
+    ConvergenceError, StabilityError
+        A failed integration, or an explicit step above its stable limit.
+    """
+    system, method, scene = model.system, model.scene.integrator.method, model.scene
+    period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
+    start, orbit, warnings = _chosen_start(model, equilibrium, period)
+    critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
+    steps_per_turn = _steps_per_turn(model, period, critical) // coarsen
+    dt = period / steps_per_turn
+    if not method.implicit and critical is not None and dt >= critical:
+        least = int(period / (_SAFETY * critical)) + 1
+        raise StabilityError(
+            f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s, above the stable limit of "
+            f"'{scene.integrator.kind}', {critical:.3g} s. Take at least {least}, or 'auto'.",
+            {"q": equilibrium.displacement, "ball": equilibrium.ball},
+        )
+    ramp_turns = _ramp_turns(model) if start == "ramp" else 0.0
+    ramp_turns = min(ramp_turns, float(model.plan.turns))
+    schedule = Schedule(
+        dt, steps_per_turn, model.plan.turns, max(_stride(steps_per_turn * coarsen) // coarsen, 1), ramp_turns * period
+    )
+    motion = _motion(model, equilibrium, start, orbit, dt)
+    label = f"{scene.integrator.kind}, {schedule.steps} steps"
+    progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
+    whole = method.advance(system, motion, schedule, progress)
+    used = model.plan.turns - ceil(ramp_turns)
+    if start == "static" and method.inertial:
+        used = max(model.plan.turns // 3, 1)
+    return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings)
+
+
+def _chosen_start(model: Model, equilibrium: Equilibrium, period: float) -> tuple[str, Orbit | None, tuple[str, ...]]:
+    """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
+    scene, method = model.scene, model.scene.integrator.method
+    start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
+    if start != "orbit" or not method.inertial:
+        return start, None, ()
+    if model.excitation.period_s is None:
+        return "ramp", None, ("the excitation is not periodic: started with a ramp instead of on the orbit",)
+    try:
+        return start, steady_orbit(model.system, period, equilibrium.displacement), ()
+    except ConvergenceError as why:
+        return "ramp", None, (f"{why}: started with a ramp instead",)
+
+
+def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:
+    q, ball = equilibrium.displacement, equilibrium.ball
+    if not model.scene.integrator.method.inertial:
+        return static_orbit(model.system, q, ball, start == "ramp")
+    if orbit is not None:
+        return from_orbit(model.system, orbit, dt)
+    return at_rest(model.system, q, ball, start == "ramp")
+
+
+def _ramp_turns(model: Model) -> float:
+    given = float(getattr(model.scene.excitation, "ramp_turns", 0.0))
+    return given if given > 0.0 else 2.0 * model.plan.turns / 3.0
+
+
+def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
+    """Stable limit of explicit steps at the stiffest of the states known before the run."""
+    tangents = [equilibrium.stiffness] if orbit is None else list(orbit.stiffness)
+    return min(model.system.critical_time_step(tangent) for tangent in tangents)
+
+
+def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
+    given = model.scene.integrator.steps_per_turn
+    if isinstance(given, int):
+        return given
+    if model.scene.integrator.method.implicit or critical is None:
+        return _SAMPLES_PER_TURN
+    needed = ceil(period / (_SAFETY * critical))
+    return _SAMPLES_PER_TURN * max(1, ceil(needed / _SAMPLES_PER_TURN))
+
+
+def _stride(steps_per_turn: int) -> int:
+    """Every how many steps are recorded: a divisor that leaves 360 samples a turn, or all when there is none."""
+    if steps_per_turn <= _SAMPLES_PER_TURN:
+        return 1
+    for samples in range(_SAMPLES_PER_TURN, 2 * _SAMPLES_PER_TURN + 1):
+        if steps_per_turn % samples == 0:
+            return steps_per_turn // samples
+    return 1
+
+
+def step_error(model: Model, equilibrium: Equilibrium, simulation: Simulation, value: complex) -> tuple[float | None, str]:
+    """Relative error of Z by the time step, from a run with half as many steps, and how it was found."""
+    method, schedule = model.scene.integrator.method, simulation.whole.schedule
+    if not method.inertial:
+        return 0.0, "no time step: each sample is an equilibrium"
+    if schedule.steps_per_turn % 2 or schedule.steps_per_turn < 16:
+        return None, "steps_per_turn is odd or below 16: no run with half as many"
+    if not method.implicit and simulation.critical_time_step is not None:
+        if 2.0 * schedule.dt >= simulation.critical_time_step:
+            return None, "twice the step would exceed the stable limit"
+    try:
+        coarse = simulate(model, equilibrium, coarsen=2)
+    except ConvergenceError as why:
+        return None, f"the run with half as many steps failed: {why}"
+    other = model.scene.identifier.method.identify([coarse.record], equilibrium, model).dynamic_stiffness
+    error = abs(other - value) / abs(value) / (2.0**method.order - 1.0)
+    return float(error) if np.isfinite(error) else None, f"run with half as many steps, order {method.order}"
