@@ -1,8 +1,8 @@
 """The one decorator for compiled kernels, of the core and of third parties.
 
 numba keys a cached function by its own source file alone: a kernel that calls a core function would keep calling
-the old one after an edit.  So the cache lives in a folder named by a hash of the package's sources and of the
-versions that produce machine code.  When that folder cannot be written, kernels are compiled in memory, after one
+the old one after an edit.  So the cache lives in a folder named by a hash of the core's sources and of the versions
+that produce machine code.  When that folder cannot be written, kernels are compiled in memory, after one
 warning.  numba's global settings are left as they were found.
 """
 
@@ -45,16 +45,15 @@ def cache_root() -> Path:
 
 @cache
 def source_key() -> str:
-    """Hash of the package's Python sources and of the versions that produce machine code."""
+    """Hash of the core's sources, where all shared kernels are, and of the versions that produce machine code."""
     import llvmlite
     import numpy
 
     digest = hashlib.sha256()
-    package = Path(__file__).resolve().parent.parent
-    for folder in ("core", "contact_laws", "integrators", "plugins"):
-        for path in sorted((package / folder).rglob("*.py")):
-            digest.update(path.relative_to(package).as_posix().encode())
-            digest.update(path.read_bytes())
+    core = Path(__file__).resolve().parent
+    for path in sorted(core.rglob("*.py")):
+        digest.update(path.relative_to(core).as_posix().encode())
+        digest.update(path.read_bytes())
     versions = (sys.version, numba.__version__, llvmlite.__version__, numpy.__version__)
     digest.update(repr(versions).encode())
     return digest.hexdigest()[:16]
