@@ -18,6 +18,7 @@ import attrs
 import numpy as np
 from numba import int64
 
+from raceway.core.bodies import WORK_ROWS
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
 from raceway.core.system import System
@@ -27,7 +28,7 @@ from raceway.errors import ConvergenceError
 @jit(int64(SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, CUBE, CUBE))
 def evaluate_many(system, law, law_params, scalars, table, law_state, times, q, v, ball, ball_rate, f, K, C):
     """Contact forces (n, 5) and tangents (n, 5, 5) at n states; the index of the first that fails, or n."""
-    work = np.zeros((16, 2 * table.shape[0]))
+    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
     law_new = law_state.copy()
     for i in range(times.size):
         status = system(

@@ -12,17 +12,16 @@ import numpy as np
 
 from raceway.core.bodies.ring import (
     CENTRIFUGAL,
-    COSINE,
     DAMPING,
+    LEVER,
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_FACTOR,
     OUTER_SHARE,
-    REST_AXIAL,
-    REST_RADIAL,
-    SINE,
+    SIDE,
     TILT_ARM,
     add_ball,
+    place,
 )
 from raceway.core.contact import add_damping
 from raceway.core.jit import jit
@@ -43,17 +42,14 @@ def rigid_inertial(
     da, dr, slope, done = work[7][:z], work[7][z:], work[8][:z], work[8][z:]
     ni_a, ni_r, no_a, no_r = work[9][:z], work[9][z:], work[10][:z], work[10][z:]
     si, so = work[11][:z], work[11][z:]
+    cosine, sine = work[16][:z], work[16][z:]
     for i in range(5):
         f[i] = 0.0
         for j in range(5):
             K[i, j] = 0.0
             C[i, j] = 0.0
+    place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine)
     for k in range(z):
-        c, s = table[k, COSINE], table[k, SINE]
-        ea[k] = scalars[REST_AXIAL] + q[0] + arm * (q[3] * s - q[4] * c)
-        er[k] = scalars[REST_RADIAL] + q[1] * c + q[2] * s
-        va[k] = v[0] + arm * (v[3] * s - v[4] * c)
-        vr[k] = v[1] * c + v[2] * s
         slope[k] = 0.0
         done[k] = 0.0
         seat = lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
@@ -173,7 +169,7 @@ def rigid_inertial(
         tra, trr = (par * hrr - prr * har) / det, (prr * haa - par * har) / det
         maa, mar, mrr = viscous * na * na, viscous * na * nr, viscous * nr * nr
         add_ball(
-            table[k, COSINE], table[k, SINE], arm, fi * na, fi * nr,
+            cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER], fi * na, fi * nr,
             aa - taa * aa - tar * ar, ar - taa * ar - tar * rr, ar - tra * aa - trr * ar, rr - tra * ar - trr * rr,
             maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr,
             mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr, f, K, C,

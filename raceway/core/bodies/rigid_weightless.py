@@ -10,16 +10,15 @@ offsets at first touch.  A ball that carries nothing sits midway between the rac
 import numpy as np
 
 from raceway.core.bodies.ring import (
-    COSINE,
     DAMPING,
+    LEVER,
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_SHARE,
-    REST_AXIAL,
-    REST_RADIAL,
-    SINE,
+    SIDE,
     TILT_ARM,
     add_ball,
+    place,
 )
 from raceway.core.contact import add_damping
 from raceway.core.jit import jit
@@ -37,24 +36,19 @@ def rigid_weightless(
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
     ea, er, low, high, speed = work[5], work[6], work[7], work[8], work[9]
+    cosine, sine = work[10][:z], work[10][z:]
     for i in range(5):
         f[i] = 0.0
         for j in range(5):
             K[i, j] = 0.0
             C[i, j] = 0.0
+    place(t, q, v, scalars, table, ea[:z], er[:z], work[11][:z], work[11][z:], cosine, sine)
     for k in range(z):
-        c, s = table[k, COSINE], table[k, SINE]
-        a = scalars[REST_AXIAL] + q[0] + arm * (q[3] * s - q[4] * c)
-        r = scalars[REST_RADIAL] + q[1] * c + q[2] * s
-        length = np.sqrt(a * a + r * r)
+        length = np.sqrt(ea[k] * ea[k] + er[k] * er[k])
         approach = length - li - lo
-        ea[k], er[k] = a, r
         ea[z + k] = length
         er[z + k] = approach
-        if length > 0.0:
-            speed[k] = ((v[0] + arm * (v[3] * s - v[4] * c)) * a + (v[1] * c + v[2] * s) * r) / length
-        else:
-            speed[k] = 0.0
+        speed[k] = (work[11, k] * ea[k] + work[11, z + k] * er[k]) / length if length > 0.0 else 0.0
         low[k], high[k] = 0.0, max(approach, 0.0)
         share = table[k, OUTER_SHARE] if approach > 0.0 else 0.5
         ball[k, 0] = lo + share * approach
@@ -118,7 +112,7 @@ def rigid_weightless(
         normal = -d_gap[k] * share - carried / length
         dashpot = -d_rate[k] * share
         add_ball(
-            table[k, COSINE], table[k, SINE], arm, carried * na, carried * nr,
+            cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER], carried * na, carried * nr,
             normal * na * na + carried / length, normal * na * nr, normal * na * nr,
             normal * nr * nr + carried / length,
             dashpot * na * na, dashpot * na * nr, dashpot * na * nr, dashpot * nr * nr, f, K, C,

@@ -1,63 +1,74 @@
-"""The inner ring's rigid motion seen from one ball's meridian plane."""
+"""The inner ring's rigid motion seen from each ball's meridian plane.
 
+Notes
+-----
+A row of balls has a side (+1: a positive axial motion of the inner ring seats it, -1: the mirror image), a lever X (its
+axial distance from the reference point) and a shift (axial approach built in by the preload of a pair).  The vector
+from the outer to the inner groove centre is e = (e_rest + shift + side (x + R (tilt_y sin - tilt_z cos)),
+e_rest + (y + X tilt_z) cos + (z - X tilt_y) sin).
+"""
+
+import numpy as np
 from numba import float64, void
 
 from raceway.core.jit import jit
 from raceway.core.signatures import MATRIX, VECTOR
 
-#: Entries of ``scalars`` that both rigid kernels read.
-REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, DAMPING = range(6)
-SCALARS = 8
-#: Columns of ``table``, one row a ball: direction of the azimuth, centrifugal force [N], share of the approach that
-#: the outer race takes under Hertz, Hertz factor of the outer race [N/m^1.5].
-COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR = range(5)
-COLUMNS = 5
+#: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
+#: friction coefficient, stick stiffness [N/m], shares of the gyroscopic moment (inner + outer = 2), D / d_m,
+#: J * spin * cage speed [N m], ball diameter [m].
+(
+    REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, DAMPING, CAGE,
+    FRICTION, STICK, SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER,
+) = range(14)  # fmt: skip
+SCALARS = 14
+#: Columns of ``table``, one row a ball: direction of the azimuth at time zero, centrifugal force [N], share of the
+#: approach that the outer race takes under Hertz, Hertz factor of the outer race [N/m^1.5], side, lever [m], shift [m].
+COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT = range(8)
+COLUMNS = 8
 
 
-@jit(void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, VECTOR, MATRIX, MATRIX))  # fmt: skip
-def add_ball(cosine, sine, arm, fa, fr, kaa, kar, kra, krr, caa, car, cra, crr, f, K, C):
+@jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR))
+def place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine):
+    """e (axial ea, radial er), its velocity (va, vr) and the direction of the azimuth of every ball; all (Z,)."""
+    arm, cage = scalars[4], scalars[6]
+    turn_c, turn_s = 1.0, 0.0
+    if cage != 0.0:
+        turn_c, turn_s = np.cos(cage * t), np.sin(cage * t)
+    for k in range(table.shape[0]):
+        c, s = table[k, 0], table[k, 1]
+        if cage != 0.0:
+            c, s = c * turn_c - s * turn_s, s * turn_c + c * turn_s
+        side, lever = table[k, 5], table[k, 6]
+        y, z = q[1] + lever * q[4], q[2] - lever * q[3]
+        ea[k] = scalars[0] + table[k, 7] + side * (q[0] + arm * (q[3] * s - q[4] * c))
+        er[k] = scalars[1] + y * c + z * s
+        va[k] = side * (v[0] + arm * (v[3] * s - v[4] * c))
+        vr[k] = (v[1] + lever * v[4]) * c + (v[2] - lever * v[3]) * s
+        if cage != 0.0:
+            va[k] += cage * side * arm * (q[3] * c + q[4] * s)
+            vr[k] += cage * (z * c - y * s)
+        cosine[k], sine[k] = c, s
+
+
+@jit(void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, VECTOR, MATRIX, MATRIX))  # fmt: skip
+def add_ball(c, s, arm, side, lever, fa, fr, kaa, kar, kra, krr, caa, car, cra, crr, f, K, C):
     """Add one ball's force (axial fa, radial fr) and 2x2 tangents to the ring's f (5,), K and C (5, 5).
 
     Notes
     -----
-    The inner groove centre moves by e = J q with J = [[1, 0, 0, R sin, -R cos], [0, cos, sin, 0, 0]].
+    e = J q with the rows J_a = side (1, 0, 0, R s, -R c) and J_r = (0, c, s, -X s, X c).
     """
-    a3, a4 = arm * sine, -arm * cosine
-    f[0] += fa
-    f[1] += cosine * fr
-    f[2] += sine * fr
-    f[3] += a3 * fa
-    f[4] += a4 * fa
-    for part in range(2):
-        target = K if part == 0 else C
-        if part == 0:
-            aa, ar, ra, rr = kaa, kar, kra, krr
-        else:
-            aa, ar, ra, rr = caa, car, cra, crr
-        if aa == 0.0 and rr == 0.0:
-            continue
-        target[0, 0] += aa
-        target[0, 1] += ar * cosine
-        target[0, 2] += ar * sine
-        target[0, 3] += aa * a3
-        target[0, 4] += aa * a4
-        target[1, 0] += ra * cosine
-        target[2, 0] += ra * sine
-        target[3, 0] += aa * a3
-        target[4, 0] += aa * a4
-        target[1, 1] += rr * cosine * cosine
-        target[1, 2] += rr * cosine * sine
-        target[2, 1] += rr * cosine * sine
-        target[2, 2] += rr * sine * sine
-        target[1, 3] += ra * cosine * a3
-        target[1, 4] += ra * cosine * a4
-        target[2, 3] += ra * sine * a3
-        target[2, 4] += ra * sine * a4
-        target[3, 1] += ar * cosine * a3
-        target[4, 1] += ar * cosine * a4
-        target[3, 2] += ar * sine * a3
-        target[4, 2] += ar * sine * a4
-        target[3, 3] += aa * a3 * a3
-        target[3, 4] += aa * a3 * a4
-        target[4, 3] += aa * a3 * a4
-        target[4, 4] += aa * a4 * a4
+    ja = (side, 0.0, 0.0, side * arm * s, -side * arm * c)
+    jr = (0.0, c, s, -lever * s, lever * c)
+    for i in range(5):
+        f[i] += ja[i] * fa + jr[i] * fr
+    for j in range(5):
+        ga, gr = kaa * ja[j] + kar * jr[j], kra * ja[j] + krr * jr[j]
+        for i in range(5):
+            K[i, j] += ja[i] * ga + jr[i] * gr
+    if caa != 0.0 or crr != 0.0:
+        for j in range(5):
+            ga, gr = caa * ja[j] + car * jr[j], cra * ja[j] + crr * jr[j]
+            for i in range(5):
+                C[i, j] += ja[i] * ga + jr[i] * gr

@@ -13,6 +13,7 @@ Belytschko, Liu, Moran: Nonlinear Finite Elements for Continua and Structures, b
 
 import numpy as np
 
+from raceway.core.bodies import WORK_ROWS
 from raceway.core.dense import solve
 from raceway.core.integrators import note_step, outer_force
 from raceway.core.jit import jit
@@ -26,7 +27,7 @@ def central_difference(
 ):  # fmt: skip
     """See ``raceway.core.integrators``."""
     z = ball.shape[0]
-    work = np.zeros((16, 2 * z))
+    work = np.zeros((WORK_ROWS, 2 * z))
     f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
     q, half, guess, a, outer, time = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(1)
     known, trial = np.empty((z, 2)), np.empty((z, 2))

@@ -15,6 +15,7 @@ Newmark, J. Eng. Mech. Div. ASCE 85 (1959); Chung, Hulbert, J. Appl. Mech. 60 (1
 
 import numpy as np
 
+from raceway.core.bodies import WORK_ROWS
 from raceway.core.bodies.ring import TILT_ARM
 from raceway.core.dense import solve
 from raceway.core.integrators import note_step, outer_force
@@ -35,7 +36,7 @@ def implicit(
     )  # fmt: skip
     z = ball.shape[0]
     arm = scalars[TILT_ARM]
-    work = np.zeros((16, 2 * z))
+    work = np.zeros((WORK_ROWS, 2 * z))
     f, K, C, J = np.empty(5), np.empty((5, 5)), np.empty((5, 5)), np.empty((5, 5))
     q, v, a, r, dq, outer, time = (
         np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.zeros(5), np.empty(5), np.empty(1),

@@ -8,6 +8,7 @@ Each step starts from the last two equilibria, extrapolated, and ends with the t
 
 import numpy as np
 
+from raceway.core.bodies import WORK_ROWS
 from raceway.core.equilibrium import settle
 from raceway.core.integrators import note_step, outer_force
 from raceway.core.jit import jit
@@ -21,7 +22,7 @@ def quasi_static(
 ):  # fmt: skip
     """See ``raceway.core.integrators``; motion[1] is not a velocity here but the change over the last step."""
     z = ball.shape[0]
-    work = np.zeros((16, 2 * z))
+    work = np.zeros((WORK_ROWS, 2 * z))
     f, K = np.empty(5), np.empty((5, 5))
     q, total, outer, time, report = np.empty(5), np.empty(5), np.empty(5), np.empty(1), np.zeros(2)
     trial = np.empty((z, 2))

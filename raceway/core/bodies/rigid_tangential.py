@@ -1,0 +1,255 @@
+"""Balls with tangential contact forces in their meridian plane: gyroscopic moments, Coulomb friction, or both.
+
+Notes
+-----
+With n = (sin a, cos a) the direction of a contact at its angle a and t = (cos a, -sin a), the inner race gives a ball
+g_i = f_i n_i + (tau_i - T_i) t_i and the outer one takes g_o = f_o n_o + (tau_o - T_o) t_o; g_i - g_o + F_c = 0.
+
+*Gyroscopic*: T = share * M / D with M = J w_R w_c sin(beta).  The ball rolls without spin on the outer race:
+tan(beta) = sin(a_o) / (cos(a_o) + D/d_m), and its spin w_R follows from rolling on both races.  M follows the angles,
+with derivatives.  A ball whose inner contact is open carries all of it on the outer race.
+
+*Friction*: tau = k_t (L a - slip), at most mu f (return mapping); L is the ball centre's distance from the groove
+centre, the slip is memory.  A ball does not roll in this plane, so sticking contacts add a tangential stiffness that
+rolling balls do not have.
+
+Neither has a potential: tangents are not symmetric.
+
+References
+----------
+Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 3 (control of the outer race).
+"""
+
+import numpy as np
+from numba import float64, types
+
+from raceway.core.bodies.ring import (
+    BALL_OVER_PITCH,
+    CENTRIFUGAL,
+    DAMPING,
+    DIAMETER,
+    FRICTION,
+    GYROSCOPIC,
+    LEVER,
+    OFFSET_INNER,
+    OFFSET_OUTER,
+    OUTER_FACTOR,
+    OUTER_SHARE,
+    SHARE_INNER,
+    SHARE_OUTER,
+    SIDE,
+    STICK,
+    TILT_ARM,
+    add_ball,
+    place,
+)
+from raceway.core.contact import add_damping
+from raceway.core.jit import jit
+from raceway.core.signatures import SYSTEM
+
+_ITERATIONS = 200
+#: Step of the difference quotients of the gyroscopic moment [rad]: their error is of the order 1e-10.
+_ANGLE_STEP = 1e-5
+
+
+@jit(float64(float64, float64, float64, float64))
+def gyroscopic_moment(inner, outer, ratio, scale):
+    """M [N m] at the contact angles; ratio = D / d_m, scale = J * (inner ring's speed) * w_c."""
+    beta = np.arctan2(np.sin(outer), np.cos(outer) + ratio)
+    tan_beta = np.tan(beta)
+    rolling = (np.cos(outer) + tan_beta * np.sin(outer)) / (1.0 + ratio * np.cos(outer))
+    rolling += (np.cos(inner) + tan_beta * np.sin(inner)) / (1.0 - ratio * np.cos(inner))
+    return scale * np.sin(beta) / (rolling * ratio * np.cos(beta))
+
+
+@jit(types.UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64, float64, float64))
+def _contact_matrix(k, f, h, h_s, h_a, w, na, nr):
+    """(aa, ar, ra, rr) of d(f n + h t)/dx for x = s n: k = df/ds, w = 1/s."""
+    ta, tr = nr, -na
+    tt, nt = (f + h_a) * w, -h * w
+    return (
+        k * na * na + nt * na * ta + h_s * ta * na + tt * ta * ta,
+        k * na * nr + nt * na * tr + h_s * ta * nr + tt * ta * tr,
+        k * nr * na + nt * nr * ta + h_s * tr * na + tt * tr * ta,
+        k * nr * nr + nt * nr * tr + h_s * tr * nr + tt * tr * tr,
+    )
+
+
+@jit(SYSTEM)
+def rigid_tangential(
+    t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C
+):
+    """See ``raceway.core.bodies``; ball (Z, 4): p [m], slips [m]."""
+    z = table.shape[0]
+    arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
+    mu, stick, diameter = scalars[FRICTION], scalars[STICK], scalars[DIAMETER]
+    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    ea, er, va, vr = work[5][:z], work[5][z:], work[6][:z], work[6][z:]
+    da, dr, merit, done = work[7][:z], work[7][z:], work[8][:z], work[8][z:]
+    ni_a, ni_r, no_a, no_r = work[9][:z], work[9][z:], work[10][:z], work[10][z:]
+    si, so = work[11][:z], work[11][z:]
+    keep_f, keep_k, keep_c, h, h_s, h_a = work[12], work[13], work[14], work[15], work[17], work[18]
+    cosine, sine = work[16][:z], work[16][z:]
+    cross_i, cross_o = work[19][:z], work[19][z:]
+    for i in range(5):
+        f[i] = 0.0
+        for j in range(5):
+            K[i, j] = 0.0
+            C[i, j] = 0.0
+    place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine)
+    remaining = z
+    for k in range(z):
+        merit[k], done[k], da[k], dr[k] = np.inf, 0.0, 0.0, 0.0
+        centrifugal = table[k, CENTRIFUGAL]
+        length = np.sqrt(ea[k] * ea[k] + er[k] * er[k])
+        if centrifugal == 0.0 and length <= li + lo:
+            # Nothing presses this ball on either race: midway, without forces.
+            scale = (lo + 0.5 * (length - li - lo)) / length
+            ball[k, 0], ball[k, 1] = scale * ea[k], scale * er[k]
+            ball[k, 2], ball[k, 3] = ball_known[k, 2], ball_known[k, 3]
+            done[k] = 2.0
+            remaining -= 1
+            continue
+        seat = lo + (centrifugal / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
+        if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
+            if length > li + lo:
+                scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
+                ball[k, 0], ball[k, 1] = scale * ea[k], scale * er[k]
+            else:
+                ball[k, 0], ball[k, 1] = 0.0, seat
+    for _ in range(_ITERATIONS):
+        for k in range(z):
+            pa, pr = ball[k, 0], ball[k, 1]
+            so[k] = np.sqrt(pa * pa + pr * pr)
+            xa, xr = ea[k] - pa, er[k] - pr
+            si[k] = np.sqrt(xa * xa + xr * xr)
+            no_a[k], no_r[k] = pa / so[k], pr / so[k]
+            ni_a[k], ni_r[k] = (xa / si[k], xr / si[k]) if si[k] > 0.0 else (no_a[k], no_r[k])
+            gap[k], gap[z + k] = li - si[k], lo - so[k]
+            own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
+            rate[k] = -(ni_a[k] * (va[k] - own_a) + ni_r[k] * (vr[k] - own_r))
+            rate[z + k] = -(no_a[k] * own_a + no_r[k] * own_r)
+        law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
+        add_damping(damping, gap, rate, force, d_gap, d_rate)
+        for k in range(z):
+            if done[k] != 0.0:
+                continue
+            # Tangential forces h and their derivatives by the contact's length (h_s) and angle (h_a).
+            for side in range(2):
+                c = k + side * z
+                angle = np.arctan2(ni_a[k], ni_r[k]) if side == 0 else np.arctan2(no_a[k], no_r[k])
+                reach = li if side == 0 else lo
+                h[c], h_s[c], h_a[c] = 0.0, 0.0, 0.0
+                if mu > 0.0:
+                    tau = stick * (reach * angle - ball_known[k, 2 + side])
+                    limit = mu * force[c]
+                    if abs(tau) <= limit:
+                        h[c], h_a[c] = tau, stick * reach
+                    else:
+                        sign = 1.0 if tau > 0.0 else -1.0
+                        h[c] = sign * limit
+                        h_s[c] = -sign * mu * (d_gap[c] + ball_gain * d_rate[c])
+                    ball[k, 2 + side] = reach * angle - h[c] / stick
+            cross_i[k], cross_o[k] = 0.0, 0.0
+            if scalars[GYROSCOPIC] != 0.0:
+                inner, outer = np.arctan2(ni_a[k], ni_r[k]), np.arctan2(no_a[k], no_r[k])
+                share_i, share_o = scalars[SHARE_INNER] / diameter, scalars[SHARE_OUTER] / diameter
+                if force[k] == 0.0:
+                    share_i, share_o, inner = 0.0, 2.0 / diameter, outer
+                ratio, scale = scalars[BALL_OVER_PITCH], scalars[GYROSCOPIC]
+                moment = gyroscopic_moment(inner, outer, ratio, scale)
+                by_i = gyroscopic_moment(inner + _ANGLE_STEP, outer, ratio, scale)
+                by_i = (by_i - gyroscopic_moment(inner - _ANGLE_STEP, outer, ratio, scale)) / (2.0 * _ANGLE_STEP)
+                by_o = gyroscopic_moment(inner, outer + _ANGLE_STEP, ratio, scale)
+                by_o = (by_o - gyroscopic_moment(inner, outer - _ANGLE_STEP, ratio, scale)) / (2.0 * _ANGLE_STEP)
+                if force[k] == 0.0:
+                    by_o, by_i = by_o + by_i, 0.0
+                h[k] -= share_i * moment
+                h_a[k] -= share_i * by_i
+                h[z + k] -= share_o * moment
+                h_a[z + k] -= share_o * by_o
+                cross_i[k], cross_o[k] = -share_i * by_o, -share_o * by_i
+            fi, fo = force[k], force[z + k]
+            ti_a, ti_r, to_a, to_r = ni_r[k], -ni_a[k], no_r[k], -no_a[k]
+            ra = fi * ni_a[k] + h[k] * ti_a - fo * no_a[k] - h[z + k] * to_a
+            rr = fi * ni_r[k] + h[k] * ti_r - fo * no_r[k] - h[z + k] * to_r + table[k, CENTRIFUGAL]
+            size = np.sqrt(ra * ra + rr * rr)
+            if size > 1.5 * merit[k] and np.sqrt(da[k] * da[k] + dr[k] * dr[k]) > 1e-13:
+                da[k] *= 0.5
+                dr[k] *= 0.5
+                ball[k, 0] -= da[k]
+                ball[k, 1] -= dr[k]
+                continue
+            merit[k] = size
+            ki, ko = -d_gap[k] - ball_gain * d_rate[k], -d_gap[z + k] - ball_gain * d_rate[z + k]
+            wi, wo = (1.0 / si[k] if si[k] > 0.0 else 0.0), 1.0 / so[k]
+            # dR/dp = -G_i - G_o + cross terms through the moment's dependence on both angles.
+            haa, har, hra, hrr = _contact_matrix(ki, fi, h[k], h_s[k], h_a[k], wi, ni_a[k], ni_r[k])
+            oaa, oar, ora, orr = _contact_matrix(ko, fo, h[z + k], h_s[z + k], h_a[z + k], wo, no_a[k], no_r[k])
+            jaa = -haa - oaa + cross_i[k] * ti_a * to_a * wo + cross_o[k] * to_a * ti_a * wi
+            jar = -har - oar + cross_i[k] * ti_a * to_r * wo + cross_o[k] * to_a * ti_r * wi
+            jra = -hra - ora + cross_i[k] * ti_r * to_a * wo + cross_o[k] * to_r * ti_a * wi
+            jrr = -hrr - orr + cross_i[k] * ti_r * to_r * wo + cross_o[k] * to_r * ti_r * wi
+            det = jaa * jrr - jar * jra
+            if not abs(det) > 1e-14 * (jaa + jrr) ** 2:
+                shift = -1e-7 * abs(jaa + jrr) - 1.0
+                jaa += shift
+                jrr += shift
+                det = jaa * jrr - jar * jra
+            sa, sr = -(jrr * ra - jar * rr) / det, -(jaa * rr - jra * ra) / det
+            size = np.sqrt(sa * sa + sr * sr)
+            reach = 0.2 * lo
+            if size > reach:
+                sa *= reach / size
+                sr *= reach / size
+            ball[k, 0] += sa
+            ball[k, 1] += sr
+            da[k], dr[k] = sa, sr
+            if size <= 1e-10 * max(-gap[k], -gap[z + k], 1e-12):
+                # What this step leaves is of second order; forces and tangents are kept from before it.
+                keep_f[k], keep_f[z + k] = fi, fo
+                keep_k[k], keep_k[z + k] = d_gap[k], d_gap[z + k]
+                keep_c[k], keep_c[z + k] = d_rate[k], d_rate[z + k]
+                done[k] = 1.0
+                remaining -= 1
+        if remaining == 0:
+            break
+    if remaining > 0:
+        return 1
+    for k in range(z):
+        if done[k] == 2.0:
+            force[k], force[z + k] = 0.0, 0.0
+            continue
+        fi, fo = keep_f[k], keep_f[z + k]
+        force[k], force[z + k] = fi, fo
+        if fi == 0.0 and keep_k[k] == 0.0:
+            continue
+        ti_a, ti_r, to_a, to_r = ni_r[k], -ni_a[k], no_r[k], -no_a[k]
+        elastic, viscous = -keep_k[k], -keep_c[k]
+        ki, ko = elastic + ball_gain * viscous, -keep_k[z + k] - ball_gain * keep_c[z + k]
+        wi, wo = 1.0 / si[k], 1.0 / so[k]
+        eaa, ear, era, err = _contact_matrix(elastic, fi, h[k], h_s[k], h_a[k], wi, ni_a[k], ni_r[k])
+        paa, par, pra, prr = _contact_matrix(ki, fi, h[k], h_s[k], h_a[k], wi, ni_a[k], ni_r[k])
+        oaa, oar, ora, orr = _contact_matrix(ko, fo, h[z + k], h_s[z + k], h_a[z + k], wo, no_a[k], no_r[k])
+        # Ring force by the ball's place (P), imbalance by the ball's place (J) and by the ring's motion (E).
+        paa, par = -paa + cross_i[k] * ti_a * to_a * wo, -par + cross_i[k] * ti_a * to_r * wo
+        pra, prr = -pra + cross_i[k] * ti_r * to_a * wo, -prr + cross_i[k] * ti_r * to_r * wo
+        jaa, jar = paa - oaa + cross_o[k] * to_a * ti_a * wi, par - oar + cross_o[k] * to_a * ti_r * wi
+        jra, jrr = pra - ora + cross_o[k] * to_r * ti_a * wi, prr - orr + cross_o[k] * to_r * ti_r * wi
+        xaa, xar = eaa - cross_o[k] * to_a * ti_a * wi, ear - cross_o[k] * to_a * ti_r * wi
+        xra, xrr = era - cross_o[k] * to_r * ti_a * wi, err - cross_o[k] * to_r * ti_r * wi
+        det = jaa * jrr - jar * jra
+        if det == 0.0:
+            return 1
+        taa, tar = (paa * jrr - par * jra) / det, (par * jaa - paa * jar) / det
+        tra, trr = (pra * jrr - prr * jra) / det, (prr * jaa - pra * jar) / det
+        maa, mar, mrr = viscous * ni_a[k] ** 2, viscous * ni_a[k] * ni_r[k], viscous * ni_r[k] ** 2
+        add_ball(
+            cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER],
+            fi * ni_a[k] + h[k] * ti_a, fi * ni_r[k] + h[k] * ti_r,
+            eaa - taa * xaa - tar * xra, ear - taa * xar - tar * xrr,
+            era - tra * xaa - trr * xra, err - tra * xar - trr * xrr,
+            maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr,
+            mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr, f, K, C,
+        )  # fmt: skip
+    return 0

@@ -1,0 +1,75 @@
+"""Equilibrium where forces have no potential (gyroscopic moments, friction): a damped Newton iteration.
+
+Notes
+-----
+It starts near the solution: from the equilibrium without those forces, or from the step before.
+"""
+
+import numpy as np
+
+from raceway.core.bodies.ring import TILT_ARM
+from raceway.core.dense import solve
+from raceway.core.jit import jit
+from raceway.core.signatures import SETTLE
+
+CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE = range(4)
+_LIMIT = 100
+
+
+@jit(SETTLE)
+def find_root(
+    system, law, law_params, scalars, table, stiffness, free, load, tolerance, q, ball, law_state, work, f, K, report
+):
+    """Same arguments and result as ``raceway.core.equilibrium.settle``; slips are taken from ``ball`` as committed."""
+    arm = scalars[TILT_ARM]
+    rest, zeros = np.zeros(5), np.zeros_like(ball)
+    for k in range(ball.shape[0]):
+        for c in range(2, ball.shape[1]):
+            zeros[k, c] = ball[k, c]
+    law_new = law_state.copy()
+    C, J, r, step = np.empty((5, 5)), np.empty((5, 5)), np.empty(5), np.zeros(5)
+    weight = np.ones(5)
+    weight[3] = 1.0 / arm
+    weight[4] = 1.0 / arm
+    before, cuts = np.inf, 0
+    for iteration in range(_LIMIT):
+        status = system(
+            0.0, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C
+        )
+        norm, scale = 0.0, 0.0
+        if status == 0:
+            for i in range(work.shape[1]):
+                scale += abs(work[2, i])
+            for i in range(5):
+                total = f[i] - load[i]
+                scale += abs(load[i]) * weight[i]
+                for j in range(5):
+                    total += stiffness[i, j] * q[j]
+                r[i] = total * free[i]
+                norm = max(norm, abs(r[i]) * weight[i])
+        else:
+            norm = np.inf
+        report[0] = iteration
+        report[1] = norm / max(scale, 1e-300)
+        if norm <= tolerance * scale:
+            return CONVERGED
+        if not norm <= 1.5 * before:
+            cuts += 1
+            if cuts > 30:
+                return BALLS_FAILED if status != 0 else NOT_CONVERGED
+            for i in range(5):
+                step[i] *= 0.5
+                q[i] -= step[i]
+            continue
+        before = norm
+        for i in range(5):
+            step[i] = -r[i]
+            for j in range(5):
+                J[i, j] = (K[i, j] + stiffness[i, j]) * free[i] * free[j]
+            if free[i] == 0.0:
+                J[i, i] = 1.0
+        if not solve(J, step):
+            return NOT_CONVERGED
+        for i in range(5):
+            q[i] += step[i]
+    return NOT_CONVERGED
