@@ -97,14 +97,14 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
 
 def orbit(result: Any) -> Figure:
     """Path of the inner ring's reference point in the radial plane."""
-    figure = new_figure(6.4, 6.2)
+    figure = new_figure(6.4, 6.8)
     axes = figure.add_subplot()
     whole, used = result.simulation.whole, result.simulation.record
     turns = round(len(used.time) * used.schedule.stride / used.schedule.steps_per_turn)
     if len(whole.time) > len(used.time):
-        label = f"all {whole.schedule.turns} turns"
+        label = f"all {_turns(whole.schedule.turns)}"
         axes.plot(*(_MICRO * whole.displacement[:, 1:3].T), color=_OTHER, linewidth=0.8, label=label)
-    label = f"{'last ' if len(whole.time) > len(used.time) else ''}{_turns(turns)}, used for identification"
+    label = f"{'last ' if len(whole.time) > len(used.time) else ''}{_turns(turns)}, used"
     axes.plot(*(_MICRO * used.displacement[:, 1:3].T), color=_USED, linewidth=1.4, label=label)
     axes.plot(
         *(_MICRO * result.equilibrium.displacement[1:3]), "+", color=_STATIC, markersize=11, label="static equilibrium"
@@ -126,10 +126,13 @@ def spectrum(result: Any) -> Figure:
     order = np.fft.rfftfreq(len(motion), record.time[1] - record.time[0]) / found.frequency_hz
     shown = (order > 0.0) & (order <= 10.05)
     peak = max(lines[shown].max(), 1e-12)
+    dense = order[1] < 0.2
+    apart, width = (0.4 * order[1], 1.0) if dense else (0.06, 2.0)
     for lane, (name, colour) in enumerate((("y", _USED), ("z", _STATIC))):
         # Beside each other, since both directions of a turning force have the same line.
-        place = order[shown] + (lane - 0.5) * 0.06
-        axes.vlines(place, peak * 1e-9, np.maximum(lines[shown, lane], peak * 1e-9), color=colour, linewidth=2.0, label=name)
+        place = order[shown] + (lane - 0.5) * apart
+        tops = np.maximum(lines[shown, lane], peak * 1e-9)
+        axes.vlines(place, peak * 1e-9, tops, color=colour, linewidth=width, label=f"displacement {name}")
     largest = lines[shown].max(axis=1)
     one = int(np.argmin(np.abs(order[shown] - 1.0)))
     axes.annotate(
@@ -167,15 +170,15 @@ def ball_loads(result: Any) -> Figure:
         low, high = loads.min(axis=0), loads.max(axis=0)
         axes.vlines(azimuth, low, high, color=_USED, linewidth=6.0, alpha=0.45, label="range over the orbit")
     axes.plot(azimuth[closed], static[closed], "o-", color=_STATIC, linewidth=1.6, markersize=5, label="static")
-    top = max(static.max(), high.max() if result.simulation is not None else 0.0, 1e-12) * 1.12
+    top = max(static.max(), high.max() if result.simulation is not None else 0.0, 1e-12) * 1.2
     for k in range(z):
-        axes.text(azimuth[k], top * 0.98, str(k), ha="center", va="center", fontsize=9, color="#5a6570")
+        axes.text(azimuth[k], top * 0.94, str(k), ha="center", va="center", fontsize=9, color="#5a6570")
     axes.set_ylim(0.0, top)
     axes.set_rlabel_position(90.0 + 180.0 / max(z, 1))
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.set_xticklabels(["0° (+y)", "30°", "60°", "90° (+z)", *(f"{a}°" for a in range(120, 360, 30))])
-    axes.tick_params(labelsize=10)
-    axes.set_title(f"Ball loads on the inner race [N], by azimuth\n{_subtitle(result)}", fontsize=12, pad=14)
+    axes.tick_params(labelsize=10, pad=6)
+    axes.set_title(f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}", fontsize=12, pad=14)
     axes.grid(color="#d8dee4", linewidth=0.7)
     figure.legend(loc="outside lower center", ncols=2, fontsize=10, frameon=False)
     return figure
@@ -186,8 +189,7 @@ def _turns(count: int) -> str:
 
 
 def _subtitle(result: Any) -> str:
-    title = result.title if len(result.title) <= 64 else result.title[:61] + "..."
-    return title
+    return result.title if len(result.title) <= 64 else result.title[:61] + "..."
 
 
 def _finish(axes: Any, title: str, x: str, y: str) -> None:
@@ -197,4 +199,4 @@ def _finish(axes: Any, title: str, x: str, y: str) -> None:
     axes.tick_params(labelsize=10)
     axes.grid(color="#d8dee4", linewidth=0.7)
     axes.set_axisbelow(True)
-    axes.legend(fontsize=10, loc="best")
+    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9.5, frameon=False)
