@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import cos, log, pi, sin, sqrt
 
+from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
 
@@ -52,8 +53,6 @@ def axial_approach(scene: Scene) -> tuple[float, float]:
 
 def highest_frequency(scene: Scene) -> float:
     """Largest natural frequency of the ring on its contacts [rad/s], roughly."""
-    from raceway.plan import ring_inertia
-
     b = scene.bearing
     _, load = axial_approach(scene)
     if scene.excitation is not None:

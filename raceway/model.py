@@ -15,7 +15,8 @@ from raceway.core.hertz import Ellipse, contact_modulus
 from raceway.core.system import COORDINATES, System
 from raceway.errors import ConvergenceError, PluginError
 from raceway.estimate import axial_approach
-from raceway.plan import Plan, ring_inertia, shoulder_height
+from raceway.plan import Plan
+from raceway.ring import ring_inertia, shoulder_height
 from raceway.scene import Scene
 
 

@@ -5,12 +5,13 @@ The model builder obeys the plan; it decides nothing of this by itself.
 
 from __future__ import annotations
 
-from math import asin, pi, sqrt
 from typing import Any
 
 import attrs
 
 from raceway.errors import Mistake, SceneError
+from raceway.estimate import highest_frequency
+from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
@@ -152,35 +153,6 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         raise SceneError(faults)
 
 
-def ring_inertia(scene: Scene) -> tuple[float, float]:
-    """Mass [kg] and transverse inertia [kg m2] of the inner ring; zeros when bore or width are not known.
-
-    Notes
-    -----
-    A hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h), less the groove's circular segment.
-    """
-    b = scene.bearing
-    if b.bore is None or b.width is None:
-        return 0.0, 0.0
-    d, depth = b.ball_diameter, shoulder_height(scene)
-    bottom = b.pitch_diameter - d
-    land = bottom + 2.0 * depth
-    groove = b.conformity_inner * d
-    half = sqrt(max(2.0 * groove * depth - depth * depth, 0.0))
-    segment = groove * groove * asin(min(half / groove, 1.0)) - half * (groove - depth)
-    solid = b.rings.density * pi / 4.0 * (land**2 - b.bore**2) * b.width
-    cut = b.rings.density * segment * pi * (bottom + 1.2 * depth)
-    mass = solid - cut
-    inner, outer = b.bore / 2.0, land / 2.0
-    transverse = mass * (3.0 * (inner**2 + outer**2) + b.width**2) / 12.0
-    return mass, transverse
-
-
-def shoulder_height(scene: Scene) -> float:
-    """Depth of the grooves [m]: given, or 0.2 D."""
-    return scene.bearing.shoulder_height or 0.2 * scene.bearing.ball_diameter
-
-
 def _predicted_steps_per_turn(scene: Scene) -> int:
     """The scene's number; for 'auto' 360, or what a rough stiffness asks of an explicit method."""
     given = scene.integrator.steps_per_turn
@@ -188,7 +160,5 @@ def _predicted_steps_per_turn(scene: Scene) -> int:
         return given
     if scene.integrator.method.implicit:
         return 360
-    from raceway.estimate import highest_frequency
-
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
     return max(360, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)

@@ -8,9 +8,6 @@ warning.  numba's global settings are left as they were found.
 
 from __future__ import annotations
 
-import hashlib
-import os
-import sys
 import tempfile
 import time
 import warnings
@@ -22,6 +19,7 @@ from typing import Any
 
 import numba
 
+from raceway.cache_folder import current_folder
 from raceway.errors import PluginError
 
 #: Seconds spent in compiling (until a run takes them) and in reading the cache, and how many kernels of each.
@@ -34,35 +32,10 @@ def take_compile_seconds() -> float:
     return seconds
 
 
-def cache_root() -> Path:
-    """The user's cache folder of this package (``RACEWAY_CACHE_DIR`` overrides it)."""
-    if chosen := os.environ.get("RACEWAY_CACHE_DIR"):
-        return Path(chosen)
-    from platformdirs import user_cache_path
-
-    return user_cache_path("raceway", appauthor=False)
-
-
-@cache
-def source_key() -> str:
-    """Hash of the core's sources, where all shared kernels are, and of the versions that produce machine code."""
-    import llvmlite
-    import numpy
-
-    digest = hashlib.sha256()
-    core = Path(__file__).resolve().parent
-    for path in sorted(core.rglob("*.py")):
-        digest.update(path.relative_to(core).as_posix().encode())
-        digest.update(path.read_bytes())
-    versions = (sys.version, numba.__version__, llvmlite.__version__, numpy.__version__)
-    digest.update(repr(versions).encode())
-    return digest.hexdigest()[:16]
-
-
 @cache
 def kernel_folder() -> Path | None:
     """The folder that this process reads and writes compiled kernels in; None when it cannot be written."""
-    folder = cache_root() / "kernels" / source_key()
+    folder = current_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder) as probe:

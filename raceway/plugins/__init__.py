@@ -8,6 +8,7 @@ from raceway.plugins.excitations.unidirectional import Unidirectional
 from raceway.plugins.identifiers.fft_1x import Fft1x
 from raceway.plugins.identifiers.sine_fit import SineFit
 from raceway.plugins.identifiers.tangent import Tangent
+from raceway.plugins.reports.pictures import Pictures
 
 
 @hookimpl
@@ -18,3 +19,8 @@ def raceway_excitations() -> list[type]:
 @hookimpl
 def raceway_identifiers() -> list[type]:
     return [Fft1x, SineFit, Tangent]
+
+
+@hookimpl
+def raceway_reports() -> list[type]:
+    return [Pictures]

@@ -1,0 +1,202 @@
+"""Pictures of one run: orbit, spectrum and ball loads as PNG files."""
+
+from __future__ import annotations
+
+import io
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.errors import RacewayError
+from raceway.options import between, option
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_USED, _OTHER, _STATIC = "#0b5fa5", "#b9c4cf", "#c8501e"
+_MICRO = 1e6
+
+
+@attrs.frozen
+class Pictures:
+    """Orbit and 1x spectrum of the displacement, and the ball loads round the bearing.
+
+    Figures are drawn on their own canvas: a caller's backend and settings of matplotlib stay as they are.
+    """
+
+    name: ClassVar[str] = "pictures"
+
+    dots_per_inch: int = option(150, help="resolution of the PNG files", rule=between(30, 1200))
+
+    def write(self, result: Any, folder: Any) -> list[Path]:
+        """Write the pictures that the result has data for.
+
+        Parameters
+        ----------
+        result : raceway.result.Result
+        folder : path, made when it is missing
+
+        Returns
+        -------
+        list of Path : orbit.png and spectrum.png where motion was recorded, ball-loads.png always
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        figures = {"ball-loads.png": ball_loads(result)}
+        if result.simulation is not None:
+            figures = {"orbit.png": orbit(result), "spectrum.png": spectrum(result), **figures}
+        return [save_figure(figure, Path(folder) / name, self.dots_per_inch) for name, figure in figures.items()]
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure [inch] that belongs to no window.
+
+    Raises
+    ------
+    RacewayError
+        Where matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise RacewayError(
+            'pictures need matplotlib, which is not installed: pip install "raceway[all]", or leave out --pictures'
+        ) from None
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
+    """Write a figure as PNG, whole or not at all.
+
+    Raises
+    ------
+    RacewayError
+        A folder or disk that cannot be written.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure.set_dpi(dots_per_inch)
+    memory = io.BytesIO()
+    FigureCanvasAgg(figure).print_png(memory)
+    scratch = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        scratch.write_bytes(memory.getvalue())
+        scratch.replace(path)
+    except OSError as why:
+        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}. Choose another folder with --out.") from None
+    finally:
+        scratch.unlink(missing_ok=True)
+    return path
+
+
+def orbit(result: Any) -> Figure:
+    """Path of the inner ring's reference point in the radial plane."""
+    figure = new_figure(6.4, 6.8)
+    axes = figure.add_subplot()
+    whole, used = result.simulation.whole, result.simulation.record
+    turns = round(len(used.time) * used.schedule.stride / used.schedule.steps_per_turn)
+    if len(whole.time) > len(used.time):
+        label = f"all {_turns(whole.schedule.turns)}"
+        axes.plot(*(_MICRO * whole.displacement[:, 1:3].T), color=_OTHER, linewidth=0.8, label=label)
+    label = f"{'last ' if len(whole.time) > len(used.time) else ''}{_turns(turns)}, used"
+    axes.plot(*(_MICRO * used.displacement[:, 1:3].T), color=_USED, linewidth=1.4, label=label)
+    axes.plot(
+        *(_MICRO * result.equilibrium.displacement[1:3]), "+", color=_STATIC, markersize=11, label="static equilibrium"
+    )
+    axes.set_aspect("equal", adjustable="datalim")
+    _finish(axes, f"Orbit of the inner ring\n{_subtitle(result)}", "displacement y [µm]", "displacement z [µm]")
+    return figure
+
+
+def spectrum(result: Any) -> Figure:
+    """Amplitude of the displacement against multiples of the excitation's frequency."""
+    import numpy as np
+
+    figure = new_figure(7.2, 4.6)
+    axes = figure.add_subplot()
+    record, found = result.simulation.record, result.identification
+    motion = record.displacement[:, 1:3] - record.displacement[:, 1:3].mean(axis=0)
+    lines = 2.0 * np.abs(np.fft.rfft(motion, axis=0)) / len(motion) * _MICRO
+    order = np.fft.rfftfreq(len(motion), record.time[1] - record.time[0]) / found.frequency_hz
+    shown = (order > 0.0) & (order <= 10.05)
+    peak = max(lines[shown].max(), 1e-12)
+    dense = order[1] < 0.2
+    apart, width = (0.4 * order[1], 1.0) if dense else (0.06, 2.0)
+    for lane, (name, colour) in enumerate((("y", _USED), ("z", _STATIC))):
+        # Beside each other, since both directions of a turning force have the same line.
+        place = order[shown] + (lane - 0.5) * apart
+        tops = np.maximum(lines[shown, lane], peak * 1e-9)
+        axes.vlines(place, peak * 1e-9, tops, color=colour, linewidth=width, label=f"displacement {name}")
+    largest = lines[shown].max(axis=1)
+    one = int(np.argmin(np.abs(order[shown] - 1.0)))
+    axes.annotate(
+        f"1x: {largest[one]:.4g} µm at {found.frequency_hz:.4g} Hz",
+        (1.0, largest[one]),
+        xytext=(12, 2),
+        textcoords="offset points",
+        fontsize=10,
+    )
+    axes.set_yscale("log")
+    axes.set_xlim(0.0, 10.4)
+    axes.set_ylim(peak * 1e-9, peak * 10.0)
+    axes.set_xticks(range(11))
+    _finish(
+        axes,
+        f"Spectrum of the displacement, mean removed\n{_subtitle(result)}",
+        "frequency / frequency of the excitation [-]",
+        "amplitude [µm]",
+    )
+    return figure
+
+
+def ball_loads(result: Any) -> Figure:
+    """Inner contact load of each ball: static, and its range over the recorded turns."""
+    import numpy as np
+
+    figure = new_figure(7.0, 6.4)
+    axes = figure.add_subplot(projection="polar")
+    z = result.model.geometry.ball_count
+    azimuth = result.model.azimuth
+    closed = np.append(np.arange(z), 0)
+    static = result.equilibrium.contact_force[:z]
+    if result.simulation is not None:
+        loads = result.simulation.record.contact_force[:, :z]
+        low, high = loads.min(axis=0), loads.max(axis=0)
+        axes.vlines(azimuth, low, high, color=_USED, linewidth=6.0, alpha=0.45, label="range over the orbit")
+    axes.plot(azimuth[closed], static[closed], "o-", color=_STATIC, linewidth=1.6, markersize=5, label="static")
+    top = max(static.max(), high.max() if result.simulation is not None else 0.0, 1e-12) * 1.2
+    for k in range(z):
+        axes.text(azimuth[k], top * 0.94, str(k), ha="center", va="center", fontsize=9, color="#5a6570")
+    axes.set_ylim(0.0, top)
+    axes.set_rlabel_position(90.0 + 180.0 / max(z, 1))
+    axes.set_xticks(np.radians(np.arange(0, 360, 30)))
+    axes.set_xticklabels(["0° (+y)", "30°", "60°", "90° (+z)", *(f"{a}°" for a in range(120, 360, 30))])
+    axes.tick_params(labelsize=10, pad=6)
+    axes.set_title(f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}", fontsize=12, pad=14)
+    axes.grid(color="#d8dee4", linewidth=0.7)
+    figure.legend(loc="outside lower center", ncols=2, fontsize=10, frameon=False)
+    return figure
+
+
+def _turns(count: int) -> str:
+    return f"{count} turn{'' if count == 1 else 's'}"
+
+
+def _subtitle(result: Any) -> str:
+    return result.title if len(result.title) <= 64 else result.title[:61] + "..."
+
+
+def _finish(axes: Any, title: str, x: str, y: str) -> None:
+    axes.set_title(title, fontsize=12)
+    axes.set_xlabel(x, fontsize=11)
+    axes.set_ylabel(y, fontsize=11)
+    axes.tick_params(labelsize=10)
+    axes.grid(color="#d8dee4", linewidth=0.7)
+    axes.set_axisbelow(True)
+    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9.5, frameon=False)
