@@ -1,4 +1,4 @@
-"""From scene and plan to arrays and kernels, and to the static equilibrium."""
+"""From scene and plan to arrays and kernels."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import attrs
 import numpy as np
 
 from raceway.contracts import ContactPairs
-from raceway.core.bodies.ring import SCALARS
+from raceway.core.bodies import ring
 from raceway.core.geometry import BallBearing
 from raceway.core.hertz import Ellipse, contact_modulus
-from raceway.core.system import COORDINATES, System
-from raceway.errors import ConvergenceError, PluginError
+from raceway.core.system import System
+from raceway.errors import PluginError
 from raceway.estimate import axial_approach
 from raceway.plan import Plan
-from raceway.ring import ring_inertia, shoulder_height
+from raceway.ring import radial_growth, ring_inertia
 from raceway.scene import Scene
 
 
@@ -27,7 +27,7 @@ class Model:
     Attributes
     ----------
     geometry : lengths of the row;  inner, outer : load-independent Hertz contacts
-    azimuth : (Z,) [rad];  guess : (5,) first guess of the equilibrium, with a held axial displacement
+    azimuth : (Z,) at time zero, rows one after the other [rad];  guess : (5,) first guess of the equilibrium, with a held axial displacement
     """
 
     scene: Scene
@@ -65,42 +65,99 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     )
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
     inner, outer = geometry.ellipses(modulus)
-    azimuth = radians(b.first_ball_azimuth_deg) + 2.0 * pi * np.arange(b.ball_count) / b.ball_count
-    scalars = np.zeros(SCALARS)
-    arm = geometry.inner_centre_radius if b.tilt_arm == "groove" else 0.5 * b.pitch_diameter
-    scalars[:6] = *geometry.rest, geometry.offset_inner, geometry.offset_outer, arm, scene.contact.damping
+    single = radians(b.first_ball_azimuth_deg) + 2.0 * pi * np.arange(b.ball_count) / b.ball_count
+    azimuth = np.tile(single, len(b.rows))
     x, ball_load = axial_approach(scene)
+    reference = max(ball_load, 1.0)
+    kernel, base = _bodies_kernels(plan)
     system = System(
-        kernel=_bodies_kernel(plan),
+        kernel=kernel,
+        base_kernel=base,
         law=scene.contact.law.kernel(),
-        law_params=_law_params(scene, inner, outer, modulus, max(ball_load, 1.0)),
-        law_state=np.zeros((2 * b.ball_count, scene.contact.law.state_size)),
-        scalars=scalars,
+        law_params=_law_params(scene, inner, outer, modulus, reference),
+        law_state=np.zeros((2 * len(azimuth), scene.contact.law.state_size)),
+        scalars=_scalars(scene, plan, geometry, inner, outer, reference),
         table=_ball_table(scene, plan, geometry, inner, outer, azimuth),
         **_linear_parts(scene, plan),
         load=np.array([scene.load.axial, *scene.load.radial, *scene.load.moment]),
         **_excitation(scene),
     )
     guess = _first_guess(scene, geometry, x)
+    if b.preload > 0.0:
+        system.table[:, ring.SHIFT] = _preload_shift(scene, system, geometry)
+        guess[0] = 0.0
     if scene.supports.axial == "displacement":
-        alone = attrs.evolve(system, load=np.array([scene.load.axial, 0, 0, 0, 0.0]), free=np.array([1.0, 0, 0, 0, 0]))
-        guess[1:] = 0.0
-        guess = alone.settle(guess)[0]
+        guess = _alone(system, scene.load.axial, guess)
     return Model(scene, plan, geometry, inner, outer, azimuth, system, guess)
 
 
-def _bodies_kernel(plan: Plan) -> Any:
-    if plan.balls == "inertial":
-        from raceway.core.bodies.rigid_inertial import rigid_inertial
+def _alone(system: System, axial: float, guess: np.ndarray) -> np.ndarray:
+    """(5,) equilibrium under an axial load alone, the other coordinates held."""
+    start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
+    load = np.array([axial, 0.0, 0.0, 0.0, 0.0])
+    return attrs.evolve(system, load=load, free=np.array([1.0, 0.0, 0.0, 0.0, 0.0])).settle(start)[0]
 
-        return rigid_inertial
-    from raceway.core.bodies.rigid_weightless import rigid_weightless
 
-    return rigid_weightless
+def _preload_shift(scene: Scene, system: System, geometry: BallBearing) -> float:
+    """Axial approach [m] at which one row carries the preload: built into both rows of a pair."""
+    z = geometry.ball_count
+    table = system.table[:z].copy()
+    table[:, ring.SIDE], table[:, ring.LEVER] = 1.0, 0.0
+    chosen = np.r_[0:z, system.ball_count : system.ball_count + z]
+    params = np.ascontiguousarray(system.law_params[chosen])
+    row = attrs.evolve(system, table=table, law_params=params, law_state=system.law_state[chosen].copy())
+    guess = np.array([0.05 * geometry.centre_distance, 0.0, 0.0, 0.0, 0.0])
+    return float(_alone(row, scene.bearing.preload, guess)[0])
+
+
+def _bodies_kernels(plan: Plan) -> tuple[Any, Any]:
+    """The plan's kernel, and the one whose forces have a potential."""
+    if plan.centrifugal:
+        from raceway.core.bodies.rigid_inertial import rigid_inertial as base
+    else:
+        from raceway.core.bodies.rigid_weightless import rigid_weightless as base
+    if plan.balls != "tangential":
+        return base, base
+    from raceway.core.bodies.rigid_tangential import rigid_tangential
+
+    return rigid_tangential, base
+
+
+def _scalars(
+    scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, reference: float
+) -> np.ndarray:
+    b, kinematics = scene.bearing, scene.kinematics
+    out = np.zeros(ring.SCALARS)
+    cage = geometry.cage_speed(scene.spin_speed)
+    out[ring.REST_AXIAL], out[ring.REST_RADIAL] = geometry.rest
+    out[ring.REST_RADIAL] += radial_growth(scene)
+    out[ring.OFFSET_INNER], out[ring.OFFSET_OUTER] = geometry.offset_inner, geometry.offset_outer
+    out[ring.TILT_ARM] = geometry.inner_centre_radius if b.tilt_arm == "groove" else 0.5 * b.pitch_diameter
+    out[ring.DAMPING] = scene.contact.damping
+    if kinematics.orbiting:
+        out[ring.CAGE] = cage
+    out[ring.DIAMETER] = geometry.ball_diameter
+    if scene.contact.friction > 0.0:
+        out[ring.FRICTION] = scene.contact.friction
+        out[ring.STICK] = scene.contact.stick_stiffness or _stick_stiffness(scene, inner, outer, reference)
+    if plan.gyroscopic:
+        shares = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0)}[kinematics.gyroscopic]
+        out[ring.SHARE_INNER], out[ring.SHARE_OUTER] = shares
+        out[ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
+        moment_of_inertia = geometry.ball_mass(b.balls.density) * geometry.ball_diameter**2 / 10.0
+        out[ring.GYROSCOPIC] = moment_of_inertia * scene.spin_speed * cage
+    return out
+
+
+def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) -> float:
+    """Tangential stiffness [N/m] of a sticking contact: 2 (1 - nu) / (2 - nu) of the normal one (Mindlin 1949)."""
+    nu = 0.5 * (scene.bearing.rings.poisson + scene.bearing.balls.poisson)
+    normal = [1.5 * load / float(e.approach(load)) for e in (inner, outer)]
+    return 2.0 * (1.0 - nu) / (2.0 - nu) * 0.5 * sum(normal)
 
 
 def _law_params(scene: Scene, inner: Ellipse, outer: Ellipse, modulus: float, ball_load: float) -> np.ndarray:
-    z = scene.bearing.ball_count
+    z = scene.bearing.ball_count * len(scene.bearing.rows)
 
     def both(a: float, b: float) -> np.ndarray:
         return np.repeat([a, b], z).astype(float)
@@ -124,15 +181,18 @@ def _law_params(scene: Scene, inner: Ellipse, outer: Ellipse, modulus: float, ba
 def _ball_table(
     scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, azimuth: np.ndarray
 ) -> np.ndarray:
-    z = geometry.ball_count
+    z = len(azimuth)
     centrifugal = 0.0
-    if plan.balls == "inertial":
+    if plan.centrifugal:
         cage = geometry.cage_speed(scene.spin_speed)
         centrifugal = geometry.ball_mass(scene.bearing.balls.density) * 0.5 * geometry.pitch_diameter * cage**2
     softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
     share = softness[1] / sum(softness)
-    columns = np.cos(azimuth), np.sin(azimuth), *(np.full(z, v) for v in (centrifugal, share, outer.factor))
-    return np.ascontiguousarray(np.column_stack(columns))
+    table = np.zeros((z, ring.COLUMNS))
+    table[:, ring.COSINE], table[:, ring.SINE] = np.cos(azimuth), np.sin(azimuth)
+    table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = centrifugal, share, outer.factor
+    table[:, [ring.SIDE, ring.LEVER]] = np.repeat(scene.bearing.rows, geometry.ball_count, axis=0)
+    return table
 
 
 def _linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
@@ -178,110 +238,3 @@ def _first_guess(scene: Scene, geometry: BallBearing, x: float) -> np.ndarray:
         guess[0] = -rest_axial
         guess[1:3] = radial / size * (geometry.centre_distance - rest_radial + 1e-3 * geometry.centre_distance)
     return guess
-
-
-@attrs.frozen(eq=False)
-class Equilibrium:
-    """The static state under the constant loads.
-
-    Attributes
-    ----------
-    displacement : (5,) x, y, z [m], tilts [rad];  stiffness : (5, 5) tangent of the contacts
-    ball : (Z, 2) positions in the meridian planes [m]
-    gap, contact_force : (2 Z,) inner races first [m, N]
-    angle_inner, angle_outer : (Z,) contact angles [rad], nan where a contact is open
-    warnings : what a user should know
-    """
-
-    displacement: np.ndarray
-    stiffness: np.ndarray
-    ball: np.ndarray
-    gap: np.ndarray
-    contact_force: np.ndarray
-    angle_inner: np.ndarray
-    angle_outer: np.ndarray
-    iterations: int
-    warnings: tuple[str, ...]
-
-
-def settle(model: Model) -> Equilibrium:
-    """The static equilibrium of a model.
-
-    Raises
-    ------
-    ConvergenceError
-        None found, or a motion that nothing holds (named).
-    """
-    system = model.system
-    _refuse_no_load(model)
-    q, ball, iterations = system.settle(model.guess)
-    now = system.evaluate(q, ball=ball)
-    _refuse_free_motion(model, now.stiffness, q)
-    inner, outer = contact_angles(model, q, now.ball, now.contact_force)
-    warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(
-        q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings
-    )
-
-
-def contact_angles(
-    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
-    z, scalars = model.geometry.ball_count, model.system.scalars
-    c, s = np.cos(model.azimuth), np.sin(model.azimuth)
-    axial = scalars[0] + q[0] + scalars[4] * (q[3] * s - q[4] * c)
-    radial = scalars[1] + q[1] * c + q[2] * s
-    if model.plan.balls == "weightless":
-        inner = outer = np.arctan2(axial, radial)
-    else:
-        inner = np.arctan2(axial - ball[:, 0], radial - ball[:, 1])
-        outer = np.arctan2(ball[:, 0], ball[:, 1])
-    return np.where(force[:z] > 0, inner, np.nan), np.where(force[z:] > 0, outer, np.nan)
-
-
-def _refuse_no_load(model: Model) -> None:
-    if not np.any(model.system.load * model.system.free) and model.system.free[0] > 0.0:
-        raise ConvergenceError(
-            "nothing loads the bearing: every motion is free and there is no stiffness to find. Set `load.axial`, or hold "
-            'the ring with supports.axial = "displacement" under an axial load.'
-        )
-
-
-def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> None:
-    system = model.system
-    chosen = np.flatnonzero(system.free > 0.0)
-    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
-    scaled = weight[:, None] * system.reduced(stiffness + system.stiffness) * weight
-    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
-    if values[-1] > 0.0 and values[0] > 1e-9 * values[-1]:
-        return
-    motion = np.abs(vectors[:, 0])
-    names = [COORDINATES[chosen[k]] for k in np.argsort(-motion) if motion[k] > 0.3 * motion.max()]
-    raise ConvergenceError(
-        f"the equilibrium is singular: nothing holds the ring against {' with '.join(names)}. Hold it "
-        f"({'supports.tilt' if names[0].startswith('tilt') else 'an axial load'}) or load more balls.",
-        {"q": q},
-    )
-
-
-def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
-    found = []
-    z, d = model.geometry.ball_count, model.geometry.ball_diameter
-    if model.geometry.contact_angle > 0.0 and model.scene.load.axial != 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
-        found.append("the bearing unseats: the contact angle of a loaded ball is zero or negative")
-    depth = shoulder_height(model.scene)
-    edge = np.arccos(1.0 - depth / (0.5 * d))
-    for race, ellipse, angle, load in (
-        ("inner", model.inner, inner, force[:z]),
-        ("outer", model.outer, outer, force[z:]),
-    ):
-        half = ellipse.semi_axes(load)[0] / (0.5 * d)
-        reach = np.nanmax(np.abs(angle) + half, initial=0.0)
-        if reach > edge:
-            assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
-            found.append(
-                f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
-                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality"
-            )
-    return tuple(found)

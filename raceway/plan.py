@@ -15,7 +15,7 @@ from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
-_STEP_S = {"weightless": 1.6e-6, "inertial": 4.0e-6}
+_STEP_S = {"weightless": 1.6e-6, "inertial": 4.0e-6, "tangential": 12.0e-6}
 _START_S = 0.6
 
 
@@ -33,7 +33,8 @@ class Plan:
 
     Attributes
     ----------
-    balls : "weightless" (races in series) or "inertial" (two unknowns each, centrifugal force)
+    balls : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
+    centrifugal, gyroscopic : whether the balls have these loads
     free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
     turns : turns that are integrated
     dofs : unknowns of the ring and of the balls
@@ -43,6 +44,8 @@ class Plan:
     kept: tuple[Part, ...]
     left_out: tuple[Part, ...]
     balls: str
+    centrifugal: bool
+    gyroscopic: bool
     free: tuple[int, ...]
     turns: int
     dofs: int
@@ -84,29 +87,42 @@ def make_plan(scene: Scene) -> Plan:
     why_not = "kinematics.ball_inertia is false" if scene.spin_speed > 0.0 else "nothing turns: no spin speed"
     decide(inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not)
     decide(scene.contact.damping > 0.0, "contact damping", "contact.damping is set", "contact.damping is 0")
-    decide(False, "friction", "", "contact.friction is 0")
+    friction = decide(scene.contact.friction > 0.0, "friction", "contact.friction is set", "contact.friction is 0")
+    wanted = scene.kinematics.gyroscopic != "none"
+    why_not = "nothing turns: no spin speed" if wanted else "kinematics.gyroscopic is none"
+    moments = decide(
+        wanted and scene.spin_speed > 0.0, "gyroscopic moments of the balls", "kinematics.gyroscopic names a hypothesis", why_not
+    )
+    orbiting = scene.kinematics.orbiting
+    decide(orbiting, "orbiting balls", "kinematics.orbiting at cage speed", "kinematics.orbiting is false")
+    pair = f"bearing.arrangement is {scene.bearing.arrangement}"
+    decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
     decide(False, "elastic bodies and mesh", "", "bodies.kind is rigid: only contacts deform")
-    gyroscopic = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
-    decide(gyroscopic, "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts", "no polar inertia on free tilts")
+    rotor_moments = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
+    decide(rotor_moments, "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts", "no polar inertia on free tilts")
     uses_record = dynamic and "record" in scene.identifier.method.needs
     unused = "the scene is static" if not dynamic else f"identifier '{scene.identifier.kind}' needs the equilibrium only"
     decide(uses_record, f"time integration ({scene.integrator.kind})", "the identifier needs recorded motion", unused)
     turns = scene.integrator.turns if uses_record else 0
-    if uses_record and not scene.integrator.method.inertial and scene.contact.law.state_size == 0 and turns > 1:
+    repeats = scene.contact.law.state_size == 0 and not friction and not orbiting
+    if uses_record and not scene.integrator.method.inertial and repeats and turns > 1:
         left_out.append(Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn"))
         turns = 1
     steps_per_turn = _predicted_steps_per_turn(scene) if uses_record else 0
     steps = steps_per_turn * turns
-    balls = "inertial" if inertia else "weightless"
-    each = _STEP_S[balls] * scene.bearing.ball_count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
+    balls = "tangential" if friction or moments else "inertial" if inertia else "weightless"
+    count = scene.bearing.ball_count * len(scene.bearing.rows)
+    each = _STEP_S[balls] * count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
     period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
     return Plan(
         kept=tuple(kept),
         left_out=tuple(left_out),
         balls=balls,
+        centrifugal=inertia,
+        gyroscopic=moments,
         free=free,
         turns=turns,
-        dofs=sum(free) + scene.bearing.ball_count * (2 if inertia else 1),
+        dofs=sum(free) + count * (1 if balls == "weightless" else 2),
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
         predicted_wall_s=_START_S + 1.5 * steps * each,
@@ -130,12 +146,9 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal":
         faults.append(Mistake("contact.discretisation", "nodal", "rigid bodies have no surface points: use 'resultant'"))
-    not_yet = "is not available yet: leave it out"
-    refuse(contact.friction > 0.0, "contact.friction", contact.friction, not_yet)
-    refuse(kinematics.orbiting, "kinematics.orbiting", True, not_yet)
-    refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, not_yet)
-    refuse(kinematics.radial_expansion != 0.0, "kinematics.radial_expansion", kinematics.radial_expansion, not_yet)
-    refuse(kinematics.ring_growth, "kinematics.ring_growth", True, not_yet)
+    need_bore = "needs the bearing's `bore`"
+    refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
+    refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
     for seat in ("outer_seat", "inner_seat"):
         value = getattr(scene.supports, seat)
         refuse(value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")

@@ -14,8 +14,9 @@ import numpy as np
 from raceway.core.identification import Identification
 from raceway.core.system import COORDINATES
 from raceway.errors import RacewayError
-from raceway.model import Equilibrium, Model
+from raceway.model import Model
 from raceway.simulate import Simulation
+from raceway.statics import Equilibrium
 
 SCHEMA = 1
 
@@ -97,7 +98,7 @@ class Result:
 
 def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
     """The table ``equilibrium`` of result.json."""
-    z = model.geometry.ball_count
+    z = model.system.ball_count
     load_inner, load_outer = equilibrium.contact_force[:z], equilibrium.contact_force[z:]
     columns = {
         "azimuth_deg": np.degrees(model.azimuth) % 360.0,

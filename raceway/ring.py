@@ -1,4 +1,4 @@
-"""The inner ring as a solid: groove depth, mass and transverse inertia from the bearing's dimensions."""
+"""The inner ring as a solid: groove depth, mass, transverse inertia and growth from the bearing's dimensions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from raceway.scene import Scene
 
 
 def ring_inertia(scene: Scene) -> tuple[float, float]:
-    """Mass [kg] and transverse inertia [kg m2] of the inner ring; zeros when bore or width are not known.
+    """Mass [kg] and transverse inertia [kg m2] of the inner ring, or of a pair's two; zeros when bore or width are not known.
 
     Notes
     -----
@@ -28,7 +28,29 @@ def ring_inertia(scene: Scene) -> tuple[float, float]:
     mass = solid - cut
     inner, outer = b.bore / 2.0, land / 2.0
     transverse = mass * (3.0 * (inner**2 + outer**2) + b.width**2) / 12.0
-    return mass, transverse
+    places = [place for _, place in b.rows]
+    return mass * len(places), sum(transverse + mass * place**2 for place in places)
+
+
+def radial_growth(scene: Scene) -> float:
+    """Radial growth of the inner raceway [m]: what the scene gives, and with ``ring_growth`` the centrifugal one.
+
+    Notes
+    -----
+    A free rotating disc from the bore a to the land b grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).
+
+    References
+    ----------
+    Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
+    """
+    growth = scene.kinematics.radial_expansion
+    bearing = scene.bearing
+    if scene.kinematics.ring_growth and bearing.bore is not None:
+        steel = bearing.rings
+        a, b = bearing.bore / 2.0, (bearing.pitch_diameter - bearing.ball_diameter) / 2.0 + shoulder_height(scene)
+        size = steel.density * scene.spin_speed**2 * b / (4.0 * steel.young)
+        growth += size * ((1.0 - steel.poisson) * b**2 + (3.0 + steel.poisson) * a**2)
+    return growth
 
 
 def shoulder_height(scene: Scene) -> float:

@@ -14,12 +14,13 @@ from raceway.core.energy import energy_balance
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.model import Equilibrium, Model, build_model, settle
+from raceway.model import Model, build_model
 from raceway.plan import make_plan
 from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
 from raceway.simulate import OnProgress, Simulation, simulate, step_error
+from raceway.statics import Equilibrium, settle
 
 
 def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress | None = None) -> Result:
@@ -135,8 +136,9 @@ def _cost(simulation: Simulation | None, wall: float, compile_s: float, build: f
 def _stability(model: Model, simulation: Simulation | None) -> dict[str, Any]:
     drift = None
     law = model.scene.contact.law
-    if simulation is not None and model.scene.integrator.method.inertial and law.state_size == 0 and not law.dissipative:
-        if simulation.start != "ramp":
+    potential = law.state_size == 0 and not law.dissipative and model.system.conservative
+    if simulation is not None and model.scene.integrator.method.inertial and potential:
+        if simulation.start != "ramp" and not model.scene.kinematics.orbiting:
             drift = energy_balance(model.system, simulation.whole).drift
     return {
         "critical_time_step_s": simulation.critical_time_step if simulation else None,

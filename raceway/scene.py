@@ -56,6 +56,15 @@ class Bearing:
         help="arm of tilts and moments: 'groove' (radius of the inner groove centres) or 'pitch' (half the pitch diameter)",
         rule=one_of("groove", "pitch"),
     )
+    arrangement: str = option(
+        "single",
+        help="'single' row, or a pair of rows: back to back 'DB', face to face 'DF', in tandem 'DT'",
+        rule=one_of("single", "DB", "DF", "DT"),
+    )
+    preload: float = option(0.0, unit="N", help="axial preload of a DB or DF pair, mounted", rule=at_least(0.0))
+    row_distance: float | None = option(
+        None, unit="m", help="axial distance of a pair's rows; default: the width of one bearing", rule=optional(positive())
+    )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
     rings: Material = attrs.field(factory=Material, metadata={"help": "material of both rings"})
     balls: Material = attrs.field(factory=Material, metadata={"help": "material of the balls"})
@@ -76,6 +85,20 @@ class Bearing:
                 f"`outer_diameter` = {self.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = {dm + d:g} m"
             )
         self._check_clearance()
+        self._check_pair()
+
+    def _check_pair(self) -> None:
+        if self.preload > 0.0 and self.arrangement not in ("DB", "DF"):
+            raise ValueError(f"`preload` = {self.preload:g} N needs a pair that braces itself: arrangement = 'DB' or 'DF'")
+        if self.arrangement != "single" and self.row_distance is None and self.width is None:
+            raise ValueError(f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`")
+
+    @property
+    def rows(self) -> tuple[tuple[float, float], ...]:
+        """(side, axial place [m]) of each row: side +1 is seated by a positive axial motion of the inner ring."""
+        half = 0.5 * (self.row_distance or self.width or 0.0)
+        pairs = {"DB": ((1.0, -half), (-1.0, half)), "DF": ((1.0, half), (-1.0, -half)), "DT": ((1.0, -half), (1.0, half))}
+        return pairs.get(self.arrangement, ((1.0, 0.0),))
 
     def _check_clearance(self) -> None:
         clearance, angle = self.radial_clearance, self.contact_angle_deg
@@ -169,6 +192,12 @@ class Contact:
         "resultant", help="one force a ball-race pair, or pressure at points", rule=one_of("resultant", "nodal")
     )
     friction: float = option(0.0, help="Coulomb coefficient", rule=at_least(0.0))
+    stick_stiffness: float | None = option(
+        None,
+        unit="N/m",
+        help="of a sticking contact; default: Mindlin's ratio times the normal stiffness under the axial load",
+        rule=optional(positive()),
+    )
     damping: float = option(0.0, unit="N s/m", help="normal, each contact", rule=at_least(0.0))
     law: Any = attrs.field(default=None, metadata={"plugin": "contact_law"})
 

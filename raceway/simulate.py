@@ -12,7 +12,8 @@ from raceway.core.orbit import Orbit, steady_orbit
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import ConvergenceError, StabilityError
-from raceway.model import Equilibrium, Model
+from raceway.model import Model
+from raceway.statics import Equilibrium
 
 OnProgress = Callable[[str, int, int], None]
 _SAMPLES_PER_TURN = 360
@@ -89,7 +90,7 @@ def _chosen_start(model: Model, equilibrium: Equilibrium, period: float) -> tupl
     if model.excitation.period_s is None:
         return "ramp", None, ("the excitation is not periodic: started with a ramp instead of on the orbit",)
     try:
-        return start, steady_orbit(model.system, period, equilibrium.displacement), ()
+        return start, steady_orbit(model.system.at_standstill(), period, equilibrium.displacement), ()
     except ConvergenceError as why:
         return "ramp", None, (f"{why}: started with a ramp instead",)
 

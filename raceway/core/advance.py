@@ -49,7 +49,7 @@ def advance(
     """
     z = system.ball_count
     rows = np.zeros((schedule.steps // schedule.stride, 16))
-    probes = np.zeros((len(rows), 3, 2 * z))
+    probes = np.zeros((len(rows), 2 + system.ball_columns // 2, 2 * z))
     counters = np.zeros(COUNTERS)
     motion = np.zeros((4, 5))
     motion[0], motion[1], motion[2] = start.q, start.v, start.a
@@ -78,7 +78,7 @@ def advance(
         force=rows[:, 11:16],
         gap=probes[:, 0],
         contact_force=probes[:, 1],
-        ball=probes[:, 2].reshape(kept, z, 2),
+        ball=np.concatenate([part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)], axis=2),
         final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before),
         schedule=schedule,
         counts={

@@ -32,7 +32,7 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
 
     Notes
     -----
-    For laws without memory.  The stored energy is integrated from the law itself, not from the motion, so that the
+    For laws without memory, balls that do not orbit, and contact forces that have a potential.  The stored energy is integrated from the law itself, not from the motion, so that the
     balance measures the integrator; work and losses are integrals in time of fourth order.
     """
     n, pairs = record.gap.shape

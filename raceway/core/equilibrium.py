@@ -43,7 +43,7 @@ def contact_energy(law, law_params, law_old, law_new, table, ball, work, energy)
 
 @jit(SETTLE)
 def settle(
-    system, law, law_params, scalars, table, stiffness, free, load, tolerance, q, ball, law_state, work, f, K, report
+    system, law, law_params, scalars, table, stiffness, free, load, tolerance, t, q, ball, law_state, work, f, K, report
 ):
     """Move q (5,) and ball (Z, 2) to the equilibrium of ``load`` (5,); f and K are the contacts' there.
 
@@ -52,6 +52,7 @@ def settle(
     stiffness : (5, 5) linear stiffness added to the contacts' (the shaft's against tilts)
     free : (5,) 1 for unknowns, 0 for coordinates that are held
     tolerance : residual over the sum of all contact forces and loads
+    t : time, which matters for orbiting balls [s]
     report : (2,) out: iterations, relative residual
 
     Returns
@@ -73,7 +74,7 @@ def settle(
     energy_rows = np.empty(work.shape[1])
     radius = 0.05 * (abs(scalars[0]) + abs(scalars[1]))
     status = system(
-        0.0, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C
+        t, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C
     )
     if status != 0:
         return BALLS_FAILED
@@ -155,7 +156,7 @@ def settle(
                 for j in range(5):
                     potential += 0.5 * q[i] * stiffness[i, j] * q[j]
         status = system(
-            0.0, 0.0, trial, rest, ball_new, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work,
+            t, 0.0, trial, rest, ball_new, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work,
             f_new, K_new, C,
         )  # fmt: skip
         if status != 0:

@@ -103,8 +103,8 @@ def steady_orbit(
     mass, damping, stiffness = system.mass[part], system.damping[part], system.stiffness[part]
     weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
     q = np.tile(start, (samples, 1))
-    ball = np.zeros((samples, z, 2))
-    rate = np.zeros((samples, z, 2))
+    ball = np.zeros((samples, z, system.ball_columns))
+    rate = np.zeros_like(ball)
     f, K, C = np.empty((samples, 5)), np.empty((samples, 5, 5)), np.empty((samples, 5, 5))
     scale = max(np.abs(force).max(), np.abs(system.load).max(), 1e-300)
     linear = np.zeros((samples, n, samples, n))
@@ -118,7 +118,7 @@ def steady_orbit(
     for iterations in range(1, 61):
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
-            rate = np.einsum("ij,jkc->ikc", first, ball)
+            rate[:, :, :2] = np.einsum("ij,jkc->ikc", first, ball[:, :, :2])
         done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:

@@ -15,7 +15,7 @@ class Motion:
     Attributes
     ----------
     q, v, a : (5,) displacement, velocity, acceleration (of generalised-alpha: its own a)
-    ball, ball_before : (Z, 2) positions of the balls now and one step earlier [m]
+    ball, ball_before : (Z, 2 or 4) positions (and slips) of the balls now and one step earlier [m]
     """
 
     q: np.ndarray
@@ -55,7 +55,7 @@ class Record:
     ----------
     time : (n,) [s]
     displacement, velocity, force : (n, 5) motion and outer (excitation) force
-    gap, contact_force : (n, 2 Z) inner races first [m, N];  ball : (n, Z, 2) [m]
+    gap, contact_force : (n, 2 Z) inner races first [m, N];  ball : (n, Z, 2 or 4) positions and slips [m]
     final : Motion
     counts : dict with steps, evaluations, max_penetration_m, peak_contact_force_n
     """

@@ -18,7 +18,7 @@ _LIMIT = 100
 
 @jit(SETTLE)
 def find_root(
-    system, law, law_params, scalars, table, stiffness, free, load, tolerance, q, ball, law_state, work, f, K, report
+    system, law, law_params, scalars, table, stiffness, free, load, tolerance, t, q, ball, law_state, work, f, K, report
 ):
     """Same arguments and result as ``raceway.core.equilibrium.settle``; slips are taken from ``ball`` as committed."""
     arm = scalars[TILT_ARM]
@@ -34,7 +34,7 @@ def find_root(
     before, cuts = np.inf, 0
     for iteration in range(_LIMIT):
         status = system(
-            0.0, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C
+            t, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C
         )
         norm, scale = 0.0, 0.0
         if status == 0:

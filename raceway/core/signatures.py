@@ -38,9 +38,9 @@ _RECORD = (int64, MATRIX, CUBE, VECTOR)
 #: loop(model..., coefficients, dt, ramp, first, count, state..., stride, rows, probes, counters) -> steps done
 LOOP = int64(*_MODEL, VECTOR, float64, float64, int64, int64, *_STATE, *_RECORD)
 
-#: settle(system, law, law_params, scalars, table, stiffness, free, load, tolerance, q, ball, law_state, work, f, K,
+#: settle(system, law, law_params, scalars, table, stiffness, free, load, tolerance, t, q, ball, law_state, work, f, K,
 #:        report) -> status
 SETTLE = int64(
-    SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR, float64,
+    SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR, float64, float64,
     VECTOR, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, VECTOR,
 )  # fmt: skip

@@ -8,8 +8,9 @@ import attrs
 import numpy as np
 
 from raceway.core.bodies import WORK_ROWS
-from raceway.core.bodies.ring import TILT_ARM
+from raceway.core.bodies.ring import CAGE, FRICTION, GYROSCOPIC, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, place
 from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, settle
+from raceway.core.root import find_root
 from raceway.errors import ConvergenceError
 
 #: Relative residual that an equilibrium is solved to.
@@ -44,6 +45,8 @@ class System:
     Attributes
     ----------
     kernel : compiled ``SYSTEM``;  law : compiled ``LAW``
+    base_kernel : the same bodies without gyroscopic moments and friction, whose forces have a potential; ``kernel``
+        itself where there are none
     law_params : (2 Z, k);  law_state : (2 Z, m) committed memory of the law
     scalars, table : constants, see ``raceway.core.bodies``
     mass, damping, stiffness : (5, 5) linear parts
@@ -53,6 +56,7 @@ class System:
     """
 
     kernel: Any
+    base_kernel: Any
     law: Any
     law_params: np.ndarray
     law_state: np.ndarray
@@ -74,6 +78,15 @@ class System:
     def arm(self) -> float:
         """Arm of the tilts [m]."""
         return float(self.scalars[TILT_ARM])
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
+        return self.base_kernel is self.kernel
+
+    @property
+    def ball_columns(self) -> int:
+        return 2 if self.conservative else 4
 
     @property
     def model(self) -> tuple[Any, ...]:
@@ -102,18 +115,32 @@ class System:
             When the balls find no equilibrium between the races.
         """
         z = self.ball_count
-        ball = np.zeros((z, 2)) if ball is None else np.array(ball, dtype=float)
-        rate = np.zeros((z, 2)) if ball_rate is None else np.ascontiguousarray(ball_rate, dtype=float)
+        scalars = self.scalars
+        rate = np.zeros((z, self.ball_columns))
+        if ball is None:
+            # Without a history nothing sticks.
+            ball, scalars = np.zeros((z, self.ball_columns)), self.without(FRICTION).scalars
+        else:
+            ball = np.array(ball, dtype=float)
+            rate[:, 2:] = ball[:, 2:]
+        if ball_rate is not None:
+            rate[:, :2] = ball_rate[:, :2]
         v = np.zeros(5) if v is None else np.ascontiguousarray(v, dtype=float)
         work = np.zeros((WORK_ROWS, 2 * z))
         f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
         status = self.kernel(
             t, 0.0, np.ascontiguousarray(q, dtype=float), v, ball, 0.0, rate, self.law, self.law_params,
-            self.law_state, self.law_state.copy(), self.scalars, self.table, work, f, K, C,
+            self.law_state, self.law_state.copy(), scalars, self.table, work, f, K, C,
         )  # fmt: skip
         if status != 0:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
         return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball)
+
+    def without(self, *entries: int) -> System:
+        """A copy with some ``scalars`` (FRICTION, GYROSCOPIC, CAGE of ``raceway.core.bodies.ring``) set to zero."""
+        scalars = self.scalars.copy()
+        scalars[list(entries)] = 0.0
+        return attrs.evolve(self, scalars=scalars)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
@@ -122,25 +149,49 @@ class System:
 
         Notes
         -----
-        A load that the trust region does not reach at once is raised in steps.
+        A load that the trust region does not reach at once is raised in steps.  Gyroscopic moments are added to the
+        equilibrium without them, all at once or in steps.  Friction is left out: the balls have rolled into place, and
+        their slips are set so that no contact carries a tangential force.
 
         Raises
         ------
         ConvergenceError
             With the last state and its residual.
         """
-        start = np.array(q, dtype=float)
+        base = attrs.evolve(self, kernel=self.base_kernel)
+        start = None if ball is None or not self.conservative else ball
+        q_now, ball_now, total = base._by_parts(settle, q, start, tolerance, base.load, (1, 4, 16))
+        if self.conservative:
+            return q_now, ball_now, total
+        whole = self.without(FRICTION)
+        guess = np.zeros((self.ball_count, 4))
+        if self.scalars[GYROSCOPIC] != 0.0:
+            q_now, guess, more = whole._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
+            total += more
+        guess = whole.evaluate(q_now, ball=guess).ball
+        guess[:, 2:] = self.rolled_in(q_now, guess)
+        return q_now, guess, total
+
+    def _by_parts(
+        self, solver: Any, q: np.ndarray, ball: np.ndarray | None, tolerance: float, load: np.ndarray | None, parts: Any
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Solve at once, or with a growing part of the load (load given) or of the gyroscopic moment (load None)."""
         total = 0
-        for parts in (1, 4, 16):
-            q_now = start.copy()
-            ball_now = np.zeros((self.ball_count, 2)) if ball is None else np.array(ball, dtype=float)
-            report = np.zeros(2)
-            status = CONVERGED
-            for part in range(1, parts + 1):
-                work = np.zeros((WORK_ROWS, 2 * self.ball_count))
-                status = settle(
-                    *self.model, self.stiffness, self.free, self.load * (part / parts), tolerance, q_now, ball_now,
-                    self.law_state, work, np.empty(5), np.empty((5, 5)), report,
+        report = np.zeros(2)
+        status = CONVERGED
+        for count in parts:
+            q_now = np.array(q, dtype=float)
+            ball_now = np.zeros((self.ball_count, self.ball_columns)) if ball is None else np.array(ball, dtype=float)
+            for part in range(1, count + 1):
+                scalars, now = self.scalars.copy(), self.load
+                if load is None:
+                    scalars[GYROSCOPIC] *= part / count
+                else:
+                    now = load * (part / count)
+                status = solver(
+                    self.kernel, self.law, self.law_params, scalars, self.table, self.stiffness, self.free, now,
+                    tolerance, 0.0, q_now, ball_now, self.law_state, np.zeros((WORK_ROWS, 2 * self.ball_count)), np.empty(5),
+                    np.empty((5, 5)), report,
                 )  # fmt: skip
                 total += int(report[0]) + 1
                 if status != CONVERGED:
@@ -152,6 +203,24 @@ class System:
             f"no static equilibrium found after {total} iterations: {what}, relative residual {report[1]:.1e}",
             {"q": q_now, "ball": ball_now},
         )
+
+    def centre_vectors(self, q: np.ndarray, t: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+        """(Z, 2) vector (axial, radial) from the outer to the inner groove centre of every ball, and its azimuth's
+        direction (Z, 2) as cosine and sine."""
+        out = np.zeros((6, self.ball_count))
+        place(t, np.ascontiguousarray(q, dtype=float), np.zeros(5), self.scalars, self.table, *out)
+        return out[:2].T.copy(), out[4:].T.copy()
+
+    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
+        """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
+        e, _ = self.centre_vectors(q, t)
+        inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
+        outer = np.arctan2(ball[:, 0], ball[:, 1])
+        return np.column_stack([self.scalars[OFFSET_INNER] * inner, self.scalars[OFFSET_OUTER] * outer])
+
+    def at_standstill(self) -> System:
+        """Without friction and with balls that do not orbit: for periodic motions that a transient may start on."""
+        return self.without(FRICTION, CAGE)
 
     def reduced(self, matrix: np.ndarray) -> np.ndarray:
         """The part of a (5, 5) matrix that belongs to the unknowns."""

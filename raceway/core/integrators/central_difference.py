@@ -30,7 +30,7 @@ def central_difference(
     work = np.zeros((WORK_ROWS, 2 * z))
     f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
     q, half, guess, a, outer, time = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(1)
-    known, trial = np.empty((z, 2)), np.empty((z, 2))
+    known, trial = np.empty_like(ball), np.empty_like(ball)
     law_new = law_state.copy()
     gain = 1.5 / dt
     inverse = np.zeros((5, 5))
@@ -60,6 +60,9 @@ def central_difference(
             for c in range(2):
                 known[k, c] = (0.5 * ball_before[k, c] - 2.0 * ball[k, c]) / dt
                 trial[k, c] = 2.0 * ball[k, c] - ball_before[k, c]
+            for c in range(2, ball.shape[1]):
+                known[k, c] = ball[k, c]
+                trial[k, c] = ball[k, c]
         counters[0] += 1.0
         status = system(
             t, dt, q, guess, trial, gain, known, law, law_params, law_state, law_new, scalars, table, work, f, K, C
@@ -88,7 +91,7 @@ def central_difference(
             motion[2, i] = a[i]
             motion[3, i] = 0.0
         for k in range(z):
-            for c in range(2):
+            for c in range(ball.shape[1]):
                 ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
         law_state[:, :] = law_new
         note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)

@@ -42,7 +42,7 @@ def implicit(
         np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.zeros(5), np.empty(5), np.empty(1),
     )  # fmt: skip
     residual = np.empty(5)
-    known, trial = np.empty((z, 2)), np.empty((z, 2))
+    known, trial = np.empty_like(ball), np.empty_like(ball)
     law_new = law_state.copy()
     to_a = 1.0 / (beta * dt * dt)
     to_v = gamma / (beta * dt)
@@ -59,6 +59,9 @@ def implicit(
             for c in range(2):
                 known[k, c] = (0.5 * ball_before[k, c] - 2.0 * ball[k, c]) / dt
                 trial[k, c] = 2.0 * ball[k, c] - ball_before[k, c]
+            for c in range(2, ball.shape[1]):
+                known[k, c] = ball[k, c]
+                trial[k, c] = ball[k, c]
         norm_before = np.inf
         found = False
         halvings = 0
@@ -131,7 +134,7 @@ def implicit(
         for i in range(5):
             motion[0, i], motion[1, i], motion[2, i], motion[3, i] = q[i], v[i], a[i], r[i]
         for k in range(z):
-            for c in range(2):
+            for c in range(ball.shape[1]):
                 ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
         law_state[:, :] = law_new
         note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)

@@ -3,7 +3,8 @@
 Notes
 -----
 Each step starts from the last two equilibria, extrapolated, and ends with the trust region of
-``raceway.core.equilibrium``.  ``coefficients``: tolerance.
+``raceway.core.equilibrium``, or, where forces have no potential, with ``raceway.core.root``.  ``coefficients``:
+tolerance, and 1 where there is no potential.
 """
 
 import numpy as np
@@ -12,6 +13,7 @@ from raceway.core.bodies import WORK_ROWS
 from raceway.core.equilibrium import settle
 from raceway.core.integrators import note_step, outer_force
 from raceway.core.jit import jit
+from raceway.core.root import find_root
 from raceway.core.signatures import LOOP
 
 
@@ -25,7 +27,7 @@ def quasi_static(
     work = np.zeros((WORK_ROWS, 2 * z))
     f, K = np.empty(5), np.empty((5, 5))
     q, total, outer, time, report = np.empty(5), np.empty(5), np.empty(5), np.empty(1), np.zeros(2)
-    trial = np.empty((z, 2))
+    trial = np.empty_like(ball)
     still = motion.copy()
     for step in range(count):
         number = first + step + 1
@@ -35,11 +37,18 @@ def quasi_static(
             q[i] = motion[0, i] + motion[1, i]
             total[i] = load[i] + outer[i]
         for k in range(z):
-            trial[k, 0], trial[k, 1] = ball[k, 0], ball[k, 1]
-        status = settle(
-            system, law, law_params, scalars, table, stiffness, free, total, coefficients[0], q, trial, law_state,
-            work, f, K, report,
-        )  # fmt: skip
+            for c in range(ball.shape[1]):
+                trial[k, c] = ball[k, c]
+        if coefficients[1] == 0.0:
+            status = settle(
+                system, law, law_params, scalars, table, stiffness, free, total, coefficients[0], time[0], q, trial,
+                law_state, work, f, K, report,
+            )  # fmt: skip
+        else:
+            status = find_root(
+                system, law, law_params, scalars, table, stiffness, free, total, coefficients[0], time[0], q, trial,
+                law_state, work, f, K, report,
+            )  # fmt: skip
         counters[0] += report[0] + 1.0
         if status != 0:
             counters[1] = 1.0 if status == 2 else (3.0 if status == 3 else 2.0)
@@ -50,7 +59,7 @@ def quasi_static(
             motion[0, i] = q[i]
             still[0, i] = q[i]
         for k in range(z):
-            for c in range(2):
+            for c in range(ball.shape[1]):
                 ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
         note_step(number, rows, probes, stride, time, still, outer, work, ball, counters)
     return count

@@ -1,0 +1,123 @@
+"""The static state under the constant loads, ball by ball, and what a user should know about it."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.core.system import COORDINATES
+from raceway.errors import ConvergenceError
+from raceway.model import Model
+from raceway.ring import shoulder_height
+
+
+@attrs.frozen(eq=False)
+class Equilibrium:
+    """The static state under the constant loads.
+
+    Attributes
+    ----------
+    displacement : (5,) x, y, z [m], tilts [rad];  stiffness : (5, 5) tangent of the contacts
+    ball : (Z, 2) positions in the meridian planes [m]
+    gap, contact_force : (2 Z,) inner races first [m, N]
+    angle_inner, angle_outer : (Z,) contact angles [rad], nan where a contact is open
+    warnings : what a user should know
+    """
+
+    displacement: np.ndarray
+    stiffness: np.ndarray
+    ball: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    angle_inner: np.ndarray
+    angle_outer: np.ndarray
+    iterations: int
+    warnings: tuple[str, ...]
+
+
+def settle(model: Model) -> Equilibrium:
+    """The static equilibrium of a model.
+
+    Raises
+    ------
+    ConvergenceError
+        None found, or a motion that nothing holds (named).
+    """
+    system = model.system
+    _refuse_no_load(model)
+    q, ball, iterations = system.settle(model.guess)
+    now = system.evaluate(q, ball=ball)
+    _refuse_free_motion(model, now.stiffness, q)
+    inner, outer = contact_angles(model, q, now.ball, now.contact_force)
+    warnings = _warnings(model, inner, outer, now.contact_force)
+    return Equilibrium(
+        q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings
+    )
+
+
+def contact_angles(
+    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
+    z = model.system.ball_count
+    axial, radial = model.system.centre_vectors(q)[0].T
+    if model.plan.balls == "weightless":
+        inner = outer = np.arctan2(axial, radial)
+    else:
+        inner = np.arctan2(axial - ball[:, 0], radial - ball[:, 1])
+        outer = np.arctan2(ball[:, 0], ball[:, 1])
+    return np.where(force[:z] > 0, inner, np.nan), np.where(force[z:] > 0, outer, np.nan)
+
+
+def _refuse_no_load(model: Model) -> None:
+    loaded = np.any(model.system.load * model.system.free) or model.scene.bearing.preload > 0.0
+    if not loaded and model.system.free[0] > 0.0:
+        raise ConvergenceError(
+            "nothing loads the bearing: every motion is free and there is no stiffness to find. Set `load.axial`, or hold "
+            'the ring with supports.axial = "displacement" under an axial load.'
+        )
+
+
+def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> None:
+    system = model.system
+    chosen = np.flatnonzero(system.free > 0.0)
+    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
+    scaled = weight[:, None] * system.reduced(stiffness + system.stiffness) * weight
+    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
+    if values[-1] > 0.0 and values[0] > 1e-9 * values[-1]:
+        return
+    motion = np.abs(vectors[:, 0])
+    names = [COORDINATES[chosen[k]] for k in np.argsort(-motion) if motion[k] > 0.3 * motion.max()]
+    raise ConvergenceError(
+        f"the equilibrium is singular: nothing holds the ring against {' with '.join(names)}. Hold it "
+        f"({'supports.tilt' if names[0].startswith('tilt') else 'an axial load'}) or load more balls.",
+        {"q": q},
+    )
+
+
+def _braced(model: Model) -> bool:
+    return model.scene.load.axial != 0.0 or model.scene.bearing.preload > 0.0
+
+
+def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
+    found = []
+    z, d = model.system.ball_count, model.geometry.ball_diameter
+    if model.geometry.contact_angle > 0.0 and _braced(model) and np.nanmin(inner, initial=np.inf) <= 0.0:
+        found.append("the bearing unseats: the contact angle of a loaded ball is zero or negative")
+    if model.scene.contact.friction > 0.0:
+        found.append("friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have")
+    depth = shoulder_height(model.scene)
+    edge = np.arccos(1.0 - depth / (0.5 * d))
+    for race, ellipse, angle, load in (
+        ("inner", model.inner, inner, force[:z]),
+        ("outer", model.outer, outer, force[z:]),
+    ):
+        half = ellipse.semi_axes(load)[0] / (0.5 * d)
+        reach = np.nanmax(np.abs(angle) + half, initial=0.0)
+        if reach > edge:
+            assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
+            found.append(
+                f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
+                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality"
+            )
+    return tuple(found)
