@@ -26,6 +26,7 @@ class Identification:
     residual : rms of what is not 1x (mean and drift removed) over the rms of 1x, in the plane of the force
     spread : largest deviation of a single turn's Z from the whole, relative; None for one turn
     window : deviation of Z from the other fit (Fourier against least squares), relative; None where there is one only
+    series : (speed [rad/s], Z) of every speed, where several were looked at
     """
 
     definition: str
@@ -40,6 +41,7 @@ class Identification:
     residual: float | None = None
     spread: float | None = None
     window: float | None = None
+    series: tuple[tuple[float, complex], ...] = ()
 
     @property
     def speed(self) -> float:
@@ -76,6 +78,7 @@ def identification(
     residual: float | None = None,
     spread: float | None = None,
     window: float | None = None,
+    series: tuple[tuple[float, complex], ...] = (),
 ) -> Identification:
     """An ``Identification`` from the complex 1x vectors (5,) of force and displacement."""
     forward = 0.5 * abs(displacement[1] + 1j * displacement[2])
@@ -95,6 +98,7 @@ def identification(
         residual=residual,
         spread=spread,
         window=window,
+        series=series,
     )
 
 

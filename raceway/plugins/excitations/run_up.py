@@ -1,0 +1,61 @@
+"""Run-up or run-down: the unbalance force under a speed that changes linearly."""
+
+from __future__ import annotations
+
+from math import pi, radians
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.options import at_least, between, finite, one_of, option, positive
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+@attrs.frozen(kw_only=True)
+class RunUp:
+    """m e w^2 with w from ``first_speed_rpm`` to ``speed_rpm`` over ``duration_s``; identify with 'order_tracking'."""
+
+    name: ClassVar[str] = "run_up"
+
+    first_speed_rpm: float = option(unit="r/min", help="speed at the beginning", rule=positive())
+    speed_rpm: float = option(unit="r/min", help="speed at the end", rule=positive())
+    duration_s: float = option(unit="s", help="time between the two", rule=positive())
+    unbalance: float = option(unit="kg m", help="mass times eccentricity of the whole rotor", rule=at_least(0.0))
+    load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
+    phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
+    whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
+
+    period_s: ClassVar[None] = None
+
+    @property
+    def frequency_hz(self) -> float:
+        """Frequency at the faster end, which sets the time step."""
+        return max(self.speed_rpm, self.first_speed_rpm) / 60.0
+
+    @property
+    def amplitude_n(self) -> float:
+        """Force at the end [N]."""
+        return self.load_share * self.unbalance * (self.speed_rpm * pi / 30.0) ** 2
+
+    @property
+    def sense(self) -> int:
+        return 1 if self.whirl == "forward" else -1
+
+    def phase(self, time: np.ndarray) -> np.ndarray:
+        """Angle of the force (n,) [rad] at times (n,)."""
+        first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
+        return first * time + 0.5 * (last - first) / self.duration_s * time**2 - radians(self.phase_lag_deg)
+
+    def parameters(self) -> np.ndarray:
+        import numpy as np
+
+        first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
+        share = self.load_share * self.unbalance
+        return np.array([share, first, last, self.duration_s, radians(self.phase_lag_deg), float(self.sense)])
+
+    def kernel(self) -> Any:
+        from raceway.core.excitations.run_up import run_up
+
+        return run_up
