@@ -72,7 +72,7 @@ def test_the_inferred_free_angle_of_harris_and_mindel_gives_what_they_print():
     """Fig. 15 prints 29.762 deg and 287.76 lb on the inner race under 3000 lb at 24 000 r/min.
 
     The preset's angle is rounded to 0.01 deg, which moves the loaded one by up to 0.003 deg.  The load follows from axial
-    equilibrium; it is off by 1e-4, since their equation (86) has friction terms that we leave out.
+    equilibrium and is measured 1e-4 off; their equation (86) also has friction terms, and both prints are rounded.
     """
     scene = scene_from_dict(
         {
