@@ -1,0 +1,57 @@
+"""Evidence: what the documents claim, computed anew by ``python -m benchmarks.evidence [NAME...]``.
+
+Each public module of this package is one report: a string ``TITLE`` and a function ``rows()`` that returns a list of
+``Row``.  The runner writes ``docs/reports/NAME.json`` and ``NAME.md`` and refreshes every block between
+``<!-- evidence:NAME -->`` and ``<!-- /evidence -->`` in README.md and docs; nothing in a table is typed by hand.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pkgutil import iter_modules
+from types import ModuleType
+
+import attrs
+
+
+@attrs.frozen
+class Row:
+    """One line of a report.
+
+    Attributes
+    ----------
+    quantity : what was measured, with its unit
+    value : the number, or a few numbers as text
+    limit : what it is held against: an expected value with its tolerance, or a bound
+    ok : whether it holds
+    command : what to type to see it
+    note : why it does not hold, or what one should know
+    """
+
+    quantity: str
+    value: float | int | str
+    limit: str
+    ok: bool = attrs.field(converter=bool)
+    command: str
+    note: str = ""
+
+
+def near(quantity: str, value: float, expected: float, relative: float, command: str, note: str = "") -> Row:
+    """A row for a value that must equal ``expected`` within a relative tolerance."""
+    ok = abs(value - expected) <= relative * abs(expected)
+    return Row(quantity, float(value), f"{expected:g} within {100 * relative:g} %", ok, command, note)
+
+
+def below(quantity: str, value: float, bound: float, command: str, note: str = "") -> Row:
+    """A row for a value that must not exceed ``bound``."""
+    return Row(quantity, float(value), f"at most {bound:g}", value <= bound, command, note)
+
+
+def names() -> list[str]:
+    """Names of all reports."""
+    return sorted(module.name for module in iter_modules(__path__) if not module.name.startswith("_"))
+
+
+def report(name: str) -> ModuleType:
+    """The module of a report."""
+    return import_module(f"{__name__}.{name}")

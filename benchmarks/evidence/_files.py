@@ -1,0 +1,162 @@
+"""Reports on disk: JSON, the Markdown made of it, and the blocks of the documents."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import os
+import platform
+import re
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from benchmarks.evidence import Row
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "docs" / "reports"
+_BLOCK = re.compile(r"(<!-- evidence:([a-z0-9_]+) -->\n)(.*?)(<!-- /evidence -->)", re.DOTALL)
+
+
+def machine() -> dict[str, Any]:
+    """What the numbers were measured on; nothing that names the machine."""
+    import numba
+
+    flags = ""
+    try:
+        flags = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        pass  # not Linux: the architecture says enough
+    vector = next((name for flag, name in (("avx512f", "AVX-512"), ("avx2", "AVX2")) if flag in flags), "")
+    return {
+        "cores": os.cpu_count(),
+        "processor": " ".join(part for part in (platform.machine(), vector) if part),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        "numba": numba.__version__,
+    }
+
+
+def commit() -> str:
+    """Short name of the commit, with "+ changes" where tracked sources differ from it."""
+    try:
+        name = _git("rev-parse", "--short", "HEAD")
+        changed = _git("status", "--porcelain", "--untracked-files=no", "--", "raceway", "tests", "benchmarks")
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return f"{name} + changes" if changed else name
+
+
+def _git(*words: str) -> str:
+    return subprocess.run(["git", *words], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def write(name: str, title: str, rows: list[Row], seconds: float, folder: Path = FOLDER) -> dict[str, Any]:
+    """Write the JSON and the Markdown file of a report; returns the JSON's content."""
+    data = {
+        "title": title,
+        "rows": [attrs.asdict(row) for row in rows],
+        "command": f"python -m benchmarks.evidence {name}",
+        "commit": commit(),
+        "machine": machine(),
+        "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d"),
+        "seconds": round(seconds, 1),
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    (folder / f"{name}.md").write_text(page(data), encoding="utf-8")
+    return data
+
+
+def read(folder: Path = FOLDER) -> dict[str, dict[str, Any]]:
+    """All reports on disk by name."""
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))}
+
+
+def page(data: dict[str, Any]) -> str:
+    """The Markdown file of a report."""
+    commands = sorted({row["command"] for row in data["rows"]})
+    lines = [f"# {data['title']}", "", table(data), "", _origin(data), ""]
+    if commands and commands != [data["command"]]:
+        lines += ["To see single rows:", "", *(f"    {command}" for command in commands), ""]
+    return "\n".join(lines)
+
+
+def _origin(data: dict[str, Any]) -> str:
+    m = data["machine"]
+    return (
+        f"Made by `{data['command']}` in {data['seconds']} s, commit {data['commit']}, {data['date']}; "
+        f"{m['cores']} cores {m['processor']}, {m['system']}, Python {m['python']}, numba {m['numba']}."
+    )
+
+
+def table(data: dict[str, Any]) -> str:
+    """Rows as a Markdown table."""
+    lines = ["| quantity | value | limit | holds | note |", "|---|---|---|---|---|"]
+    for row in data["rows"]:
+        cells = row["quantity"], shown(row["value"]), row["limit"], "yes" if row["ok"] else "**no**", row["note"]
+        lines.append("| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines)
+
+
+def shown(value: float | int | str) -> str:
+    """A value with four significant digits; whole numbers and text as they are."""
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return str(value)
+
+
+def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
+    """Every report with its counts as a Markdown table; ``links`` is the folder as seen from the document."""
+    lines = ["| report | rows that hold | date | commit |", "|---|---|---|---|"]
+    for name, data in reports.items():
+        good = sum(row["ok"] for row in data["rows"])
+        lines.append(f"| [{data['title']}]({links}{name}.md) | {good} of {len(data['rows'])} | {data['date']} | {data['commit']} |")
+    return "\n".join(lines)
+
+
+def documents() -> list[Path]:
+    """Documents that may hold blocks: README.md and everything under docs but the reports themselves."""
+    pages = [path for path in sorted((ROOT / "docs").rglob("*.md")) if FOLDER not in path.parents]
+    return [path for path in [ROOT / "README.md", *pages] if path.is_file()]
+
+
+def render(text: str, reports: dict[str, dict[str, Any]], links: str = "docs/reports/") -> str:
+    """A document's text with every block made anew; ``evidence:summary`` is the table of reports.
+
+    Raises
+    ------
+    KeyError
+        A block that names a report which is not on disk.
+    """
+
+    def block(match: re.Match[str]) -> str:
+        name = match[2]
+        if name != "summary" and name not in reports:
+            raise KeyError(f"a block asks for the report '{name}'; there are {', '.join(reports)}")
+        body = summary(reports, links) if name == "summary" else table(reports[name])
+        return f"{match[1]}{body}\n{match[4]}"
+
+    return _BLOCK.sub(block, text)
+
+
+def links_from(document: Path) -> str:
+    """The reports' folder as seen from a document."""
+    return os.path.relpath(FOLDER, document.parent).replace(os.sep, "/") + "/"
+
+
+def refresh() -> list[Path]:
+    """Rewrite the index of reports and every block; returns the documents that changed."""
+    reports = read()
+    index = "# Reports\n\nMade by `make evidence`; see `benchmarks/evidence`.\n\n" + summary(reports) + "\n"
+    (FOLDER / "README.md").write_text(index, encoding="utf-8")
+    changed = []
+    for path in documents():
+        old = path.read_text(encoding="utf-8")
+        new = render(old, reports, links_from(path))
+        if new != old:
+            path.write_text(new, encoding="utf-8")
+            changed.append(path)
+    return changed

@@ -1,0 +1,1 @@
+"""Tests of Raceway; ``tests.reference`` holds independent implementations to test against."""

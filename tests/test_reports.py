@@ -1,0 +1,66 @@
+"""The tables in README and docs are those of the reports' files, and every row holds or says why not."""
+
+from __future__ import annotations
+
+import json
+
+import attrs
+import pytest
+
+from benchmarks.evidence import Row, _files, below, names, near
+from benchmarks.evidence.__main__ import main
+
+REPORTS = _files.read()
+
+
+@pytest.mark.parametrize("document", _files.documents(), ids=lambda path: path.name)
+def test_tables_in_documents_are_those_of_the_reports(document):
+    text = document.read_text(encoding="utf-8")
+    assert _files.render(text, REPORTS, _files.links_from(document)) == text, "run python -m benchmarks.evidence --render"
+
+
+@pytest.mark.parametrize("name", sorted(REPORTS))
+def test_rows_hold_or_say_why_not(name):
+    data = REPORTS[name]
+    assert data["rows"], "a report without rows shows nothing"
+    assert {"title", "rows", "command", "commit", "machine", "date"} <= set(data)
+    assert set(data["machine"]) == {"cores", "processor", "system", "python", "numba"}
+    for row in data["rows"]:
+        assert set(row) == {field.name for field in attrs.fields(Row)}
+        assert row["ok"] or row["note"], f"{row['quantity']} does not hold and has no note"
+
+
+@pytest.mark.parametrize("name", sorted(REPORTS))
+def test_markdown_is_made_of_the_json(name):
+    assert (_files.FOLDER / f"{name}.md").read_text(encoding="utf-8") == _files.page(REPORTS[name])
+
+
+def test_every_report_has_been_run_and_every_file_has_a_module():
+    assert sorted(REPORTS) == names()
+
+
+def test_blocks_are_replaced_whole_and_unknown_ones_refused():
+    row = near("x [m]", 1.001, 1.0, 0.01, "python")
+    reports = {"one": {"title": "One", "rows": [attrs.asdict(row)], "date": "d", "commit": "c"}}
+    text = "a\n<!-- evidence:one -->\nold\n<!-- /evidence -->\nb\n<!-- evidence:summary -->\n<!-- /evidence -->\n"
+    new = _files.render(text, reports)
+    assert "old" not in new and "| x [m] | 1.001 | 1 within 1 % | yes |  |" in new and "1 of 1" in new
+    assert _files.render(new, reports) == new
+    with pytest.raises(KeyError, match="two"):
+        _files.render(text.replace("evidence:one", "evidence:two"), reports)
+
+
+def test_rows_judge():
+    assert near("k", 1.004, 1.0, 0.005, "c").ok and not near("k", 1.006, 1.0, 0.005, "c").ok
+    assert below("e", 1e-10, 1e-9, "c").ok and not below("e", float("nan"), 1e-9, "c").ok
+
+
+def test_unknown_report_is_exit_code_2(capsys):
+    assert main(["expected_valeus"]) == 2
+    assert "expected_values" in capsys.readouterr().err
+
+
+def test_json_has_no_nan():
+    for name in REPORTS:
+        text = (_files.FOLDER / f"{name}.json").read_text(encoding="utf-8")
+        json.loads(text, parse_constant=lambda word: pytest.fail(f"{name}: {word}"))

@@ -1,0 +1,104 @@
+"""Chung & Ooi (2011), benchmark tests 1 and 3: elastic normal impacts of spheres; inputs published, outputs exact Hertz.
+
+Frame: the approach along the line of centres; two equal spheres count as one of half the mass at the relative speed.
+Tolerances: 1e-5 for the closed formulas (six printed digits); 1e-3 for each transient integrator at 100 steps a contact, of
+which the largest sample takes up to 1e-4 (it is not interpolated) and second-order methods a few 1e-4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.core.bodies.impact import impact_system
+from raceway.registry import default_registry
+from raceway.studies.reference import reference_cases
+from raceway.studies.verify import verify
+from raceway.studies.verify_impacts import impact_of, measure, transient_integrators
+
+CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
+INTEGRATORS = [entry.name for entry in transient_integrators(default_registry())]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_closed_form_and_every_integrator(case):
+    found = verify(only=case)
+    assert len(found.rows) == 3 + 2 * len(INTEGRATORS)
+    assert [row.tolerance for row in found.rows] == [1e-5] * 3 + [1e-3] * 2 * len(INTEGRATORS)
+    assert found.passed, [(row.quantity, row.error, row.note) for row in found.rows if not row.ok]
+
+
+def test_the_built_in_transient_integrators_are_among_them():
+    assert {"newmark", "generalized_alpha", "central_difference"} <= set(INTEGRATORS)
+    assert "quasi_static" not in INTEGRATORS
+
+
+@pytest.mark.parametrize("name", ["newmark", "generalized_alpha", "central_difference"])
+@pytest.mark.parametrize("case", CASES)
+def test_order_two_through_touch_and_release(case, name):
+    """The contact time converges with the square of the step: a slope within 0.1 of 2 over three halvings."""
+    method, impact = default_registry().find("integrator", name).plugin(), impact_of(reference_cases()[case].inputs)
+    steps = np.array([50, 100, 200, 400])
+    errors = [abs(measure(method, impact, n, 0.5)[1] / impact.contact_time - 1.0) for n in steps]
+    slope = np.polyfit(np.log(1.0 / steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize("name", ["newmark", "generalized_alpha", "central_difference"])
+def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
+    """x = x0 cos(w t): with 200 steps a period a second-order method is within 1e-3 x0 after one period.
+
+    The phase error of the worst of them is (w dt)^2 / 12 of 2 pi: 5e-4.
+    """
+    from raceway.core.contact_laws.power import three_halves
+    from raceway.core.record import Motion, Schedule
+
+    mass, stiffness, x0 = 2.0, 8e6, 1e-5
+    system = impact_system(mass, three_halves, np.array([1e10]), clearance=1.0, stiffness=stiffness)
+    speed = np.sqrt(stiffness / mass)
+    balls, first = np.zeros((1, 2)), np.array([1.0, 0, 0, 0, 0])
+    start = Motion(x0 * first, np.zeros(5), -(speed**2) * x0 * first, balls, balls.copy())
+    schedule = Schedule(2 * np.pi / speed / 200, 200, 1)
+    record = default_registry().find("integrator", name).plugin().advance(system, start, schedule)
+    assert record.displacement[:, 0] == pytest.approx(x0 * np.cos(speed * record.time), abs=1e-3 * x0)
+    assert record.contact_force.max() == 0.0
+
+
+@pytest.mark.parametrize("name", ["newmark", "generalized_alpha", "central_difference"])
+def test_an_impact_on_a_penalty(name):
+    """Q = c d^2: energy gives d_max = (3 m v^2 / (2 c))^(1/3).  Tolerance as for Hertz; the frequency is about the same."""
+    from raceway.core.contact_laws.power import square
+    from raceway.core.record import Motion, Schedule
+
+    mass, speed, factor = 0.01, 2.0, 1e12
+    deepest = (1.5 * mass * speed**2 / factor) ** (1 / 3)
+    system = impact_system(mass, square, np.array([factor]))
+    dt = 2.8 * deepest / speed / 100  # Hertz's contact lasts 2.94 d_max / v, this one a little less
+    balls, first = np.zeros((1, 2)), np.array([1.0, 0, 0, 0, 0])
+    start = Motion(-2.5 * dt * speed * first, speed * first, np.zeros(5), balls, balls.copy())
+    record = default_registry().find("integrator", name).plugin().advance(system, start, Schedule(dt, 120, 1))
+    assert record.contact_force.max() == pytest.approx(factor * deepest**2, rel=1e-3)
+    assert record.velocity[-1, 0] == pytest.approx(-speed, rel=1e-3)
+
+
+def test_a_dashpot_takes_energy_and_the_tangents_are_consistent():
+    from raceway.core.contact_laws.power import three_halves
+
+    system = impact_system(1.0, three_halves, np.array([1e10]), contact_damping=50.0)
+    first, step = np.array([1.0, 0, 0, 0, 0]), 1e-11
+    q, v = 3e-6 * first, 0.02 * first
+    now = system.evaluate(q, v)
+    moved = [system.evaluate(q + s * step * first, v).force[0] for s in (1.0, -1.0)]
+    assert now.stiffness[0, 0] == pytest.approx((moved[0] - moved[1]) / (2 * step), rel=1e-6)
+    assert now.damping[0, 0] == pytest.approx(50.0, rel=1e-12)
+    assert now.force[0] == pytest.approx(1e10 * 3e-6**1.5 + 50.0 * 0.02, rel=1e-12)
+    assert now.gap[1] > 0.0
+    assert now.contact_force[1] == 0.0
+
+
+def test_a_mass_pressed_on_a_contact_settles_where_hertz_says():
+    from raceway.core.contact_laws.power import three_halves
+
+    system = impact_system(1.0, three_halves, np.array([1e10]), load=500.0, clearance=2e-6)
+    q, _, _ = system.settle(np.zeros(5))
+    assert q[0] - 2e-6 == pytest.approx((500.0 / 1e10) ** (2 / 3), rel=1e-9)
