@@ -68,7 +68,10 @@ class Excitation(Protocol):
     3. ``parameters()``: an array (k,) of float64 that the kernel gets.
     4. ``kernel()``: a function compiled with ``@jit(FORCE)`` that overwrites out (5,) = F_x, F_y, F_z, M_y, M_z.
     5. ``speed_rpm``, if there is one, is the default of ``kinematics.spin_speed_rpm``; ``ramp_turns``, if there is one,
-       is the time over which the core lets the force grow.
+       is the time over which the core lets the force grow; ``duration_s``, if there is one and it is not None, is the
+       time that is integrated, instead of ``integrator.turns``; ``phase(time)``, if there is one, is the angle of the
+       1x line (n,) [rad], which identifiers of changing speeds need; ``steady()``, if there is one, is a periodic
+       excitation whose orbit the motion starts on.
     """
 
     name: ClassVar[str]
@@ -109,7 +112,9 @@ class Integrator(Protocol):
 class Identifier(Protocol):
     """From recorded motion, or from the equilibrium, to a dynamic stiffness.
 
-    1. ``needs``: a subset of {"record", "speeds", "equilibrium"}.
+    1. ``needs``: a subset of {"record", "speeds", "equilibrium", "period", "phase"}: recorded motion; a record for each
+       of its option ``speeds_rpm``; the equilibrium alone; an excitation at one frequency (not a run-up); an
+       excitation that knows its phase.
     2. ``definition``: one sentence: secant or tangent, of which signals.
     3. ``identify(records, equilibrium, model)``: an ``Identification``; ``model`` offers ``mass_used``,
        ``excitation``, ``scene`` and ``system``.

@@ -16,7 +16,9 @@ import attrs
 Rule = Callable[[Any, Any, Any], None]
 
 
-def option(default: Any = attrs.NOTHING, *, unit: str = "", help: str = "", rule: Rule | None = None) -> Any:
+def option(
+    default: Any = attrs.NOTHING, *, unit: str = "", help: str = "", rule: Rule | None = None, path: bool = False
+) -> Any:
     """An attrs field for one key of a scene.
 
     Parameters
@@ -25,8 +27,9 @@ def option(default: Any = attrs.NOTHING, *, unit: str = "", help: str = "", rule
     unit : for people and for the schema, "" for a pure number
     help : one sentence
     rule : validator, called as ``rule(None, attribute, value)``
+    path : the value names a file, relative to the folder of the scene file
     """
-    metadata = {"unit": unit, "help": help, "rule": getattr(rule, "words", "")}
+    metadata = {"unit": unit, "help": help, "rule": getattr(rule, "words", ""), "path": path}
     return attrs.field(default=default, validator=rule or (lambda *_: None), metadata=metadata)
 
 

@@ -5,6 +5,7 @@ The model builder obeys the plan; it decides nothing of this by itself.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import attrs
@@ -103,7 +104,7 @@ def make_plan(scene: Scene) -> Plan:
     uses_record = dynamic and "record" in scene.identifier.method.needs
     unused = "the scene is static" if not dynamic else f"identifier '{scene.identifier.kind}' needs the equilibrium only"
     decide(uses_record, f"time integration ({scene.integrator.kind})", "the identifier needs recorded motion", unused)
-    turns = scene.integrator.turns if uses_record else 0
+    turns = _turns(scene) if uses_record else 0
     repeats = scene.contact.law.state_size == 0 and not friction and not orbiting
     if uses_record and not scene.integrator.method.inertial and repeats and turns > 1:
         left_out.append(Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn"))
@@ -154,6 +155,8 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         refuse(value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
+    if scene.excitation is not None:
+        _refuse_identifier(scene, refuse)
     if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
         mass, tilt = ring_inertia(scene)
         if scene.rotor.mass + mass <= 0.0:
@@ -164,6 +167,27 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake("rotor.transverse_inertia", scene.rotor.transverse_inertia, why))
     if faults:
         raise SceneError(faults)
+
+
+def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+    """What the identifier needs of the excitation."""
+    needs, kind = scene.identifier.method.needs, scene.identifier.kind
+    name, excitation = scene.excitation.name, scene.excitation
+    changing = excitation.period_s is None and getattr(excitation, "first_speed_rpm", None) is not None
+    why = f"needs one frequency, but excitation '{name}' changes its speed: use 'order_tracking'"
+    refuse("period" in needs and changing, "identifier.kind", kind, why)
+    why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
+    refuse("phase" in needs and not hasattr(excitation, "phase"), "identifier.kind", kind, why)
+    why = f"runs several speeds, but excitation '{name}' has no key `speed_rpm` or changes its speed"
+    refuse("speeds" in needs and (changing or not hasattr(excitation, "speed_rpm")), "identifier.kind", kind, why)
+
+
+def _turns(scene: Scene) -> int:
+    """Turns that are integrated: the scene's, or as many as the excitation lasts."""
+    duration = getattr(scene.excitation, "duration_s", None)
+    if duration is None:
+        return scene.integrator.turns
+    return max(int(duration * scene.excitation.frequency_hz + 0.5), 1)
 
 
 def _predicted_steps_per_turn(scene: Scene) -> int:

@@ -12,6 +12,7 @@ import attrs
 import numpy as np
 
 from raceway.core.identification import Identification
+from raceway.core.lines import Line
 from raceway.core.system import COORDINATES
 from raceway.errors import RacewayError
 from raceway.model import Model
@@ -29,6 +30,7 @@ class Result:
     ----------
     identification, simulation : None in a static scene (simulation also where the identifier needs no motion)
     error, cost, stability, environment : the tables of result.json
+    lines : spectral lines of the motion, empty where it was not recorded or its speed changes
     """
 
     model: Model
@@ -39,6 +41,7 @@ class Result:
     cost: dict[str, Any]
     stability: dict[str, Any]
     environment: dict[str, Any]
+    lines: list[Line]
     warnings: tuple[str, ...]
 
     @property
@@ -83,6 +86,20 @@ class Result:
             "orbit": {"major_m": found.orbit_major, "minor_m": found.orbit_minor},
             "residual": found.residual,
             "spread": found.spread,
+            "lines": [
+                {
+                    "name": line.name,
+                    "frequency_hz": line.frequency_hz,
+                    "forward_m": line.forward,
+                    "backward_m": line.backward,
+                    "axial_m": line.axial,
+                }
+                for line in self.lines
+            ],
+            "series": [
+                {"speed_rpm": speed * 30.0 / math.pi, "real": one.real, "imag": one.imag, "abs": abs(one)}
+                for speed, one in found.series
+            ],
         }
 
     def save(self, folder: Path) -> Path:

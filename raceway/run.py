@@ -13,13 +13,14 @@ import numpy as np
 from raceway.core.energy import energy_balance
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds
+from raceway.core.lines import Line, lines
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
 from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
-from raceway.simulate import OnProgress, Simulation, simulate, step_error
+from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds, step_error
 from raceway.statics import Equilibrium, settle
 
 
@@ -63,9 +64,13 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     error = _no_error("the scene is static: nothing is identified")
     if scene.excitation is not None:
         method = scene.identifier.method
-        if "record" in method.needs:
+        records = []
+        if "speeds" in method.needs:
+            simulations = simulate_speeds(model, progress)
+            simulation, records = simulations[-1], [one.record for one in simulations]
+        elif "record" in method.needs:
             simulation = simulate(model, equilibrium, progress)
-        records = [] if simulation is None else [simulation.record]
+            records = [simulation.record]
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
         error = _errors(model, equilibrium, simulation, identification)
@@ -80,10 +85,23 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         cost=_cost(simulation, done - wall, compile_s, built - wall, done - built),
         stability=_stability(model, simulation),
         environment=_environment(scene, registry),
+        lines=_lines(model, simulation),
         warnings=equilibrium.warnings + (simulation.warnings if simulation else ()),
     )
     registry.hook.raceway_run_finished(result=result)
     return result
+
+
+def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
+    """1x to 3x, and the ball-pass lines of orbiting balls, in the turns that identification uses."""
+    if simulation is None or model.excitation.period_s is None or "speeds" in model.scene.identifier.method.needs:
+        return []
+    frequency = model.excitation.frequency_hz
+    wanted = {f"{k}x": k * frequency for k in (1, 2, 3)}
+    if model.scene.kinematics.orbiting:
+        passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
+        wanted |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
+    return lines(simulation.record.time, simulation.record.displacement, wanted)
 
 
 def _refuse_no_number(found: Identification) -> None:
@@ -109,9 +127,13 @@ def _errors(
             error[name], how[name] = 0.0, "closed form: no motion is recorded"
     else:
         error["time_step"], how["time_step"] = step_error(model, equilibrium, simulation, found.dynamic_stiffness)
-        error["transient"] = 0.0 if not model.scene.integrator.method.inertial else found.spread
+        alone = not model.scene.integrator.method.inertial and model.plan.turns == 1
+        error["transient"] = 0.0 if alone else found.spread
         how["transient"] = "largest deviation of a single turn from all turns that are used"
         error["identification"], how["identification"] = found.window, "Fourier line against least squares"
+        for name, value in (("transient", found.spread), ("identification", found.window)):
+            if value is None and error[name] is None:
+                how[name] = f"identifier '{model.scene.identifier.kind}' gives no estimate"
     parts = [error[name] for name in ("time_step", "transient", "identification") if error[name] is not None]
     error["total"] = float(sum(parts)) if parts else None
     how["total"] = "sum of the estimates that are not null"

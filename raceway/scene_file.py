@@ -66,7 +66,23 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
         key, value = parse_change(change)
         tables = with_value(tables, key, value)
     tables.setdefault("title", Path(path).stem)
-    return scene_from_dict(tables, registry)
+    registry = registry or default_registry()
+    return scene_from_dict(with_paths(tables, Path(path).parent, registry), registry)
+
+
+def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> dict[str, Any]:
+    """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
+    result = copy.deepcopy(dict(tables))
+    for name, (kind, default) in _PLUGIN_TABLES.items():
+        table = result.get(name)
+        word = table.get("kind", default) if isinstance(table, dict) else None
+        if not isinstance(word, str) or word not in registry.names(kind) or (kind, word) in registry.shadowed():
+            continue
+        for field in attrs.fields(registry.find(kind, word).plugin):
+            value = table.get(field.name)
+            if field.metadata.get("path") and isinstance(value, str) and not Path(value).is_absolute():
+                table[field.name] = str(folder / value)
+    return result
 
 
 def parse_change(text: str) -> tuple[str, Any]:

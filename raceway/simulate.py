@@ -12,8 +12,9 @@ from raceway.core.orbit import Orbit, steady_orbit
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import ConvergenceError, StabilityError
-from raceway.model import Model
-from raceway.statics import Equilibrium
+from raceway.model import Model, build_model
+from raceway.plan import make_plan
+from raceway.statics import Equilibrium, settle
 
 OnProgress = Callable[[str, int, int], None]
 _SAMPLES_PER_TURN = 360
@@ -55,7 +56,7 @@ def simulate(
     """
     system, method, scene = model.system, model.scene.integrator.method, model.scene
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
-    start, orbit, warnings = _chosen_start(model, equilibrium, period)
+    start, orbit, warnings = _chosen_start(model, equilibrium)
     critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
     steps_per_turn = _steps_per_turn(model, period, critical) // coarsen
     dt = period / steps_per_turn
@@ -81,16 +82,22 @@ def simulate(
     return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings)
 
 
-def _chosen_start(model: Model, equilibrium: Equilibrium, period: float) -> tuple[str, Orbit | None, tuple[str, ...]]:
+def _chosen_start(model: Model, equilibrium: Equilibrium) -> tuple[str, Orbit | None, tuple[str, ...]]:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     scene, method = model.scene, model.scene.integrator.method
     start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
     if start != "orbit" or not method.inertial:
         return start, None, ()
-    if model.excitation.period_s is None:
-        return "ramp", None, ("the excitation is not periodic: started with a ramp instead of on the orbit",)
+    excitation, system = model.excitation, model.system.at_standstill()
+    if excitation.period_s is None:
+        # What changes its speed starts on the orbit of its first moment.
+        steady = getattr(excitation, "steady", None)
+        if steady is None:
+            return "ramp", None, ("the excitation does not repeat every turn: started with a ramp instead of on the orbit",)
+        excitation = steady()
+        system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
     try:
-        return start, steady_orbit(model.system.at_standstill(), period, equilibrium.displacement), ()
+        return start, steady_orbit(system, excitation.period_s, equilibrium.displacement), ()
     except ConvergenceError as why:
         return "ramp", None, (f"{why}: started with a ramp instead",)
 
@@ -135,6 +142,16 @@ def _stride(steps_per_turn: int) -> int:
     return 1
 
 
+def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[Simulation]:
+    """A simulation for each of the identifier's ``speeds_rpm``, everything else the same."""
+    found = []
+    for rpm in model.scene.identifier.method.speeds_rpm:
+        scene = attrs.evolve(model.scene, excitation=attrs.evolve(model.scene.excitation, speed_rpm=float(rpm)))
+        one = build_model(scene, make_plan(scene))
+        found.append(simulate(one, settle(one), on_progress))
+    return found
+
+
 def step_error(model: Model, equilibrium: Equilibrium, simulation: Simulation, value: complex) -> tuple[float | None, str]:
     """Relative error of Z by the time step, from a run with half as many steps, and how it was found."""
     method, schedule = model.scene.integrator.method, simulation.whole.schedule
@@ -145,6 +162,8 @@ def step_error(model: Model, equilibrium: Equilibrium, simulation: Simulation, v
     if not method.implicit and simulation.critical_time_step is not None:
         if 2.0 * schedule.dt >= simulation.critical_time_step:
             return None, "twice the step would exceed the stable limit"
+    if "speeds" in model.scene.identifier.method.needs:
+        return None, "several speeds are run: no second run with half as many steps"
     try:
         coarse = simulate(model, equilibrium, coarsen=2)
     except ConvergenceError as why:

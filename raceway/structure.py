@@ -51,8 +51,13 @@ def _kind(value: Any) -> str:
     return names.get(type(value), type(value).__name__)
 
 
-def _pair(value: Any, _type: Any = None) -> tuple[float, ...]:
-    length = len(get_args(_type))
+def _numbers(value: Any, _type: Any = None) -> tuple[float, ...]:
+    kinds = get_args(_type)
+    if len(kinds) == 2 and kinds[1] is Ellipsis:
+        if not isinstance(value, list | tuple):
+            raise ValueError(f"must be a list of numbers, not {_kind(value)}")
+        return tuple(_number(v) for v in value)
+    length = len(kinds)
     if not isinstance(value, list | tuple) or len(value) != length:
         raise ValueError(f"must be a list of {length} numbers")
     return tuple(_number(v) for v in value)
@@ -75,7 +80,8 @@ _HOOKS: dict[Any, Any] = {
     int: _integer,
     str: _word,
     bool: _switch,
-    tuple[float, float]: _pair,
+    tuple[float, float]: _numbers,
+    tuple[float, ...]: _numbers,
     float | str: _number_or_word,
     str | float: _number_or_word,
     int | str: _integer_or_word,

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from raceway.hookspecs import hookimpl
 from raceway.plugins.excitations.bidirectional import Bidirectional
+from raceway.plugins.excitations.measured import Measured
+from raceway.plugins.excitations.run_up import RunUp
 from raceway.plugins.excitations.unidirectional import Unidirectional
 from raceway.plugins.identifiers.fft_1x import Fft1x
+from raceway.plugins.identifiers.impedance_fit import ImpedanceFit
+from raceway.plugins.identifiers.order_tracking import OrderTracking
 from raceway.plugins.identifiers.sine_fit import SineFit
 from raceway.plugins.identifiers.tangent import Tangent
 from raceway.plugins.reports.pictures import Pictures
@@ -13,12 +17,12 @@ from raceway.plugins.reports.pictures import Pictures
 
 @hookimpl
 def raceway_excitations() -> list[type]:
-    return [Unidirectional, Bidirectional]
+    return [Unidirectional, Bidirectional, RunUp, Measured]
 
 
 @hookimpl
 def raceway_identifiers() -> list[type]:
-    return [Fft1x, SineFit, Tangent]
+    return [Fft1x, SineFit, Tangent, ImpedanceFit, OrderTracking]
 
 
 @hookimpl

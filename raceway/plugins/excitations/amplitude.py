@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, radians
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.options import at_least, between, finite, one_of, option, optional, positive
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @attrs.frozen(kw_only=True)
@@ -57,6 +61,10 @@ class Amplitude:
     @property
     def period_s(self) -> float:
         return 60.0 / self.speed_rpm
+
+    def phase(self, time: np.ndarray) -> np.ndarray:
+        """Angle of the force (n,) [rad] at times (n,)."""
+        return self.whirl_speed * time - radians(self.phase_lag_deg)
 
     @property
     def amplitude_n(self) -> float:

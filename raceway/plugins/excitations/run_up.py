@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.options import at_least, between, finite, one_of, option, positive
+from raceway.plugins.excitations.bidirectional import Bidirectional
 
 if TYPE_CHECKING:
     import numpy as np
@@ -47,6 +48,16 @@ class RunUp:
         """Angle of the force (n,) [rad] at times (n,)."""
         first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
         return first * time + 0.5 * (last - first) / self.duration_s * time**2 - radians(self.phase_lag_deg)
+
+    def steady(self) -> Bidirectional:
+        """The same rotor at its first speed."""
+        return Bidirectional(
+            speed_rpm=self.first_speed_rpm,
+            unbalance=self.unbalance,
+            load_share=self.load_share,
+            phase_lag_deg=self.phase_lag_deg,
+            whirl=self.whirl,
+        )
 
     def parameters(self) -> np.ndarray:
         import numpy as np

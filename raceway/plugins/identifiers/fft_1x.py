@@ -16,7 +16,7 @@ class Fft1x:
     """Detrended 1x line of force and displacement over all whole turns; its spread over single turns is reported."""
 
     name: ClassVar[str] = "fft_1x"
-    needs: ClassVar[frozenset[str]] = frozenset({"record"})
+    needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
     definition: ClassVar[str] = "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
 
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:

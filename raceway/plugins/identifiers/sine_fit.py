@@ -18,7 +18,7 @@ class SineFit:
     """Mean, linear drift and the first harmonics fitted together; Z from the first."""
 
     name: ClassVar[str] = "sine_fit"
-    needs: ClassVar[frozenset[str]] = frozenset({"record"})
+    needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
     definition: ClassVar[str] = "secant: 1x force over 1x displacement in the direction of the force, least squares with drift and harmonics"
 
     harmonics: int = option(5, help="multiples of the excitation's frequency in the fit", rule=between(1, 50))
