@@ -65,7 +65,7 @@ def new_figure(width: float, height: float) -> Figure:
         from matplotlib.figure import Figure
     except ImportError:
         raise RacewayError(
-            'pictures need matplotlib, which is not installed: pip install "raceway[all]", or leave out --pictures'
+            'pictures need matplotlib, which is not installed: pip install "raceway[pictures]", or leave out --pictures'
         ) from None
     return Figure(figsize=(width, height), layout="constrained")
 

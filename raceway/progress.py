@@ -1,0 +1,61 @@
+"""A progress bar on standard error, on a terminal, for what takes longer than a second.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+_PATIENCE_S = 1.0
+
+
+class ProgressBar:
+    """Shows what runs and how far it is; silent where nobody looks.
+
+    Called as ``bar(what, done, total)``; ``total`` 0 means that nobody knows.
+
+    Parameters
+    ----------
+    console : where to draw; standard error when None
+    patience : seconds before anything is drawn
+    """
+
+    def __init__(self, what: str, console: Console | None = None, patience: float = _PATIENCE_S) -> None:
+        from rich.console import Console
+
+        self.console = console or Console(stderr=True)
+        self._what = what
+        self._bar: Any = None
+        self._over = threading.Event()
+        self._lock = threading.Lock()
+        self._timer = threading.Timer(patience, self._draw)
+        self._timer.daemon = True
+
+    def __enter__(self) -> Self:
+        if self.console.is_terminal:
+            from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+            columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+            self._bar = Progress(*columns, console=self.console, transient=True)
+            self._task = self._bar.add_task(self._what, total=None)
+            self._timer.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is None:
+            return
+        self._timer.cancel()
+        with self._lock:
+            self._over.set()
+            self._bar.stop()
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        if self._bar is not None:
+            self._bar.update(self._task, description=what or self._what, completed=done, total=total or None)
+
+    def _draw(self) -> None:
+        with self._lock:
+            if not self._over.is_set():
+                self._bar.start()

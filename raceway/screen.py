@@ -1,0 +1,312 @@
+"""What a person sees: tables made from the same dictionaries that ``--json`` prints.  Prints nothing by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from raceway.registry import Entry
+
+_LEFT_OUT_SHOWN = 3
+
+
+Row = tuple[str, str, str]
+
+
+def sections(rows: Iterable[Row]) -> RenderableType:
+    """Quantity, value, remark; a row without a value is a heading with its remark."""
+    parts: list[RenderableType] = []
+    for quantity, value, remark in rows:
+        if not value:
+            parts.append(Text.assemble((quantity, "bold"), (f"  {remark}" if remark else "", "dim")))
+            table = Table.grid(padding=(0, 2))
+            table.add_column(width=24)
+            table.add_column(justify="right", width=16, no_wrap=True)
+            table.add_column(style="dim", overflow="fold")
+            parts.append(Padding(table, (0, 0, 0, 2)))
+        else:
+            table.add_row(escape(quantity), escape(value), escape(remark))
+    return Group(*parts)
+
+
+def number(value: float | None, unit: str = "", digits: int = 5) -> str:
+    """Significant digits and unit; a dash for what is not there."""
+    if value is None:
+        return "-"
+    text = f"{value + 0.0:.{digits}g}"
+    return f"{text} {unit}" if unit else text
+
+
+def tilt_words(tilt: float | str) -> str:
+    """The tilt boundary, which belongs to every stiffness."""
+    return f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
+
+
+def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableType:
+    """One run.
+
+    Parameters
+    ----------
+    result : content of result.json;  files : what was written
+    """
+    rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_cost(result["cost"])]
+    rows += _stability(result["stability"])
+    parts: list[RenderableType] = [
+        Text(result["title"], style="bold"),
+        Text(_bearing(result["scene"]), style="dim"),
+        sections(rows),
+    ]
+    left_out = result["plan"]["left_out"]
+    shown = "; ".join(f"{p['part']} ({p['why']})" for p in left_out[:_LEFT_OUT_SHOWN])
+    more = len(left_out) - _LEFT_OUT_SHOWN
+    parts.append(Text(f"left out: {shown}{f'; and {more} more, see raceway plan' if more > 0 else ''}", style="dim"))
+    parts += [Text(f"warning: {text}", style="yellow") for text in result["warnings"]]
+    parts += written(files)
+    return Group(*parts)
+
+
+def written(files: Sequence[str]) -> list[RenderableType]:
+    """The files' names, each unbroken on its line, so that it can be copied."""
+    return [Text(f"written: {name}", no_wrap=True) for name in files]
+
+
+def _bearing(scene: Mapping[str, Any]) -> str:
+    b, load = scene["bearing"], scene["load"]
+    angle = f"{b['contact_angle_deg']:g} deg" if b.get("contact_angle_deg") else "from the clearance"
+    balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
+    words = [
+        f"{b.get('preset', 'own geometry')}: {balls}, contact angle {angle}",
+        f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}",
+        f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",
+    ]
+    return "\n".join(words)
+
+
+def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
+    found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
+    moved, k = found["displacement"], found["stiffness"]
+    balls = list(enumerate(found["balls"]))
+    rows = [
+        ("Equilibrium under the constant loads", "", ""),
+        ("displacement x", number(1e6 * moved["x"], "µm"), "axial, seats the bearing"),
+        ("displacement y, z", f"{_small(moved['y'])}, {_small(moved['z'])} µm", "radial"),
+    ]
+    if tilt != "locked":
+        tilts = ", ".join(_small(moved[name]) for name in ("tilt_y", "tilt_z"))
+        rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
+    for word, pick in (("most", max), ("least", min)):
+        index, ball = pick(balls, key=lambda item: item[1]["load_inner_n"])
+        angle = ball["contact_angle_inner_deg"]
+        at = f"ball {index} at {ball['azimuth_deg']:.4g} deg"
+        pressure = f"{1e-6 * ball['peak_pressure_inner_pa']:.0f} MPa, {angle:.2f} deg" if angle is not None else "open"
+        rows.append((f"{word} loaded ball", number(ball["load_inner_n"], "N"), f"{at}; inner race {pressure}"))
+    rows.append(("tangent kxx", number(1e-6 * k[0][0], "N/µm"), "axial, all other motions held"))
+    rows.append(("tangent kyy", number(1e-6 * k[1][1], "N/µm"), "radial, tilt and all other motions held"))
+    if tilt != "locked":
+        rows.append((f"kyy, {tilt_words(tilt)}", number(1e-6 * _condensed(k, tilt), "N/µm"), "tilts follow, x and z held"))
+    return rows
+
+
+def _small(metres: float) -> str:
+    """Micro-units; rounding noise of a symmetric state is shown as 0."""
+    return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
+
+
+def _condensed(k: Sequence[Sequence[float]], tilt: float | str) -> float:
+    """Radial tangent with the tilts following: kyy - k_yt (k_tt + k_shaft)^-1 k_ty."""
+    shaft = tilt if isinstance(tilt, float) else 0.0
+    a, b, c, d = k[3][3] + shaft, k[3][4], k[4][3], k[4][4] + shaft
+    determinant = a * d - b * c
+    along = k[1][3] * (d * k[3][1] - b * k[4][1]) + k[1][4] * (a * k[4][1] - c * k[3][1])
+    return k[1][1] - along / determinant if determinant else k[1][1]
+
+
+def _identification(result: Mapping[str, Any]) -> list[Row]:
+    found = result["identification"]
+    if found is None:
+        return [("Dynamic stiffness", "", ""), ("none", "-", "static scene: add a table [excitation] to identify one")]
+    z, orbit = found["dynamic_stiffness"], found["orbit"]
+    excited = result["scene"]["excitation"]["kind"]
+    mass = found["mass_used_kg"]
+    return [
+        (f"Dynamic stiffness at {found['speed_rpm']:g} r/min, {tilt_words(found['tilt'])}", "", ""),
+        (f"  {found['definition']}", "", ""),
+        ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
+        ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
+        ("Z imaginary", number(1e-6 * z["imag"], "N/µm"), ""),
+        ("|Z|", number(1e-6 * z["abs"], "N/µm"), ""),
+        ("equivalent stiffness K", number(1e-6 * found["equivalent_stiffness"], "N/µm"), f"Re Z + m w^2, m = {mass:.4g} kg"),
+        ("equivalent damping C", number(found["equivalent_damping"], "N s/m"), "Im Z / w"),
+        ("phase lag", number(found["phase_lag_deg"], "deg", 3), "of the displacement behind the force"),
+        ("orbit, semi-axes", f"{1e6 * orbit['major_m']:.4g} x {1e6 * orbit['minor_m']:.4g} µm", "of the 1x line"),
+    ]
+
+
+def _error(error: Mapping[str, Any]) -> list[Row]:
+    how = error["how"]
+    rows = [("Relative error of Z", "", "")]
+    for name in ("total", "time_step", "transient", "identification", "mesh", "contact"):
+        value = error.get(name)
+        rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", how.get(name, "")))
+    return rows
+
+
+def _cost(cost: Mapping[str, Any]) -> list[Row]:
+    memory = cost["peak_memory_bytes"] / 2**20
+    kept = (
+        "once: kept for the next run (raceway cache)" if cost["compile_s"] else "kernels were in the cache (raceway cache)"
+    )
+    return [
+        ("Cost", "", ""),
+        (
+            "wall time",
+            number(cost["wall_s"], "s", 3),
+            f"{cost['steps']} steps, {memory:.0f} MiB, {_threads(cost['threads'])}",
+        ),
+        ("compiling, apart", number(cost["compile_s"], "s", 3), kept),
+    ]
+
+
+def _threads(count: int) -> str:
+    return f"{count} thread{'' if count == 1 else 's'}"
+
+
+def _stability(found: Mapping[str, Any]) -> list[Row]:
+    limit, drift = found["critical_time_step_s"], found["energy_drift"]
+    words = [] if limit is None else [f"explicit limit {limit:.3g} s"]
+    words += [] if drift is None else [f"energy drift {drift:.1e}"]
+    return [("Stability", "", ""), ("status", found["status"], ", ".join(words) or "no motion was integrated")]
+
+
+def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
+    """What would be built, what not, and the predictions."""
+    step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
+    rows = [
+        ("Size and cost, predicted", "", ""),
+        ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
+        ("time step", step, f"{plan['predicted_steps']} steps"),
+        ("wall time", number(plan["predicted_wall_s"], "s", 2), "with compiled kernels in the cache"),
+    ]
+    parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]), sections(rows)]
+    return Group(Text(title, style="bold"), *parts)
+
+
+def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(width=32)
+    table.add_column(style="dim", overflow="fold")
+    for item in items:
+        table.add_row(escape(item["part"]), escape(item["why"]))
+    return Group(Text(heading, style="bold"), Padding(table, (0, 0, 0, 2)))
+
+
+def rows_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> RenderableType:
+    """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned."""
+    table = Table(title=title or None, title_justify="left", header_style="bold")
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    for key in keys:
+        numeric = any(isinstance(row.get(key), float | int) for row in rows)
+        table.add_column(key.replace("_", " "), justify="right" if numeric else "left", overflow="fold")
+    for row in rows:
+        table.add_row(*(_cell(row.get(key)) for key in keys))
+    return table
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, bool):
+        return "[green]yes[/]" if value else "[red]no[/]"
+    return escape(number(value) if isinstance(value, float) else "-" if value is None else str(value))
+
+
+def verify_screen(verification: Mapping[str, Any], passed: bool) -> RenderableType:
+    """Published cases, what was computed, and whether it agrees."""
+    table = Table(header_style="bold")
+    for name in ("case", "quantity"):
+        table.add_column(name, overflow="fold")
+    for name in ("reference", "computed", "error", "tolerance"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("")
+    before = None
+    for row in verification["rows"]:
+        numbers = [
+            number(row["reference"]),
+            number(row["computed"]),
+            number(row["error"], "", 2),
+            number(row["tolerance"], "", 2),
+        ]
+        verdict = "[green]ok[/]" if row["ok"] else f"[red]off[/] {escape(row.get('note') or '')}"
+        table.add_row(escape(row["case"]) if row["case"] != before else "", escape(row["quantity"]), *numbers, verdict)
+        before = row["case"]
+    kept = sum(bool(row["ok"]) for row in verification["rows"])
+    style = "green" if passed else "red"
+    return Group(table, Text(f"{kept} of {len(verification['rows'])} numbers within their tolerance", style=style))
+
+
+def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:
+    """``[{kind, name, distribution, version, options[{name, unit, default, help}]}]``."""
+    from raceway.schema import key_schema, keys
+
+    rows = []
+    for entry in entries:
+        options = []
+        for field in keys(entry.plugin):
+            facts = key_schema(field)
+            meta = field.metadata
+            options.append(
+                {
+                    "name": field.name,
+                    "unit": meta.get("unit", ""),
+                    "default": facts.get("default"),
+                    "rule": meta.get("rule", ""),
+                    "help": meta.get("help", ""),
+                }
+            )
+        head = {"kind": entry.kind, "name": entry.name, "distribution": entry.distribution, "version": entry.version}
+        rows.append({**head, "options": options})
+    return rows
+
+
+def plugins_screen(rows: Sequence[Mapping[str, Any]]) -> RenderableType:
+    parts: list[RenderableType] = []
+    for kind in dict.fromkeys(row["kind"] for row in rows):
+        parts.append(Text(kind.replace("_", " ") + "s", style="bold"))
+        for row in (r for r in rows if r["kind"] == kind):
+            table = Table.grid(padding=(0, 2))
+            table.add_column(min_width=20, no_wrap=True)
+            table.add_column(min_width=12)
+            table.add_column(style="dim", overflow="fold")
+            for option in row["options"]:
+                default = "" if option["default"] is None else str(option["default"])
+                unit = f" [{option['unit']}]" if option["unit"] else ""
+                table.add_row(escape(option["name"]), escape(default), escape(option["help"] + unit))
+            parts.append(Text.assemble("  ", (row["name"], "cyan"), f"  {row['distribution']} {row['version']}"))
+            if row["options"]:
+                parts.append(Padding(table, (0, 0, 0, 6)))
+    return Group(*parts)
+
+
+def cache_screen(found: Mapping[str, Any]) -> RenderableType:
+    rows = [("Compiled kernels", "", f"in {found['root']}")]
+    for folder in found["folders"]:
+        size = f"{folder['bytes'] / 2**20:.1f} MiB"
+        rows.append((folder["name"], size, f"{folder['kernels']} kernels{', current' if folder['current'] else ''}"))
+    if not any(folder["current"] for folder in found["folders"]):
+        rows.append((found["current"], "empty", "current: the next run compiles, which takes some ten seconds"))
+    return sections(rows)
+
+
+def compare_screen(
+    title: str, rows: Sequence[Mapping[str, Any]], words: Sequence[str], files: Sequence[str]
+) -> RenderableType:
+    """A line for each point, and what causes what in words."""
+    parts: list[RenderableType] = [Text(title, style="bold"), rows_table(rows)]
+    parts += [Text(text) for text in words]
+    parts += written(files)
+    return Group(*parts)
