@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.bodies.ring import COLUMNS, DAMPING, REST_AXIAL, SCALARS, TILT_ARM
+from raceway.core.bodies.ring import COLUMNS, DAMPING, OFFSET_INNER, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.contact import add_damping
 from raceway.core.excitations.harmonic import no_force
 from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
 from raceway.core.system import System
 
-#: Entry of ``scalars`` that only this kernel reads: the gap at x = 0 [m].
-CLEARANCE = 6
+#: Entry of ``scalars`` in which this kernel finds the gap at x = 0 [m]; there is no groove whose offset it could be.
+CLEARANCE = OFFSET_INNER
 #: Where the contact that is not used stays [m].
 _OPEN = 1.0
 
@@ -85,6 +85,7 @@ def impact_system(
     first = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
     return System(
         kernel=impact,
+        base_kernel=impact,
         law=law,
         law_params=np.ascontiguousarray(np.broadcast_to(params[:2], (2, params.shape[1]))),
         law_state=np.zeros((2, state_size)),
