@@ -36,6 +36,11 @@ class Penalty:
         None, unit="N", help="ball load at which the approach equals Hertz's", rule=optional(positive())
     )
 
+    @classmethod
+    def examples(cls) -> list[Penalty]:
+        """Instances for the conformance suite."""
+        return [cls(), cls(stiffness=1e15), cls(calibrate_at=150.0)]
+
     def __attrs_post_init__(self) -> None:
         if self.stiffness is not None and self.calibrate_at is not None:
             raise ValueError("`stiffness` and `calibrate_at` exclude each other: give one of them")

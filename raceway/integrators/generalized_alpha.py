@@ -27,6 +27,11 @@ class GeneralizedAlpha:
     rho_infinity: float = option(0.9, help="spectral radius at infinite frequency: 1 none, 0 all dissipated", rule=between(0.0, 1.0))
     tolerance: float = option(1e-9, help="residual of a step's iteration over the largest force", rule=inside(0.0, 1e-3))
 
+    @classmethod
+    def examples(cls) -> list[GeneralizedAlpha]:
+        """Instances for the conformance suite."""
+        return [cls(), cls(rho_infinity=0.5)]
+
     def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
         import numpy as np
 

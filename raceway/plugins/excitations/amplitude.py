@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi, radians
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
@@ -42,12 +42,36 @@ class Amplitude:
     def __attrs_post_init__(self) -> None:
         if self.amplitude == "unbalance" and self.unbalance is None:
             raise ValueError("`amplitude` = 'unbalance' needs the key `unbalance` (kg m)")
-        if self.amplitude == "constant" and self.force is None:
-            if self.unbalance is None or self.reference_speed_rpm is None:
-                raise ValueError(
-                    "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to "
-                    "compute it from"
-                )
+        computable = self.unbalance is not None and self.reference_speed_rpm is not None
+        if self.amplitude == "constant" and self.force is None and not computable:
+            raise ValueError(
+                "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to compute it from"
+            )
+
+    @classmethod
+    def examples(cls, **options: Any) -> list[Any]:
+        """Instances for the conformance suite, in every way to state the amplitude."""
+        return [
+            cls(speed_rpm=12000.0, unbalance=3.2e-4, **options),
+            cls(speed_rpm=9000.0, unbalance=6e-4, load_share=0.5, phase_lag_deg=40.0, **options),
+            cls(speed_rpm=15000.0, amplitude="constant", force=300.0, phase_lag_deg=-75.0, **options),
+            cls(speed_rpm=15000.0, amplitude="constant", unbalance=6e-4, reference_speed_rpm=10980.0, **options),
+        ]
+
+    def unused_options(self) -> dict[str, str]:
+        """Options that are given and change nothing, each with the reason."""
+        unused = {}
+        if self.amplitude == "unbalance":
+            if self.force is not None:
+                unused["force"] = "amplitude = 'unbalance' computes the force from unbalance and speed"
+            if self.reference_speed_rpm is not None:
+                unused["reference_speed_rpm"] = "amplitude = 'unbalance' takes the force at speed_rpm"
+        elif self.force is not None:
+            why = "the force is given"
+            unused |= {name: why for name in ("unbalance", "reference_speed_rpm") if getattr(self, name) is not None}
+            if self.load_share != 1.0:
+                unused["load_share"] = "the force is given, and it is the force on this bearing"
+        return unused
 
     @property
     def whirl_speed(self) -> float:

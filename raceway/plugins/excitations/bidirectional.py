@@ -22,6 +22,11 @@ class Bidirectional(Amplitude):
 
     whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
 
+    @classmethod
+    def examples(cls, **options: Any) -> list[Any]:
+        first, second = (super(Bidirectional, cls).examples(whirl=whirl, **options) for whirl in ("forward", "backward"))
+        return first + second
+
     @property
     def sense(self) -> int:
         return 1 if self.whirl == "forward" else -1

@@ -36,6 +36,14 @@ class Measured:
     def __attrs_post_init__(self) -> None:
         _read(self.file)
 
+    @classmethod
+    def examples(cls) -> list[Measured]:
+        """Instances for the conformance suite: one turn of a force with a third harmonic."""
+        from raceway import data
+
+        file = str(Path(data.__path__[0]) / "forces" / "turning.csv")
+        return [cls(file=file, speed_rpm=12000.0, repeats=True), cls(file=file, speed_rpm=12000.0)]
+
     @property
     def frequency_hz(self) -> float:
         return self.speed_rpm / 60.0

@@ -30,6 +30,15 @@ class RunUp:
 
     period_s: ClassVar[None] = None
 
+    @classmethod
+    def examples(cls) -> list[RunUp]:
+        """Instances for the conformance suite."""
+        common = {"duration_s": 0.5, "unbalance": 3.2e-4, "phase_lag_deg": 20.0}
+        return [
+            cls(first_speed_rpm=6000.0, speed_rpm=12000.0, **common),
+            cls(first_speed_rpm=12000.0, speed_rpm=6000.0, whirl="backward", **common),
+        ]
+
     @property
     def frequency_hz(self) -> float:
         """Frequency at the faster end, which sets the time step."""

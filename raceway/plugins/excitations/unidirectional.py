@@ -22,6 +22,11 @@ class Unidirectional(Amplitude):
 
     direction_deg: float = option(0.0, unit="deg", help="direction of the force, from +y towards +z", rule=finite())
 
+    @classmethod
+    def examples(cls, **options: Any) -> list[Any]:
+        first, second = (super(Unidirectional, cls).examples(direction_deg=direction_deg, **options) for direction_deg in (0.0, 130.0))
+        return first + second
+
     @property
     def sense(self) -> int:
         return 0

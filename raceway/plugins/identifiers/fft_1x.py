@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
+from raceway.plugins.identifiers.whole_turns import whole_turns
+
 if TYPE_CHECKING:
     from raceway.core.identification import Identification
     from raceway.core.record import Record
@@ -24,7 +26,7 @@ class Fft1x:
 
         from raceway.core.identification import fit_lines, fourier_line, identification, stiffness
 
-        record, frequency = records[0], model.excitation.frequency_hz
+        record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
         force = fourier_line(record.time, record.force, frequency)
         line = fourier_line(record.time, record.displacement, frequency)
         whole = stiffness(force, line)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.options import option
+from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
     from raceway.core.identification import Identification
@@ -32,11 +33,17 @@ class ImpedanceFit:
 
     speeds_rpm: tuple[float, ...] = option(unit="r/min", help="speeds that are run, at least two", rule=_speeds)
 
+    @classmethod
+    def examples(cls) -> list[ImpedanceFit]:
+        """Instances for the conformance suite."""
+        return [cls(speeds_rpm=(7200.0, 9600.0, 12000.0, 14400.0, 16800.0))]
+
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
         from raceway.core.identification import fourier_line, identification, stiffness
 
+        records = [whole_turns(record) for record in records]
         w = np.array([2.0 * pi / (r.schedule.dt * r.schedule.steps_per_turn) for r in records])
         lines = [
             (fourier_line(r.time, r.force, s / (2.0 * pi)), fourier_line(r.time, r.displacement, s / (2.0 * pi)))

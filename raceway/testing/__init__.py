@@ -1,0 +1,97 @@
+"""Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
+
+suite          what all suites share: duties, rows, expected failures, how they become pytest methods
+contact_law, excitation, integrator, identifier, mesher, format, report   one suite a file
+systems        small mechanical systems with known answers;  signals: records with a known stiffness
+compiled       the few compiled loops that the suites need
+
+Subclass a suite in a test file, and pytest collects its checks::
+
+    from raceway.testing import ContactLawSuite
+
+    class TestMyLaw(ContactLawSuite):
+        plugin = MyLaw()
+
+or run all checks at once with ``check(entry)``, as ``raceway check-plugin [KIND:]NAME`` does.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from raceway.registry import Entry, Registry
+    from raceway.testing.suite import Conformity
+
+#: kind -> (module, class) of its suite
+SUITES: dict[str, tuple[str, str]] = {
+    "contact_law": ("raceway.testing.contact_law", "ContactLawSuite"),
+    "excitation": ("raceway.testing.excitation", "ExcitationSuite"),
+    "integrator": ("raceway.testing.integrator", "IntegratorSuite"),
+    "identifier": ("raceway.testing.identifier", "IdentifierSuite"),
+    "mesher": ("raceway.testing.mesher", "MesherSuite"),
+    "format": ("raceway.testing.format", "FormatSuite"),
+    "report": ("raceway.testing.report", "ReportSuite"),
+}
+_PUBLIC = {
+    **{name: module for module, name in SUITES.values()},
+    "Conformity": "raceway.testing.suite",
+    "Row": "raceway.testing.suite",
+    "Suite": "raceway.testing.suite",
+    "duty": "raceway.testing.suite",
+    "require": "raceway.testing.suite",
+}
+__all__ = [
+    "SUITES",
+    "Conformity",
+    "ContactLawSuite",
+    "ExcitationSuite",
+    "FormatSuite",
+    "IdentifierSuite",
+    "IntegratorSuite",
+    "MesherSuite",
+    "ReportSuite",
+    "Row",
+    "Suite",
+    "check",
+    "check_named",
+    "duty",
+    "require",
+    "suite_of",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PUBLIC:
+        return getattr(import_module(_PUBLIC[name]), name)
+    raise AttributeError(f"module 'raceway.testing' has no attribute '{name}'")
+
+
+def suite_of(kind: str) -> Any:
+    """The suite class of a kind of plug-in."""
+    module, name = SUITES[kind]
+    return getattr(import_module(module), name)
+
+
+def check(entry: Entry) -> Conformity:
+    """Run every check of the kind's suite on a registered plug-in.
+
+    Parameters
+    ----------
+    entry : raceway.registry.Entry, from ``Registry.find`` or ``Registry.find_any``
+    """
+    return suite_of(entry.kind).conformity(entry.plugin, entry.kind, entry.name)
+
+
+def check_named(text: str, registry: Registry | None = None) -> Conformity:
+    """``check`` for ``[KIND:]NAME``.
+
+    Raises
+    ------
+    PluginError
+        A name that is unknown, or that means more than one plug-in; the message lists the choices.
+    """
+    from raceway.registry import default_registry
+
+    return check((registry or default_registry()).find_any(text))

@@ -1,0 +1,75 @@
+"""The conformance suite of file formats."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from raceway.errors import RacewayError
+from raceway.testing.suite import Suite, check_class, duty, require
+
+
+def same(a: Any, b: Any) -> bool:
+    """Whether two things read from files are equal, arrays inside them too."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return set(a) == set(b) and all(same(a[k], b[k]) for k in a)
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
+        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b, strict=True))
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        return np.array_equal(np.asarray(a), np.asarray(b))
+    return bool(a == b)
+
+
+class FormatSuite(Suite):
+    """Duties of ``raceway.contracts.Format``.
+
+    Attributes
+    ----------
+    what : something that the format can write; a plug-in checked by name offers it as ``example_content()``
+    """
+
+    kind = "format"
+    what: Any = None
+
+    @duty("attributes: suffixes with the dot, options")
+    def test_declaration(self, form: Any) -> None:
+        check_class("format", form)
+        suffixes = form.suffixes
+        require(isinstance(suffixes, tuple) and suffixes, "`suffixes` must be a tuple that is not empty")
+        bad = [s for s in suffixes if not re.fullmatch(r"(\.[a-z0-9]+)+", s)]
+        require(not bad, f"suffixes {bad} must be lower case and begin with a dot")
+
+    @duty("what is written is read back the same, with every suffix")
+    def test_round_trip(self, form: Any) -> None:
+        what = self._content(form)
+        with tempfile.TemporaryDirectory() as folder:
+            for suffix in form.suffixes:
+                path = Path(folder) / f"content{suffix}"
+                form.write(path, what)
+                require(path.is_file() and path.stat().st_size > 0, f"write() leaves no file `content{suffix}`")
+                require(same(form.read(path), what), f"`content{suffix}` is read back different from what was written")
+
+    @duty("a file that is missing or malformed is refused with a RacewayError that names it")
+    def test_bad_files(self, form: Any) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            for suffix in form.suffixes:
+                missing, empty, noise = (Path(folder) / f"{word}{suffix}" for word in ("missing", "empty", "noise"))
+                empty.write_bytes(b"")
+                noise.write_bytes(bytes(range(255, -1, -1)) * 8)
+                for path in (missing, empty, noise):
+                    try:
+                        form.read(path)
+                    except RacewayError as error:
+                        require(path.name in str(error), f"the error about `{path.name}` does not name it: {error}")
+                    else:
+                        require(False, f"`{path.name}` is read without an error")
+
+    def _content(self, form: Any) -> Any:
+        if self.what is not None:
+            return self.what
+        require(hasattr(form, "example_content"), "give the class `example_content()`, or the suite `what`, to write")
+        return form.example_content()

@@ -1,0 +1,246 @@
+"""The conformance suite of integrators."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.record import Motion, Record, Schedule
+from raceway.core.system import System
+from raceway.errors import ConvergenceError, StabilityError
+from raceway.testing.suite import Suite, check_class, duty, require
+from raceway.testing.systems import (
+    NATURAL,
+    PERIOD,
+    PRELOAD,
+    SPEED,
+    contact_energy,
+    contact_system,
+    exact,
+    linear_system,
+    motion,
+)
+
+_Y = np.array([0.0, 1.0, -0.4, 0.0, 0.0])
+_X = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+
+
+class Stop(Exception):
+    """What a user's progress function may raise."""
+
+
+def _start(system: System) -> Motion:
+    """Away from rest: linear systems along y and z, a contact along x around its static approach."""
+    if system.free[0] > 0.0:
+        still = (PRELOAD / system.law_params[0, 0]) ** (2.0 / 3.0)
+        return motion(system, 1.3 * still * _X, np.zeros(5))
+    return motion(system, 1e-6 * _Y, 0.2e-6 * NATURAL * _Y[::-1].copy() * system.free)
+
+
+def _static_start(system: System) -> Motion:
+    """For a series of equilibria: the equilibrium under the force at time zero, without velocity."""
+    q, ball, _ = attrs.evolve(system, load=system.load + system.outer_force(0.0)).settle(np.zeros(5))
+    return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
+
+
+class IntegratorSuite(Suite):
+    """Duties of ``raceway.contracts.Integrator``."""
+
+    kind = "integrator"
+
+    @duty("attributes: order, implicit, inertial, dissipative, options")
+    def test_declaration(self, method: Any) -> None:
+        check_class("integrator", method)
+        require(type(method.order) is int and method.order >= 1, f"`order` = {method.order!r} must be 1 or more")
+        for word in ("implicit", "inertial", "dissipative"):
+            require(type(getattr(method, word)) is bool, f"`{word}` must be True or False")
+
+    @duty("a Record of every stride-th step with time, force, motion and counts; start and system untouched")
+    def test_record(self, method: Any) -> None:
+        system = linear_system()
+        start = _start(system) if method.inertial else _static_start(system)
+        schedule = Schedule(dt=2.0 * np.pi / SPEED / 60, steps_per_turn=60, turns=3, stride=3)
+        before = [a.copy() for a in (start.q, start.v, start.a, system.load, system.law_state, system.mass)]
+        record = method.advance(system, start, schedule)
+        require(isinstance(record, Record), f"advance() returns {type(record).__name__}, not a Record")
+        times = schedule.dt * 3.0 * np.arange(1, 61)
+        require(record.time.shape == (60,), f"{len(record.time)} samples of 180 steps with stride 3; there must be 60")
+        require(np.allclose(record.time, times, rtol=1e-12), "`time` is not stride * dt * (1, 2, ...)")
+        force = np.array([system.outer_force(t) for t in times])
+        require(np.allclose(record.force, force, rtol=0, atol=1e-9 * np.abs(force).max()), "`force` is not the excitation's")
+        for word in ("displacement", "velocity"):
+            values = getattr(record, word)
+            require(values.shape == (60, 5) and np.isfinite(values).all(), f"`{word}` must be finite, (60, 5)")
+            require(not values[:, [0, 3, 4]].any(), f"`{word}` moves coordinates that are held")
+        require(record.contact_force.shape == (60, 2), "`contact_force` must be (samples, contacts)")
+        require(np.allclose(record.final.q, record.displacement[-1]), "`final` is not the last sample")
+        missing = {"steps", "evaluations", "max_penetration_m"} - set(record.counts)
+        require(not missing, f"`counts` has no {', '.join(sorted(missing))}")
+        require(record.counts["steps"] == 180, f"counts['steps'] = {record.counts['steps']}, not 180")
+        after = (start.q, start.v, start.a, system.load, system.law_state, system.mass)
+        require(all(np.array_equal(a, b) for a, b in zip(before, after, strict=True)), "start or system were changed")
+
+    @duty("converges with its `order` on a damped, forced, gyroscopic linear system")
+    def test_order_linear(self, method: Any) -> str:
+        return self._order(method, linear_system(), 2.0 * PERIOD, (48, 96, 192))
+
+    @duty("converges with its `order` on a vibrating contact that stays closed")
+    def test_order_contact(self, method: Any) -> str:
+        return self._order(method, contact_system(), 4.0 * PERIOD, (96, 192, 384))
+
+    @duty("each sample is an equilibrium, where the method has no inertia")
+    def test_equilibria(self, method: Any) -> str:
+        if method.inertial:
+            return "inertial"
+        system = linear_system()
+        record = method.advance(system, _static_start(system), Schedule(2.0 * np.pi / SPEED / 24, 24, 2))
+        rest = record.displacement @ system.stiffness - record.force
+        # The method's own tolerance is on the sum of forces; the springs alone carry the force here.
+        worst = np.abs(rest).max() / np.abs(record.force).max()
+        require(worst < 1e-6, f"the forces do not balance: {worst:.2g} of the excitation is left")
+        return ""
+
+    @duty("an impact gives back the speed that the law gives back: all of it, for Hertz")
+    def test_impact(self, method: Any) -> str:
+        """A free mass at 0.1 m/s; the error falls as the step falls, to below 1 % at 800 steps a contact."""
+        if not method.inertial:
+            return "no inertia: no impact"
+        system = contact_system(load=0.0, clearance=1e-6)
+        speed = 0.1
+        k, m = float(system.law_params[0, 0]), float(system.mass[0, 0])
+        # Duration of a Hertzian impact (Johnson, Contact Mechanics, 1985, section 11.4): 2.94 times depth over speed.
+        depth = (1.25 * m * speed**2 / k) ** 0.4
+        time = 2.94 * depth / speed + 4e-6 / speed
+        errors = []
+        for steps in (200, 800):
+            record = method.advance(system, motion(system, np.zeros(5), speed * _X), Schedule(time / steps, steps, 1))
+            require(record.contact_force[-1, 0] == 0.0, "the mass has not left the contact when it should have")
+            errors.append(abs(-record.velocity[-1, 0] / speed - 1.0))
+        require(errors[1] < 0.01, f"at 800 steps a contact the rebound is wrong by {100 * errors[1]:.3g} %")
+        require(
+            errors[1] <= max(errors[0], 1e-6),
+            f"the rebound's error grows as the step falls: {errors[0]:.2g}, {errors[1]:.2g}",
+        )
+        return f"rebound wrong by {100 * errors[0]:.2g} % at 200 steps, {100 * errors[1]:.2g} % at 800"
+
+    @duty("never gains energy in the long run; loses none unless `dissipative`")
+    def test_energy(self, method: Any) -> str:
+        if not method.inertial:
+            return "no inertia: no energy balance"
+        notes = []
+        for word, system in (("linear", linear_system(damped=False, forced=False)), ("contact", contact_system())):
+            start = _start(system)
+            at_rest = float(contact_energy(system, _resting(system)[None], np.zeros((1, 5)))[0])
+            record = method.advance(system, start, Schedule(PERIOD / 60, 60, 100))
+            energy = contact_energy(system, record.displacement, record.velocity) - at_rest
+            begin = float(contact_energy(system, start.q[None], start.v[None])[0]) - at_rest
+            turns = energy.reshape(100, 60).mean(axis=1) / begin
+            drift = turns[-10:].mean() - turns[:10].mean()
+            # Energy swings by (w dt)^2 / 4 = 0.3 % within a turn at 60 steps; its mean must stay.
+            require(drift < 2e-3, f"{word}: the energy grows by {100 * drift:.3g} % in 100 turns of 60 steps")
+            require(
+                energy.max() / begin < 1.02,
+                f"{word}: the energy exceeds the start's by {100 * (energy.max() / begin - 1):.3g} %",
+            )
+            if not method.dissipative:
+                require(drift > -2e-3, f"{word}: {-100 * drift:.3g} % of the energy is lost: say dissipative = True")
+            notes.append(f"{word} {100 * drift:+.2g} %")
+        return "energy in 100 turns: " + ", ".join(notes)
+
+    @duty("the stable limit: explicit ones hold up to System.critical_time_step and say so above, implicit ones have none")
+    def test_stability(self, method: Any) -> str:
+        if not method.inertial:
+            return "no inertia: no stable limit"
+        system = linear_system(damped=False, forced=False)
+        critical = system.critical_time_step(np.zeros((5, 5)))
+        factor = 20.0 if method.implicit else 0.95
+        record = method.advance(system, _start(system), Schedule(factor * critical, 100, 5))
+        largest, first = np.abs(record.displacement).max(), 2e-6
+        # A velocity of 0.2 um times w may swing to a few times the first displacement near the limit.
+        require(largest < 20.0 * first, f"at {factor:g} of the critical step the motion grows to {largest:.3g} m")
+        if not method.implicit:
+            try:
+                grown = method.advance(system, _start(system), Schedule(1.1 * critical, 1000, 2))
+            except StabilityError:
+                return ""
+            require(
+                False,
+                f"at 1.1 critical steps the motion reaches {np.abs(grown.displacement).max():.3g} m without a StabilityError",
+            )
+        return ""
+
+    @duty("2 N steps equal N steps and N more from Record.final")
+    def test_restart(self, method: Any) -> None:
+        for system in (linear_system(), contact_system()):
+            start = _start(system) if method.inertial else _static_start(system)
+            period = 2.0 * np.pi / SPEED
+            half, whole = (Schedule(period / 90, 90, turns) for turns in (1, 2))
+            once = method.advance(system, start, whole)
+            first = method.advance(system, start, half)
+            second = method.advance(system, first.final, half)
+            for word in ("displacement", "velocity") if method.inertial else ("displacement",):
+                a, b = getattr(once, word)[90:], getattr(second, word)
+                # The second half begins at time zero again: the force's phase differs by rounding, 1e-13 of a turn; an
+                # iteration that ends at 1e-9 of the forces may leave 1e-9 of the motion.
+                wrong = np.abs(a - b).max() / max(np.abs(a).max(), 1e-300)
+                require(wrong < 1e-8, f"`{word}` differs by {wrong:.2g} of the motion after a restart")
+
+    @duty("on_chunk(done, total) is called up to the end, and what it raises passes through")
+    def test_progress(self, method: Any) -> None:
+        system = linear_system()
+        start = _start(system) if method.inertial else _static_start(system)
+        calls: list[tuple[int, int]] = []
+        schedule = Schedule(2.0 * np.pi / SPEED / 40, 40, 3)
+        method.advance(system, start, schedule, lambda done, total: calls.append((done, total)))
+        require(calls, "on_chunk is never called")
+        done = [c[0] for c in calls]
+        require(done == sorted(done) and calls[-1] == (120, 120), f"on_chunk ends with {calls[-1]}, not (120, 120)")
+
+        def stop(_done: int, _total: int) -> None:
+            raise Stop
+
+        try:
+            method.advance(system, start, schedule, stop)
+        except Stop:
+            return
+        require(False, "an exception of on_chunk does not stop the integration")
+
+    @duty("a motion that cannot go on raises ConvergenceError or StabilityError with the last good state")
+    def test_failure(self, method: Any) -> None:
+        system = contact_system(load=-1e9)  # pulls the mass away with nothing to hold it
+        start = Motion(np.zeros(5), np.zeros(5), np.zeros(5), np.zeros((1, 2)), np.zeros((1, 2)))
+        try:
+            record = method.advance(system, start, Schedule(1e-3, 1000, 1))
+        except ConvergenceError as error:
+            q = error.state.get("q")
+            require(q is not None, "the error has no `q` in its state")
+            require(np.isfinite(np.asarray(q)).all(), "the last state is not finite")
+            return
+        require(False, f"no error, though the mass flies off to {record.displacement[-1, 0]:.3g} m")
+
+    def _order(self, method: Any, system: System, time: float, counts: tuple[int, ...]) -> str:
+        if not method.inertial:
+            return "no inertia: see equilibria"
+        start = _start(system)
+        q, v = exact(system, start, np.array([0.5 * time, time]))
+        errors = []
+        for count in counts:
+            record = method.advance(system, start, Schedule(time / count, count, 1))
+            at = [count // 2 - 1, count - 1]
+            off = np.hstack([(record.displacement[at] - q) * NATURAL, record.velocity[at] - v])
+            errors.append(np.abs(off).max())
+        rates = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+        # The next order's share of the error at the coarser of two steps is below a tenth.
+        require(
+            rates[-1] > method.order - 0.2, f"order {method.order} declared, {', '.join(f'{r:.2f}' for r in rates)} observed"
+        )
+        return f"observed {rates[-1]:.2f}"
+
+
+def _resting(system: System) -> np.ndarray:
+    """(5,) where the system would rest."""
+    if system.free[0] > 0.0:
+        return (PRELOAD / float(system.law_params[0, 0])) ** (2.0 / 3.0) * _X
+    return np.zeros(5)

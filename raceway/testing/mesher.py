@@ -1,0 +1,58 @@
+"""The conformance suite of meshers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from raceway.testing.scenes import example_scene
+from raceway.testing.suite import Suite, check_class, duty, require
+
+
+class MesherSuite(Suite):
+    """Duties of ``raceway.contracts.Mesher``."""
+
+    kind = "mesher"
+
+    @duty("a frozen attrs class whose options are declared")
+    def test_declaration(self, mesher: Any) -> None:
+        check_class("mesher", mesher)
+
+    @duty("mesh(bearing) returns meshes by name, each with points (n, 3) [m] and cells (m, 8)")
+    def test_meshes(self, mesher: Any) -> None:
+        meshes = mesher.mesh(example_scene().bearing)
+        require(isinstance(meshes, Mapping) and meshes, f"mesh() returns {type(meshes).__name__}, not meshes by name")
+        for name, mesh in meshes.items():
+            points, cells = np.asarray(mesh.points), np.asarray(mesh.cells)
+            require(points.ndim == 2 and points.shape[1] == 3, f"'{name}': points of shape {points.shape}, not (n, 3)")
+            require(cells.ndim == 2 and cells.shape[1] == 8, f"'{name}': cells of shape {cells.shape}, not (m, 8)")
+            require(np.issubdtype(cells.dtype, np.integer), f"'{name}': cells are {cells.dtype}, not integers")
+            require(np.isfinite(points).all() and len(points), f"'{name}': points must be finite, and there must be some")
+            require(
+                len(cells) and cells.min() >= 0 and cells.max() < len(points),
+                f"'{name}': cells name points that do not exist",
+            )
+
+    @duty("no cell is flat or inside out")
+    def test_volumes(self, mesher: Any) -> None:
+        for name, mesh in mesher.mesh(example_scene().bearing).items():
+            corner = np.asarray(mesh.points)[np.asarray(mesh.cells)]
+            # Nodes 0 to 3 around the bottom, 4 to 7 above them: the edges at node 0 and at its opposite, node 6.
+            for at, ends in ((0, (1, 3, 4)), (6, (7, 5, 2))):
+                edges = corner[:, ends] - corner[:, [at]]
+                volume = np.linalg.det(edges)
+                require(
+                    (volume > 0.0).all(), f"'{name}': {(volume <= 0.0).sum()} of {len(volume)} cells are inside out or flat"
+                )
+
+    @duty("twice the same bearing gives the same mesh")
+    def test_repeats(self, mesher: Any) -> None:
+        first, second = (mesher.mesh(example_scene().bearing) for _ in range(2))
+        require(set(first) == set(second), "the bodies differ")
+        for name in first:
+            same = np.array_equal(first[name].points, second[name].points) and np.array_equal(
+                first[name].cells, second[name].cells
+            )
+            require(same, f"'{name}' differs")

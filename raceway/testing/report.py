@@ -1,0 +1,40 @@
+"""The conformance suite of reports."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from raceway.testing.scenes import example_result
+from raceway.testing.suite import Suite, check_class, duty, require
+
+
+class ReportSuite(Suite):
+    """Duties of ``raceway.contracts.Report``."""
+
+    kind = "report"
+
+    @duty("a frozen attrs class whose options are declared")
+    def test_declaration(self, report: Any) -> None:
+        check_class("report", report)
+
+    @duty("write(result, folder) writes files into the folder and returns their paths; a second time too")
+    def test_writes(self, report: Any) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            for _ in range(2):
+                paths = [Path(p) for p in report.write(example_result(), Path(folder))]
+                require(paths, "write() returns no path")
+                for path in paths:
+                    require(path.is_file() and path.stat().st_size > 0, f"`{path.name}` does not exist or is empty")
+                    require(path.resolve().is_relative_to(Path(folder).resolve()), f"`{path}` lies outside the folder")
+            written = {p.resolve() for p in Path(folder).rglob("*") if p.is_file()}
+            extra = sorted(p.name for p in written - {p.resolve() for p in paths})
+            require(not extra, f"{', '.join(extra)} is written but not returned")
+
+    @duty("the result is left untouched")
+    def test_result_untouched(self, report: Any) -> None:
+        before = example_result().as_dict()
+        with tempfile.TemporaryDirectory() as folder:
+            report.write(example_result(), Path(folder))
+        require(example_result().as_dict() == before, "the result was changed")

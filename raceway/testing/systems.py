@@ -1,0 +1,124 @@
+"""Small mechanical systems with known motions, for the suites of integrators and identifiers.
+
+Notes
+-----
+The mass moves along x against one contact (gap = clearance - x, the contact pushes along -x) and along y and z on linear
+springs, which a gyroscopic term couples.  Balls and tilts do not move.  A bearing has two races, so there are two
+contacts; the second one stays open.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from raceway.core.bodies.ring import COLUMNS, REST_AXIAL, SCALARS, TILT_ARM
+from raceway.core.contact_laws.power import three_halves
+from raceway.core.excitations.harmonic import harmonic, no_force
+from raceway.core.jit import jit
+from raceway.core.record import Motion
+from raceway.core.signatures import SYSTEM
+from raceway.core.system import System
+
+#: The entry of ``scalars`` after those of the bearing's kernels: the gap at x = 0 [m].
+CLEARANCE = SCALARS
+_OPEN = 1.0
+
+MASS, STIFFNESS, DASHPOT, GYROSCOPIC = 2.0, 2e8, 600.0, 800.0
+#: Circular frequency of the springs [rad/s] and the period [s].
+NATURAL = float(np.sqrt(STIFFNESS / MASS))
+PERIOD = 2.0 * np.pi / NATURAL
+#: Factor of the contact [N/m^1.5] and the load [N] that preloads it.
+FACTOR, PRELOAD = 1e10, 300.0
+#: Force [N] and its speed [rad/s]: three quarters of the natural frequency.
+FORCE, SPEED = 200.0, 0.75 * NATURAL
+
+
+@jit(SYSTEM)
+def one_contact(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
+    """See ``raceway.core.bodies``."""
+    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    for i in range(gap.size):
+        gap[i] = _OPEN
+        rate[i] = 0.0
+    gap[0] = scalars[scalars.size - 1] - q[0]
+    rate[0] = -v[0]
+    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
+    for i in range(5):
+        f[i] = 0.0
+        for j in range(5):
+            K[i, j] = 0.0
+            C[i, j] = 0.0
+    f[0] = force[0]
+    K[0, 0] = -d_gap[0]
+    C[0, 0] = -d_rate[0]
+    return 0
+
+
+def _system(free: list[float], **parts: Any) -> System:
+    scalars = np.zeros(SCALARS + 1)
+    # The first trust radius of an equilibrium is taken from it: a typical approach.
+    scalars[REST_AXIAL], scalars[TILT_ARM] = 1e-4, 1.0
+    scalars[CLEARANCE] = parts.pop("clearance", 0.0)
+    zero = np.zeros((5, 5))
+    given = {
+        "kernel": one_contact, "law": three_halves, "law_params": np.full((2, 1), FACTOR), "law_state": np.zeros((2, 0)),
+        "scalars": scalars, "table": np.zeros((1, COLUMNS)), "mass": MASS * np.eye(5), "damping": zero,
+        "stiffness": zero, "free": np.array(free), "load": np.zeros(5), "force": no_force, "force_params": np.zeros(1),
+    }  # fmt: skip
+    known = attrs.fields_dict(System)
+    if "base_kernel" in known:
+        given["base_kernel"] = one_contact
+    return System(**{**given, **parts})
+
+
+def linear_system(damped: bool = True, forced: bool = True) -> System:
+    """Springs along y and z, coupled by a gyroscopic term, under a force that turns forward; the contact stays open."""
+    damping = np.zeros((5, 5))
+    if damped:
+        damping[1, 1] = damping[2, 2] = DASHPOT
+        damping[1, 2], damping[2, 1] = GYROSCOPIC, -GYROSCOPIC
+    parts: dict[str, Any] = {}
+    if forced:
+        parts = {"force": harmonic, "force_params": np.array([FORCE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])}
+    stiffness = np.diag([0.0, STIFFNESS, 1.3 * STIFFNESS, 0.0, 0.0])
+    return _system([0.0, 1.0, 1.0, 0.0, 0.0], damping=damping, stiffness=stiffness, clearance=_OPEN, **parts)
+
+
+def contact_system(load: float = PRELOAD, clearance: float = 0.0) -> System:
+    """A mass on a Hertzian contact, pressed on by a constant load along x."""
+    return _system([1.0, 0.0, 0.0, 0.0, 0.0], load=np.array([load, 0.0, 0.0, 0.0, 0.0]), clearance=clearance)
+
+
+def motion(system: System, q: np.ndarray, v: np.ndarray) -> Motion:
+    """A consistent start: the acceleration balances the forces at time zero."""
+    still = np.zeros((1, 2))
+    outer = system.outer_force(0.0)
+    return Motion(q, v, system.acceleration(q, v, outer, system.evaluate(q, v, ball=still)), still, still.copy())
+
+
+def exact(system: System, start: Motion, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement and velocity (n, 5) by an eighth-order method at tolerances near rounding."""
+    chosen = system.free > 0.0
+
+    def slope(t: float, state: np.ndarray) -> np.ndarray:
+        q, v = np.ascontiguousarray(state[:5]), np.ascontiguousarray(state[5:])
+        now = system.evaluate(q, v, ball=np.zeros((1, 2)))
+        return np.concatenate([v * chosen, system.acceleration(q, v, system.outer_force(t), now)])
+
+    scale = np.concatenate([np.full(5, 1e-6), np.full(5, 1e-6 * NATURAL)])
+    # 1e-12 of the motion: far below the errors of the steps that are compared with it.
+    found = solve_ivp(
+        slope, (0.0, times[-1]), np.concatenate([start.q, start.v]), "DOP853", times, rtol=1e-11, atol=1e-11 * scale
+    )
+    return found.y[:5].T, found.y[5:].T
+
+
+def contact_energy(system: System, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(n,) kinetic and stored energy less the work of the load [J], for the springs and the Hertzian contact."""
+    approach = np.maximum(q[:, 0] - system.scalars[CLEARANCE], 0.0)
+    springs = 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
+    return 0.5 * np.einsum("ni,ij,nj->n", v, system.mass, v) + springs + 0.4 * system.law_params[0, 0] * approach**2.5

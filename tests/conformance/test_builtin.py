@@ -1,0 +1,20 @@
+"""Every registered plug-in passes the suite of its kind: built-ins, and third parties' that are installed."""
+
+import pytest
+
+from raceway.registry import default_registry
+from raceway.testing import check
+
+ENTRIES = list(default_registry().all())
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=[f"{e.kind}:{e.name}" for e in ENTRIES])
+def test_conforms(entry):
+    conformity = check(entry)
+    bad = [f"{row.name} ({row.status}): {row.message}" for row in conformity.rows if not row.good]
+    assert conformity.conforms, "\n".join(bad)
+    assert len(conformity.rows) >= 3
+
+
+def test_every_kind_with_built_ins_is_there():
+    assert {e.kind for e in ENTRIES} >= {"contact_law", "excitation", "integrator", "identifier"}
