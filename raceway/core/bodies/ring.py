@@ -51,6 +51,35 @@ def place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine):
         cosine[k], sine[k] = c, s
 
 
+@jit(void(float64, VECTOR, MATRIX))
+def stop(t, scalars, table):
+    """Let orbiting balls stand still where they are at a time: a static state has no rates."""
+    c, s = np.cos(scalars[6] * t), np.sin(scalars[6] * t)
+    for k in range(table.shape[0]):
+        table[k, 0], table[k, 1] = table[k, 0] * c - table[k, 1] * s, table[k, 1] * c + table[k, 0] * s
+    scalars[6] = 0.0
+
+
+@jit(void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, VECTOR, MATRIX))  # fmt: skip
+def add_couple(c, s, arm, side, lever, couple, ka, kr, ma, mr, mm, f, K):
+    """Add the couple [N m] that tangential forces put on a ball's section of the ring, with its derivatives.
+
+    Notes
+    -----
+    The section turns by side (tilt_y s - tilt_z c).  (ka, kr): derivative of the ball's force by that turn, (ma, mr) of
+    the couple by e, mm of the couple by the turn.
+    """
+    turn = (0.0, 0.0, 0.0, side * s, -side * c)
+    ja = (side, 0.0, 0.0, side * arm * s, -side * arm * c)
+    jr = (0.0, c, s, -lever * s, lever * c)
+    for i in range(5):
+        f[i] += turn[i] * couple
+    for j in range(5):
+        row = ma * ja[j] + mr * jr[j] + mm * turn[j]
+        for i in range(5):
+            K[i, j] += turn[i] * row + (ja[i] * ka + jr[i] * kr) * turn[j]
+
+
 @jit(void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, VECTOR, MATRIX, MATRIX))  # fmt: skip
 def add_ball(c, s, arm, side, lever, fa, fr, kaa, kar, kra, krr, caa, car, cra, crr, f, K, C):
     """Add one ball's force (axial fa, radial fr) and 2x2 tangents to the ring's f (5,), K and C (5, 5).
