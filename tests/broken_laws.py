@@ -180,5 +180,12 @@ class NeedsOption(Hertz):
 
 
 @attrs.define
-class Thawed(Hertz):
+class Thawed:
     name: ClassVar[str] = "thawed"
+    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant"})
+    state_size: ClassVar[int] = 0
+    dissipative: ClassVar[bool] = False
+    factor: float = option(1.0, help="a number")
+
+    build = Hertz.build
+    kernel = Hertz.kernel

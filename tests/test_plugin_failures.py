@@ -31,9 +31,9 @@ BROKEN = {
         "is not a class",
     ),
     "duties": (
-        "import attrs\nfrom raceway import hookimpl\n@attrs.frozen\nclass Half:\n    name = 'half'\n    state_size = 0\n"
-        "@hookimpl\ndef raceway_contact_laws(): return [Half]",
-        "has no `discretisations`, has no `dissipative`, has no `build`, has no `kernel`",
+        "import attrs\nfrom raceway import hookimpl\n@attrs.frozen\nclass Half:\n    name = 'half'\n"
+        + "@hookimpl\ndef raceway_contact_laws(): return [Half]",
+        "has no `discretisations`, has no `state_size`, has no `dissipative`, has no `build`, has no `kernel`",
     ),
     "unnamed": (
         LAW.format(name="x", cls="NoName").replace('    name: ClassVar[str] = "x"', "    pass"),
@@ -204,7 +204,10 @@ def test_a_name_that_two_kinds_have_is_ambiguous(tmp_path):
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ({"raceway-thing": ">=1.2"}, "is required by this scene and not installed. Install it: pip install 'raceway-thing>=1.2'"),
+        (
+            {"raceway-thing": ">=1.2"},
+            "is required by this scene and not installed. Install it: pip install 'raceway-thing>=1.2'",
+        ),
         ({"raceway-thing": ""}, "Install it: pip install raceway-thing"),
         ({"goood": ""}, "not installed (did you mean 'good'?)"),
         ({"good": ">=2"}, "requires >=2, installed is good 1.4. Install a fitting one: pip install --upgrade 'good>=2'"),
