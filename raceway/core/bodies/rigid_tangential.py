@@ -52,7 +52,8 @@ from raceway.core.contact import add_damping
 from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
 
-_ITERATIONS = 200
+_ITERATIONS = 300
+_PATIENCE = 60
 #: Step of the difference quotients of the gyroscopic moment [rad]: their error is of the order 1e-10.
 _ANGLE_STEP = 1e-5
 
@@ -98,7 +99,7 @@ def rigid_tangential(
     cosine, sine = work[16][:z], work[16][z:]
     cross_i, cross_o = work[19][:z], work[19][z:]
     couple, m_s, m_a, m_o, m_t, h_t = work[20][:z], work[20][z:], work[21][:z], work[21][z:], work[22][:z], work[22][z:]
-    cross_s = work[23][:z]
+    cross_s, merit = work[23][:z], work[23][z:]
     for i in range(5):
         f[i] = 0.0
         for j in range(5):
@@ -107,7 +108,7 @@ def rigid_tangential(
     place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine)
     remaining = z
     for k in range(z):
-        slope[k], done[k], da[k], dr[k] = 0.0, 0.0, 0.0, 0.0
+        slope[k], merit[k], done[k], da[k], dr[k] = 0.0, np.inf, 0.0, 0.0, 0.0
         centrifugal = table[k, CENTRIFUGAL]
         length = np.sqrt(ea[k] * ea[k] + er[k] * er[k])
         if centrifugal == 0.0 and length <= li + lo:
@@ -127,7 +128,13 @@ def rigid_tangential(
                 ball[k, 0], ball[k, 1] = scale * ea[k], scale * er[k]
             else:
                 ball[k, 0], ball[k, 1] = 0.0, seat
-    for _ in range(_ITERATIONS):
+    for attempt in range(_ITERATIONS):
+        if attempt == _PATIENCE:
+            # Forces without a potential can lead in circles: once more from the seat on the outer race.
+            for k in range(z):
+                if done[k] == 0.0:
+                    ball[k, 0], ball[k, 1] = 0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
+                    slope[k], merit[k], da[k], dr[k] = 0.0, np.inf, 0.0, 0.0
         for k in range(z):
             pa, pr = ball[k, 0], ball[k, 1]
             so[k] = np.sqrt(pa * pa + pr * pr)
@@ -205,7 +212,12 @@ def rigid_tangential(
             ti_a, ti_r, to_a, to_r = ni_r[k], -ni_a[k], no_r[k], -no_a[k]
             ra = fi * ni_a[k] + h[k] * ti_a - fo * no_a[k] - h[z + k] * to_a
             rr = fi * ni_r[k] + h[k] * ti_r - fo * no_r[k] - h[z + k] * to_r + table[k, CENTRIFUGAL]
-            if slope[k] > 0.0 and -(ra * da[k] + rr * dr[k]) > 0.9 * slope[k]:
+            size = np.sqrt(ra * ra + rr * rr)
+            beyond = slope[k] > 0.0 and -(ra * da[k] + rr * dr[k]) > 0.9 * slope[k]
+            if attempt > 2 * _PATIENCE and np.sqrt(da[k] * da[k] + dr[k] * dr[k]) > 1e-13:
+                # That failed too: descend at every step instead.
+                beyond = size > 0.9999 * merit[k]
+            if beyond:
                 # Beyond the balance along the last step by more than it began with: go half-way back.
                 da[k] *= 0.5
                 dr[k] *= 0.5
@@ -214,6 +226,7 @@ def rigid_tangential(
                 ball[k, 1] -= dr[k]
                 continue
             ki, ko = -d_gap[k] - ball_gain * d_rate[k], -d_gap[z + k] - ball_gain * d_rate[z + k]
+            merit[k] = size
             wi, wo = (1.0 / si[k] if si[k] > 0.0 else 0.0), 1.0 / so[k]
             oi_a = cross_o[k] * ti_a * wi + cross_s[k] * ni_a[k]
             oi_r = cross_o[k] * ti_r * wi + cross_s[k] * ni_r[k]

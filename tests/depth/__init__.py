@@ -1,0 +1,1 @@
+"""The rigid model in full depth, one subject a file."""
