@@ -27,6 +27,8 @@ def check_requires(table: Any, registry: Registry, mistakes: list[Mistake]) -> N
     ----------
     table : name -> version specifier such as ">=1.2, <2"; "" for any version
     """
+    if not table:
+        return
     from packaging.specifiers import InvalidSpecifier, SpecifierSet
 
     if not isinstance(table, Mapping):

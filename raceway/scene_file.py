@@ -14,6 +14,7 @@ from raceway.catalogue import preset
 from raceway.errors import Mistake, PluginError, SceneError
 from raceway.options import nearest
 from raceway.registry import Registry, default_registry
+from raceway.requires import check_requires
 from raceway.scene import TABLES, Scene
 from raceway.structure import structure
 
@@ -123,7 +124,7 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    known = [*TABLES, "excitation", "mesh", "title"]
+    known = [*TABLES, "excitation", "mesh", "requires", "title"]
     for name in tables:
         if name not in known:
             mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
@@ -136,6 +137,7 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
         if name != "title" and not isinstance(plain[name], dict):
             mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
             plain[name] = {}
+    check_requires(plain.get("requires", {}), registry, mistakes)
     if "bearing" in plain:
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     else:

@@ -111,5 +111,3 @@ def test_sound_excitations_pass_and_wrong_parameters_do_not():
         probe_excitation(excitation, excitation.kernel(), excitation.parameters())
     with pytest.raises(PluginError, match=r"parameters\(\) returned float64 of shape \(1, 7\)"):
         probe_excitation(excitation, excitation.kernel(), excitation.parameters()[None])
-
-

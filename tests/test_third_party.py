@@ -1,0 +1,116 @@
+"""The example packages install like any package, conform, and run in scenes; a word in the scene swaps them."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+PACKAGES = {"third_party_law": "raceway-hunt-crossley", "third_party_excitation": "raceway-two-frequency"}
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """A folder with both packages, installed without a network: their build backend is one of the dev extra."""
+    target = tmp_path_factory.mktemp("site")
+    pip = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation", "--target", str(target)]
+    subprocess.run([*pip, *(str(EXAMPLES / name) for name in PACKAGES)], check=True, capture_output=True, text=True)
+    return target
+
+
+def python(installed, code, **environment):
+    """What a fresh interpreter with the packages on its path prints, as JSON."""
+    root = str(Path(__file__).parents[1])
+    inherited = {k: v for k, v in os.environ.items() if not k.startswith("RACEWAY_") or k == "RACEWAY_CACHE_DIR"}
+    env = {**inherited, "PYTHONPATH": os.pathsep.join([str(installed), root]), **environment}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=env, cwd=EXAMPLES, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+RUN = """
+import json
+from raceway import scene_from_dict
+from raceway.run import run
+from raceway.scene_file import read_toml
+
+law, force = read_toml("third_party_law/scene.toml"), read_toml("third_party_excitation/scene.toml")
+scenes = {
+    "law": law,
+    "hertz": {**law, "contact": {"kind": "hertz"}},
+    "restitution": {**law, "contact": {"kind": "hunt_crossley", "restitution": 0.8}},
+    "excitation": force,
+    "both": {**force, "contact": {"kind": "hunt_crossley"}},
+}
+answers = {}
+for name, tables in scenes.items():
+    result = run(scene_from_dict(tables)).as_dict()
+    found = result["identification"]
+    answers[name] = {
+        "k": found["equivalent_stiffness"], "c": found["equivalent_damping"], "plugins": result["environment"]["plugins"],
+    }
+print(json.dumps(answers))
+"""
+
+
+def test_both_scenes_run_and_say_whose_plugins_they_used(installed):
+    answers = python(installed, RUN)
+    owners = {p["kind"]: (p["distribution"], p["version"]) for p in answers["both"]["plugins"]}
+    assert owners["contact_law"] == ("raceway-hunt-crossley", "0.1.0")
+    assert owners["excitation"] == ("raceway-two-frequency", "0.1.0")
+    assert owners["integrator"][0] == "raceway"
+    # At rest and deeper than the transition the law is Hertz, and its rate term is in quadrature: K moves by (w C / K)^2.
+    assert answers["law"]["k"] == pytest.approx(answers["hertz"]["k"], rel=1e-4)
+    assert answers["law"]["c"] > 10.0 * abs(answers["hertz"]["c"])
+    assert answers["restitution"]["c"] > 0.0
+    # The 2x force moves the 1x line through the contacts' curvature only.
+    assert answers["excitation"]["k"] == pytest.approx(answers["hertz"]["k"], rel=0.05)
+    assert answers["both"]["c"] > 0.0
+
+
+def test_installed_plugins_conform(installed):
+    code = """
+import json
+from raceway.testing import check_named
+found = [check_named(name).as_dict() for name in ("hunt_crossley", "excitation:two_frequency")]
+print(json.dumps(found))
+"""
+    for conformity in python(installed, code):
+        assert conformity["conforms"], [row for row in conformity["rows"] if row["status"] != "passed"]
+
+
+BLOCKED = """
+import json
+from raceway import load_scene, SceneError
+from raceway.registry import default_registry
+try:
+    load_scene("third_party_law/scene.toml")
+    told = ""
+except SceneError as error:
+    told = str(error)
+print(json.dumps([told, default_registry().names("excitation")]))
+"""
+
+
+def test_a_blocked_package_is_missing_by_name(installed):
+    told, excitations = python(installed, BLOCKED, RACEWAY_DISABLE="raceway-hunt-crossley")
+    assert "`requires.raceway-hunt-crossley` = '>=0.1': is not loaded: the environment variable RACEWAY_DISABLE" in told
+    assert "`contact.kind` = 'hunt_crossley': no contact law named 'hunt_crossley'" in told
+    assert "two_frequency" in excitations
+
+
+def test_a_scene_says_how_to_install_what_it_requires(tmp_path):
+    told, _ = python(tmp_path, BLOCKED)
+    assert "Install it: pip install 'raceway-hunt-crossley>=0.1'" in told
+
+
+@pytest.mark.parametrize("name", PACKAGES)
+def test_the_packages_own_tests_pass(name):
+    root = str(Path(__file__).parents[1])
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "."]
+    env = {**os.environ, "PYTHONPATH": root}
+    done = subprocess.run(command, capture_output=True, text=True, cwd=EXAMPLES / name, env=env, check=False)
+    assert done.returncode == 0, done.stdout
