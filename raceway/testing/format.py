@@ -40,7 +40,7 @@ class FormatSuite(Suite):
         check_class("format", form)
         suffixes = form.suffixes
         require(isinstance(suffixes, tuple) and suffixes, "`suffixes` must be a tuple that is not empty")
-        bad = [s for s in suffixes if not re.fullmatch(r"(\.[a-z0-9]+)+", s)]
+        bad = [s for s in suffixes if not re.fullmatch(r"(\.[a-z0-9_-]+)+", s)]
         require(not bad, f"suffixes {bad} must be lower case and begin with a dot")
 
     @duty("what is written is read back the same, with every suffix")
