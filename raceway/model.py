@@ -12,6 +12,8 @@ from raceway.contracts import ContactPairs
 from raceway.core.bodies.ring import SCALARS
 from raceway.core.geometry import BallBearing
 from raceway.core.hertz import Ellipse, contact_modulus
+from raceway.core.plugin_kernel import plugin_kernel
+from raceway.core.signatures import FORCE, LAW
 from raceway.core.system import COORDINATES, System
 from raceway.errors import ConvergenceError, PluginError
 from raceway.estimate import axial_approach
@@ -72,7 +74,7 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     x, ball_load = axial_approach(scene)
     system = System(
         kernel=_bodies_kernel(plan),
-        law=scene.contact.law.kernel(),
+        law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
         law_params=_law_params(scene, inner, outer, modulus, max(ball_load, 1.0)),
         law_state=np.zeros((2 * b.ball_count, scene.contact.law.state_size)),
         scalars=scalars,
@@ -162,7 +164,7 @@ def _excitation(scene: Scene) -> dict[str, Any]:
         raise PluginError(
             f"excitation '{scene.excitation.name}': parameters() returned shape {parameters.shape}; it must be (k,)"
         )
-    return {"force": scene.excitation.kernel(), "force_params": parameters}
+    return {"force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"), "force_params": parameters}
 
 
 def _first_guess(scene: Scene, geometry: BallBearing, x: float) -> np.ndarray:

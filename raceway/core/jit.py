@@ -80,13 +80,11 @@ def jit(signature: Any) -> Callable[[Callable[..., Any]], Any]:
         start = time.perf_counter()
         try:
             kernel = _compile(function, signature)
-        except numba.core.errors.NumbaError as why:
+        except (numba.core.errors.NumbaError, TypeError) as why:  # TypeError: another number of arguments
             code = function.__code__
-            reason = str(why).strip().splitlines()
-            first = next((line for line in reason if line.strip()), "unknown reason")
             raise PluginError(
                 f"kernel `{function.__qualname__}` ({Path(code.co_filename).name}, line {code.co_firstlineno}) does "
-                f"not compile for the signature {signature}: {first.strip()}"
+                f"not compile for the signature {signature_words(signature)}: {_reason(why)}"
             ) from why
         hit = sum(kernel.stats.cache_hits.values()) > 0
         clock["load_s" if hit else "compile_s"] += time.perf_counter() - start
@@ -94,6 +92,24 @@ def jit(signature: Any) -> Callable[[Callable[..., Any]], Any]:
         return kernel
 
     return decorate
+
+
+def signature_words(signature: Any) -> str:
+    """A numba signature as one writes it: ``none(float64[::1], float64[:, ::1])``."""
+
+    def word(kind: Any) -> str:
+        if not isinstance(kind, numba.types.Array):
+            return str(kind)
+        last = "::1" if kind.layout == "C" else ":"
+        return f"{kind.dtype}[{', '.join([':'] * (kind.ndim - 1) + [last])}]"
+
+    return f"{signature.return_type}({', '.join(word(kind) for kind in signature.args)})"
+
+
+def _reason(why: Exception) -> str:
+    """The telling line of numba's report: not the name of the compiler pass, not the empty ones."""
+    lines = [line.strip() for line in str(why).splitlines() if line.strip()]
+    return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
 
 
 def _compile(function: Callable[..., Any], signature: Any) -> Any:
