@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.core.bodies import WORK_ROWS
 from raceway.core.bodies.ring import TILT_ARM
-from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, settle
+from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.errors import ConvergenceError
 
 #: Relative residual that an equilibrium is solved to.
@@ -147,6 +147,13 @@ class System:
                     break
             if status == CONVERGED:
                 return q_now, ball_now, total
+            if status == RUN_AWAY:
+                free = COORDINATES[int(np.argmax(np.abs(q_now) * [1.0, 1.0, 1.0, self.arm, self.arm]))]
+                raise ConvergenceError(
+                    f"there is no static equilibrium: nothing holds the ring against the load along {free}. Hold it or load "
+                    "more balls.",
+                    {"q": start, "ball": ball_now},
+                )
         what = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
         raise ConvergenceError(
             f"no static equilibrium found after {total} iterations: {what}, relative residual {report[1]:.1e}",

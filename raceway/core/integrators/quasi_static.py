@@ -41,7 +41,7 @@ def quasi_static(
         )  # fmt: skip
         counters[0] += report[0] + 1.0
         if status != 0:
-            counters[1] = 1.0 if status == 2 else (3.0 if status == 3 else 2.0)
+            counters[1] = 1.0 if status == 2 else (3.0 if status >= 3 else 2.0)
             counters[2] = report[1]
             return step
         for i in range(5):
