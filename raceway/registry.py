@@ -156,7 +156,7 @@ class Registry:
 
 
 def _chosen_entry_points() -> list[EntryPoint]:
-    points = sorted(entry_points(group="raceway"), key=lambda p: p.name)
+    points = sorted(entry_points(group="raceway"), key=lambda p: (p.name, p.dist.name if p.dist else ""))
     exact = os.environ.get("RACEWAY_PLUGINS")
     if exact is not None:
         wanted = _names(exact)
