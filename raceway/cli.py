@@ -15,7 +15,7 @@ import click
 from raceway import __version__
 from raceway.command_inputs import changed_tables, faults, load, require_matplotlib, slug, tell_faults, writable
 from raceway.console import Commands, described, print_json
-from raceway.errors import ConvergenceError, RacewayError
+from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.registry import default_registry
 
 if TYPE_CHECKING:
@@ -157,8 +157,10 @@ def compare(
           --vary excitation.speed_rpm=10980:15000:5
     """
     registry = default_registry()
-    title = load(scene, changes, registry).title
-    tables, _ = changed_tables(scene, changes)
+    tables, mistakes = changed_tables(scene, changes)
+    if mistakes:
+        raise SceneError(mistakes)
+    title = str(tables["title"])
     folder = writable(out or _RESULTS / f"{slug(title)}-compare")
     if pictures:
         require_matplotlib("add --no-pictures")
