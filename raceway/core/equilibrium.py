@@ -50,7 +50,7 @@ def force_scale(work, inner):
     return total
 
 
-@jit(SETTLE)
+@jit(SETTLE, allocates=True)
 def settle(
     system, law, law_params, scalars, table, stiffness, free, load, tolerance, q, ball, law_state, work, f, K, report
 ):

@@ -24,7 +24,12 @@ from raceway.core.system import System
 from raceway.errors import ConvergenceError
 
 
-@jit(int64(SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, CUBE, CUBE))
+@jit(
+    int64(
+        SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, CUBE, CUBE
+    ),
+    allocates=True,
+)
 def evaluate_many(system, law, law_params, scalars, table, law_state, times, q, v, ball, ball_rate, f, K, C):
     """Contact forces (n, 5) and tangents (n, 5, 5) at n states; the index of the first that fails, or n."""
     work = np.zeros((16, 2 * table.shape[0]))

@@ -14,7 +14,7 @@ from raceway.core.jit import jit
 from raceway.core.signatures import LOOP
 
 
-@jit(LOOP)
+@jit(LOOP, allocates=True)
 def quasi_static(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
