@@ -78,7 +78,8 @@ def _size(comparison: Comparison, leading: Axis, partner: Axis, others: list[str
     for end, value in enumerate(partner.ends):
         given = {partner.key: end}
         pairs = {key: [factorial.log_change(leading.key, {**given, key: e}) for e in (0, 1)] for key in others}
-        strong, weak = [], []
+        strong: list[str] = []
+        weak: list[str] = []
         for key, (first, last) in sorted(pairs.items(), key=lambda item: -abs(item[1][1] - item[1][0])):
             ends = comparison.axis(key).ends
             text = f"{named(key)}: {shown(ends[0])} {percent(first)}, {shown(ends[1])} {percent(last)}"

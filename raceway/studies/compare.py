@@ -88,11 +88,9 @@ def _strange_options(tables: Mapping[str, Any], name: str, kind: Any, registry: 
     role, default = _PLUGIN_TABLES[name]
     if not isinstance(table, dict):
         return []
+    words = (str(table.get("kind", default)), kind)
     try:
-        old, new = (
-            {field.name for field in attrs.fields(registry.find(role, word).plugin)}
-            for word in (table.get("kind", default), kind)
-        )
+        old, new = ({field.name for field in attrs.fields(registry.find(role, word).plugin)} for word in words)
     except PluginError:
         return []  # the scene's own check names the unknown kind
     core = {field.name for field in attrs.fields(TABLES[name])} if name in TABLES else set()

@@ -106,9 +106,10 @@ def _curves(
         look = _look([values.index(text) for values, text in zip(styles.values(), combination, strict=True)])
         good = [row for row in found if not in_doubt(row)]
         bad = [row for row in found if in_doubt(row)]
-        panel.plot([row["point"][along] for row in good], [value_of(row, quantity) for row in good], **look)
+        panel.plot([row["point"][along] for row in good], [value_of(row, quantity) or 0.0 for row in good], **look)
         clipped = [min(max(value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
-        panel.plot([row["point"][along] for row in bad], clipped, "x", color=look["color"], markersize=8, clip_on=False)
+        (cross,) = panel.plot([row["point"][along] for row in bad], clipped, "x", color=look["color"], clip_on=False)
+        cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
     panel.set_ylim(limits)
     panel.grid(True, color="#e3e7eb", linewidth=0.8)
     panel.set_axisbelow(True)
