@@ -48,10 +48,13 @@ def _common(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
 
 
-_scene = click.argument("scene", type=click.Path(path_type=Path))
+_scene = click.argument("scene", type=click.Path(path_type=Path, readable=False))
 _set = click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
 _out = click.option(
-    "--out", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the results [raceway-out/TITLE]."
+    "--out",
+    type=click.Path(path_type=Path, readable=False),
+    metavar="DIR",
+    help="Folder of the results [raceway-out/TITLE].",
 )
 
 

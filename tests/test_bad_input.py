@@ -62,7 +62,14 @@ def test_clearance_and_angle_that_contradict_each_other():
 
 
 def test_several_mistakes_are_told_together():
-    changes = ["load.axial=nan", "bearing.ball_count=12.7", "contact.kind=hrtz", "integrator.turnz=3", "nothing", "rotor.mass=-1"]
+    changes = [
+        "load.axial=nan",
+        "bearing.ball_count=12.7",
+        "contact.kind=hrtz",
+        "integrator.turnz=3",
+        "nothing",
+        "rotor.mass=-1",
+    ]
     found = invoke("run", ARTICLE, *(word for change in changes for word in ("--set", change)), "--json")
     assert found.exit_code == 2
     paths = [error["path"] for error in json.loads(found.stdout)["errors"]]
@@ -98,7 +105,9 @@ def test_a_file_that_is_no_scene(case, command, tmp_path):
 def test_a_file_that_cannot_be_read(tmp_path, monkeypatch):
     path = tmp_path / "scene.toml"
     path.write_text("x = 1")
-    monkeypatch.setattr("pathlib.Path.read_bytes", lambda self: (_ for _ in ()).throw(PermissionError(13, "Permission denied")))
+    monkeypatch.setattr(
+        "pathlib.Path.read_bytes", lambda self: (_ for _ in ()).throw(PermissionError(13, "Permission denied"))
+    )
     found = invoke("check", path)
     assert found.exit_code == 2
     assert "cannot be read: Permission denied" in found.stderr
@@ -256,7 +265,14 @@ def test_a_run_that_diverges_says_when_and_why_and_keeps_the_last_good_state(tmp
 
 def test_a_step_above_the_stable_limit_is_refused_with_a_number_that_works(tmp_path):
     found = invoke(
-        "run", ARTICLE, "--set", "integrator.kind=central_difference", "--set", "integrator.steps_per_turn=10", "--out", tmp_path
+        "run",
+        ARTICLE,
+        "--set",
+        "integrator.kind=central_difference",
+        "--set",
+        "integrator.steps_per_turn=10",
+        "--out",
+        tmp_path,
     )
     assert found.exit_code == 1
     assert "above the stable limit" in found.stderr
