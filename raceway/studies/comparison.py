@@ -192,8 +192,9 @@ class Comparison:
         }
 
     def table(self) -> list[dict[str, str]]:
-        """One row a run, as text for a screen."""
-        return [_screen_row(row, self.axes) for row in self.rows]
+        """One row a run, as short text for a screen; why a run is in doubt is said in the words."""
+        names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
+        return [_screen_row(row, names, noted) for row in self.rows]
 
     def picture(self, folder: Path) -> list[Path]:
         """Draw K and |Z| into a folder; the files written.
@@ -222,17 +223,18 @@ def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> dict[
     }
 
 
-def _screen_row(row: Row, axes: tuple[Axis, ...]) -> dict[str, str]:
-    text = {axis.key: shown(row.point[axis.key]) for axis in axes}
-    found = row.result.get("identification")
-    blank = dict.fromkeys(("K N/um", "|Z| N/um", "C N s/m", "phase deg", "force N", "error %"), "")
-    if found is not None:
-        blank = {
-            "K N/um": f"{found['equivalent_stiffness'] / 1e6:.3f}",
-            "|Z| N/um": f"{found['dynamic_stiffness']['abs'] / 1e6:.3f}",
-            "C N s/m": f"{found['equivalent_damping']:.3g}",
-            "phase deg": f"{found['phase_lag_deg']:.2g}",
-            "force N": f"{found['force_amplitude_n']:.1f}",
-            "error %": f"{100.0 * row.error:.2g}",
-        }
-    return {**text, **blank, "note": row.doubt or ""}
+def _screen_row(row: Row, names: dict[str, str], noted: bool) -> dict[str, str]:
+    text = {name: shown(row.point[key]) for key, name in names.items()}
+    k, z = (row.value(quantity) for quantity in QUANTITIES)
+    text["K N/um"] = "" if k is None else f"{k / 1e6:.3f}"
+    text["|Z| N/um"] = "" if z is None else f"{z / 1e6:.3f}"
+    text["error %"] = "" if k is None else f"{100.0 * row.error:.2g}"
+    if noted:
+        text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""
+    return text
+
+
+def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:
+    """Key -> its last part, or the whole key where two axes share that part: a table has to fit a screen."""
+    last = [axis.key.rpartition(".")[2] for axis in axes]
+    return {axis.key: name if last.count(name) == 1 else axis.key for axis, name in zip(axes, last, strict=True)}
