@@ -15,7 +15,7 @@ from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
-_STEP_S = {"weightless": 1.6e-6, "inertial": 4.0e-6}
+_STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6}
 _START_S = 0.6
 
 
@@ -87,13 +87,17 @@ def make_plan(scene: Scene) -> Plan:
     decide(False, "friction", "", "contact.friction is 0")
     decide(False, "elastic bodies and mesh", "", "bodies.kind is rigid: only contacts deform")
     gyroscopic = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
-    decide(gyroscopic, "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts", "no polar inertia on free tilts")
+    decide(
+        gyroscopic, "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts", "no polar inertia on free tilts"
+    )
     uses_record = dynamic and "record" in scene.identifier.method.needs
     unused = "the scene is static" if not dynamic else f"identifier '{scene.identifier.kind}' needs the equilibrium only"
     decide(uses_record, f"time integration ({scene.integrator.kind})", "the identifier needs recorded motion", unused)
     turns = scene.integrator.turns if uses_record else 0
     if uses_record and not scene.integrator.method.inertial and scene.contact.law.state_size == 0 and turns > 1:
-        left_out.append(Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn"))
+        left_out.append(
+            Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn")
+        )
         turns = 1
     steps_per_turn = _predicted_steps_per_turn(scene) if uses_record else 0
     steps = steps_per_turn * turns

@@ -54,12 +54,13 @@ def kernel_folder() -> Path | None:
 
 @contextmanager
 def _numba_cache_in(folder: Path) -> Iterator[None]:
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(folder)
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
 def jit(signature: Any, allocates: bool = False) -> Callable[[Callable[..., Any]], Any]:
