@@ -119,7 +119,7 @@ class Registry:
         version = point.dist.version if point.dist else ""
         try:
             plugin = point.load()
-        except Exception as why:  # whatever a third party's import raises: it is reported by name
+        except (Exception, SystemExit) as why:  # whatever a third party's import raises: it is reported by name
             self.faults.append(Fault(f"{point.name} ({distribution})", f"fails to import: {type(why).__name__}: {why}"))
             return
         self._register(plugin, point.name, distribution, version)
@@ -127,11 +127,11 @@ class Registry:
     def _register(self, plugin: Any, source: str, distribution: str, version: str) -> None:
         label = source if source == distribution else f"{source} ({distribution})"
         try:
-            self.manager.register(plugin, name=source)
+            self.manager.register(plugin, name=label)
             self.manager.check_pending()
         except (pluggy.PluginValidationError, ValueError) as why:
-            if self.manager.has_plugin(source):
-                self.manager.unregister(name=source)
+            if self.manager.get_plugin(label) is plugin:
+                self.manager.unregister(name=label)
             self.faults.append(Fault(label, f"does not fit the hooks: {why}"))
             return
         for kind, (hook_name, _) in KINDS.items():
@@ -156,7 +156,7 @@ class Registry:
 
 
 def _chosen_entry_points() -> list[EntryPoint]:
-    points = sorted(entry_points(group="raceway"), key=lambda p: p.name)
+    points = sorted(entry_points(group="raceway"), key=lambda p: (p.name, p.dist.name if p.dist else ""))
     exact = os.environ.get("RACEWAY_PLUGINS")
     if exact is not None:
         wanted = _names(exact)

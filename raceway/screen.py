@@ -74,7 +74,7 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
 
 def written(files: Sequence[str]) -> list[RenderableType]:
     """The files' names, each unbroken on its line, so that it can be copied."""
-    return [Text(f"written: {name}", no_wrap=True) for name in files]
+    return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
 
 
 def _bearing(scene: Mapping[str, Any]) -> str:

@@ -40,9 +40,9 @@ from raceway.core.bodies.ring import (
     SIDE,
     STICK,
     TILT_ARM,
-    add_ball,
     place,
 )
+from raceway.core.bodies.section import add_ball
 from raceway.core.contact import add_damping
 from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
@@ -93,10 +93,11 @@ def rigid_tangential(
     cross_i, cross_o = work[19][:z], work[19][z:]
     for i in range(5):
         f[i] = 0.0
-        for j in range(5):
-            K[i, j] = 0.0
-            C[i, j] = 0.0
-    place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine)
+        if K.size > 0:
+            for j in range(5):
+                K[i, j] = 0.0
+                C[i, j] = 0.0
+    place(t, q, v, scalars, table, work, 16, 5, 6)
     remaining = z
     for k in range(z):
         merit[k], done[k], da[k], dr[k] = np.inf, 0.0, 0.0, 0.0

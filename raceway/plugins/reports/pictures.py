@@ -160,7 +160,7 @@ def ball_loads(result: Any) -> Figure:
     import numpy as np
 
     figure = new_figure(7.0, 6.4)
-    axes = figure.add_subplot(projection="polar")
+    axes: Any = figure.add_subplot(projection="polar")
     z = result.model.geometry.ball_count
     azimuth = result.model.azimuth
     closed = np.append(np.arange(z), 0)
@@ -178,7 +178,9 @@ def ball_loads(result: Any) -> Figure:
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.set_xticklabels(["0° (+y)", "30°", "60°", "90° (+z)", *(f"{a}°" for a in range(120, 360, 30))])
     axes.tick_params(labelsize=10, pad=6)
-    axes.set_title(f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}", fontsize=12, pad=14)
+    axes.set_title(
+        f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}", fontsize=12, pad=14
+    )
     axes.grid(color="#d8dee4", linewidth=0.7)
     figure.legend(loc="outside lower center", ncols=2, fontsize=10, frameon=False)
     return figure
