@@ -184,20 +184,21 @@ def compare(
 
 @main.command(short_help="Compute the published reference cases.")
 @click.option("--only", metavar="CASE", help="One case instead of all.")
+@click.option("--all", "every", is_flag=True, help="Show every number, not only the worst of each case.")
 @_common
-def verify(only: str | None, as_json: bool) -> int:
+def verify(only: str | None, every: bool, as_json: bool) -> int:
     """Compute published reference cases; exit code 1 when a number misses its tolerance.
 
     \b
     Example:
-      raceway verify --json
+      raceway verify --only harris-table-6.1 --all
     """
     with _progress() as progress:
         from raceway.studies.verify import verify as study
 
         verification = study(only, progress)
     content = verification.as_dict()
-    _show(content, as_json, None, lambda screen: screen.verify_screen(content, verification.passed))
+    _show(content, as_json, None, lambda screen: screen.verify_screen(content, verification.passed, every))
     return 0 if verification.passed else 1
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import io
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.files import write_whole
 from raceway.options import between, option
 
 if TYPE_CHECKING:
@@ -83,16 +83,7 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
     figure.set_dpi(dots_per_inch)
     memory = io.BytesIO()
     FigureCanvasAgg(figure).print_png(memory)
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        scratch.write_bytes(memory.getvalue())
-        scratch.replace(path)
-    except OSError as why:
-        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}. Choose another folder with --out.") from None
-    finally:
-        scratch.unlink(missing_ok=True)
-    return path
+    return write_whole(memory.getvalue(), path)
 
 
 def orbit(result: Any) -> Figure:
