@@ -12,7 +12,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -132,15 +132,29 @@ def _reason(why: Exception, function: Callable[..., Any], signature: Any, option
 
 def _compile(function: Callable[..., Any], signature: Any, options: dict[str, Any]) -> Any:
     folder = kernel_folder()
-    if folder is not None:
+    if folder is None:
+        return numba.njit(signature, **options)(function)
+    for attempt in (1, 2):
         try:
             with _numba_cache_in(folder):
                 return numba.njit(signature, cache=True, **options)(function)
-        except (OSError, EOFError, ValueError, RuntimeError) as why:
-            # A full disk, a truncated cache file, or a source that numba cannot locate.
+        except (numba.core.errors.NumbaError, TypeError):
+            raise
+        except Exception as why:  # a full disk, or a damaged file: reading one may raise anything
+            if attempt == 1:
+                _discard(folder, function)
+                continue
             warnings.warn(
                 f"the kernel cache in {folder} did not serve `{function.__qualname__}` ({why}); compiled in memory",
                 RuntimeWarning,
                 stacklevel=3,
             )
     return numba.njit(signature, **options)(function)
+
+
+def _discard(folder: Path, function: Callable[..., Any]) -> None:
+    """Remove the cache files of one function, which numba names after it and its line."""
+    name = function.__qualname__.replace("<", "").replace(">", "")
+    for path in folder.rglob(f"*.{name}-{function.__code__.co_firstlineno}.*"):
+        with suppress(OSError):
+            path.unlink()

@@ -29,7 +29,7 @@ def trajectory(
     ring: Ring, mass: np.ndarray, load: np.ndarray, force: Force, free: np.ndarray, q0: np.ndarray, v0: np.ndarray,
     times: np.ndarray, tolerance: float = 1e-11, variational: bool = False,
 ):  # fmt: skip
-    """States at ``times`` (n,): q (n, 5), v (n, 5), and with ``variational`` the (2 f, 2 f) derivative of the last by the first.
+    """States at ``times`` (n,): q, v (n, 5), and with ``variational`` the (2 f, 2 f) derivative of the last by the first.
 
     Parameters
     ----------

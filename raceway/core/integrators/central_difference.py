@@ -91,6 +91,8 @@ def central_difference(
             motion[1, i] = half[i] + 0.5 * dt * a[i]
             motion[2, i] = a[i]
             motion[3, i] = 0.0
+            for j in range(5):
+                motion[3, i] -= mass[i, j] * a[j]
         for k in range(z):
             for c in range(ball.shape[1]):
                 ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
