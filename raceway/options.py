@@ -13,6 +13,8 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import PluginError
+
 Rule = Callable[[Any, Any, Any], None]
 
 
@@ -114,3 +116,24 @@ def optional(rule: Rule) -> Rule:
     check.words = getattr(rule, "words", "")  # type: ignore[attr-defined]
     check.facts = getattr(rule, "facts", {})  # type: ignore[attr-defined]
     return check
+
+
+def unused_options(plugin: Any) -> dict[str, str]:
+    """Options of a plug-in that are given and change nothing, each with the reason.
+
+    A class whose options can contradict or override each other defines ``unused_options(self) -> dict[str, str]``; callers
+    warn with "`table.option` has no effect: reason".
+
+    Raises
+    ------
+    PluginError
+        A plug-in whose own answer is not option -> reason.
+    """
+    own = getattr(plugin, "unused_options", None)
+    if own is None:
+        return {}
+    found = own()
+    known = {f.name for f in attrs.fields(type(plugin))}
+    if not isinstance(found, dict) or not all(k in known and isinstance(v, str) for k, v in found.items()):
+        raise PluginError(f"plug-in '{plugin.name}': unused_options() returned {found!r}; it must be option -> reason")
+    return found

@@ -6,6 +6,7 @@ The model builder obeys the plan; it decides nothing of this by itself.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import pi
 from typing import Any
 
 import attrs
@@ -87,6 +88,10 @@ def make_plan(scene: Scene) -> Plan:
     inertia = scene.kinematics.ball_inertia and scene.spin_speed > 0.0
     why_not = "kinematics.ball_inertia is false" if scene.spin_speed > 0.0 else "nothing turns: no spin speed"
     decide(inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not)
+    if inertia and getattr(scene.excitation, "first_speed_rpm", None) is not None:
+        rpm = scene.spin_speed * 30.0 / pi
+        why_not = f"balls, ring and rotor keep what belongs to {rpm:.6g} r/min (kinematics.spin_speed_rpm) at every speed"
+        left_out.append(Part("change of centrifugal forces with the speed", why_not))
     decide(scene.contact.damping > 0.0, "contact damping", "contact.damping is set", "contact.damping is 0")
     friction = decide(scene.contact.friction > 0.0, "friction", "contact.friction is set", "contact.friction is 0")
     wanted = scene.kinematics.gyroscopic != "none"
@@ -149,6 +154,9 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         faults.append(Mistake("contact.discretisation", "nodal", "rigid bodies have no surface points: use 'resultant'"))
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
+    alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
+    why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
+    refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
     for seat in ("outer_seat", "inner_seat"):
         value = getattr(scene.supports, seat)

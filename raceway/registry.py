@@ -3,6 +3,8 @@
 A plug-in that cannot be loaded is remembered with its reason and takes nothing else down.  Two plug-ins of one kind and
 name shadow each other: the name cannot be used until one of them goes.
 
+``Registry.load_file`` adds one-off plug-ins from a file; ``Registry.notify`` calls life-cycle hooks and says whose failed.
+
 Environment: ``RACEWAY_DISABLE`` (names of distributions or entry points to leave out, commas), ``RACEWAY_PLUGINS`` (the
 exact set of third-party plug-ins to load), ``RACEWAY_TRACE`` (set: every hook call on standard error).
 """
@@ -13,16 +15,20 @@ import os
 from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import pluggy
 
 from raceway import hookspecs
 from raceway.contracts import KINDS, broken_duties
-from raceway.errors import PluginError
+from raceway.errors import PluginError, RacewayError
 from raceway.options import nearest
+from raceway.plugin_sources import chosen_entry_points, import_file
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
 
@@ -36,6 +42,7 @@ class Entry:
     plugin: type
     distribution: str
     version: str
+    source: str = ""  # entry point, module or file
 
 
 @attrs.frozen
@@ -68,7 +75,9 @@ class Registry:
         for module in BUILT_IN:
             self._register(import_module(module), module, "raceway", _version())
         if third_party:
-            for point in _chosen_entry_points():
+            points, missing = chosen_entry_points()
+            self.faults += [Fault(name, "named in RACEWAY_PLUGINS, but not installed") for name in missing]
+            for point in points:
                 self._load(point)
 
     @property
@@ -78,6 +87,91 @@ class Registry:
     def add(self, plugin: Any, source: str = "one-off", distribution: str = "", version: str = "") -> None:
         """Register a module or object with hook implementations; a fault is kept, not raised."""
         self._register(plugin, source, distribution or source, version)
+
+    def load_file(self, path: str | Path) -> list[Entry]:
+        """Load one-off plug-ins from a Python file with hook implementations, for this registry only.
+
+        Returns
+        -------
+        list of Entry : what the file adds; its ``version`` is a hash of the file
+
+        Raises
+        ------
+        PluginError
+            A file that is missing, fails to import, or adds nothing; the registry is as it was before.
+        """
+        path = Path(path)
+        module, version = import_file(path)
+        if self.manager.is_registered(module):
+            return [e for e in self.all() if e.source == str(path)]
+        known = len(self.faults)
+        self._register(module, str(path), path.name, version)
+        faults, self.faults = self.faults[known:], self.faults[:known]
+        added = [e for e in self.all() if e.source == str(path)]
+        hooks = (self.manager.get_hookcallers(module) or []) if self.manager.is_registered(module) else []
+        if not faults and not hooks:
+            faults = [
+                Fault(str(path), "has no hook: write for instance @hookimpl def raceway_contact_laws(): return [MyLaw]")
+            ]
+        if faults:
+            self._remove(module, added)
+            raise PluginError("; ".join(str(fault) for fault in faults))
+        return added
+
+    def _remove(self, plugin: Any, entries: list[Entry]) -> None:
+        if self.manager.is_registered(plugin):
+            self.manager.unregister(plugin)
+        for entry in entries:
+            same = self.entries[entry.kind, entry.name]
+            same.remove(entry)
+            if not same:
+                del self.entries[entry.kind, entry.name]
+
+    def notify(self, hook: str, **arguments: Any) -> None:
+        """Call a life-cycle hook of every plug-in, in the order of registration.
+
+        Raises
+        ------
+        PluginError
+            A plug-in's hook raised; the message names it.  A ``RacewayError`` of its own passes through as it is.
+        """
+        names = {id(plugin): name for name, plugin in self.manager.list_name_plugin()}
+        for implementation in getattr(self.manager.hook, hook).get_hookimpls():
+            others = [p for p in self.manager.get_plugins() if p is not implementation.plugin]
+            try:
+                self.manager.subset_hook_caller(hook, others)(**arguments)
+            except RacewayError:
+                raise
+            except Exception as why:  # a third party's own code
+                raise PluginError(
+                    f"plug-in `{names[id(implementation.plugin)]}`: `{hook}` raises {type(why).__name__}: {why}. "
+                    "Name it in RACEWAY_DISABLE to run without it."
+                ) from why
+
+    def find_any(self, text: str) -> Entry:
+        """The plug-in that ``[KIND:]NAME`` means.
+
+        Raises
+        ------
+        PluginError
+            An unknown kind or name, a name that several kinds have, or one that two plug-ins claim; lists the choices.
+        """
+        kind, colon, name = text.rpartition(":")
+        if colon:
+            kind = kind.strip().replace("-", "_").replace(" ", "_")
+            if kind not in KINDS:
+                raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, KINDS)}; kinds: {', '.join(KINDS)}")
+            return self.find(kind, name.strip())
+        kinds = [k for k in KINDS if (k, name) in self.entries]
+        if len(kinds) == 1:
+            return self.find(kinds[0], name)
+        if kinds:
+            raise PluginError(f"'{name}' is ambiguous; write {' or '.join(f'{k}:{name}' for k in kinds)}")
+        known = sorted({n for _, n in self.entries})
+        message = f"no plug-in named '{name}'{nearest(name, known)}; installed: {', '.join(f'{k}:{n}' for k, n in sorted(self.entries))}"
+        if self.faults:
+            message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
+        raise PluginError(message)
 
     def find(self, kind: str, name: str) -> Entry:
         """The plug-in of a kind and name.
@@ -97,7 +191,9 @@ class Registry:
                 "RACEWAY_DISABLE."
             )
         names = self.names(kind)
-        message = f"no {kind.replace('_', ' ')} named '{name}'{nearest(name, names)}; installed: {', '.join(names) or 'none'}"
+        message = (
+            f"no {kind.replace('_', ' ')} named '{name}'{nearest(name, names)}; installed: {', '.join(names) or 'none'}"
+        )
         if self.faults:
             message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
         raise PluginError(message)
@@ -141,8 +237,12 @@ class Registry:
             except Exception as why:  # a third party's own code
                 self.faults.append(Fault(label, f"`{hook_name}` raises {type(why).__name__}: {why}"))
                 continue
-            for found in (c for one in lists for c in (one or [])):
-                self._add(Entry(kind, getattr(found, "name", "?"), found, distribution, version), label)
+            for one in lists:
+                if not isinstance(one, list | tuple):
+                    self.faults.append(Fault(label, f"`{hook_name}` returns {one!r}, which is not a list of classes"))
+                    continue
+                for found in one:
+                    self._add(Entry(kind, str(getattr(found, "name", "?")), found, distribution, version, source), label)
 
     def _add(self, entry: Entry, label: str) -> None:
         faults = broken_duties(entry.kind, entry.plugin)
@@ -153,20 +253,6 @@ class Registry:
         same = self.entries.setdefault((entry.kind, entry.name), [])
         if all(e.plugin is not entry.plugin for e in same):
             same.append(entry)
-
-
-def _chosen_entry_points() -> list[EntryPoint]:
-    points = sorted(entry_points(group="raceway"), key=lambda p: (p.name, p.dist.name if p.dist else ""))
-    exact = os.environ.get("RACEWAY_PLUGINS")
-    if exact is not None:
-        wanted = _names(exact)
-        points = [p for p in points if wanted & {p.name, p.dist.name if p.dist else ""}]
-    blocked = _names(os.environ.get("RACEWAY_DISABLE", ""))
-    return [p for p in points if not blocked & {p.name, p.dist.name if p.dist else ""}]
-
-
-def _names(text: str) -> set[str]:
-    return {word.strip() for word in text.split(",") if word.strip()}
 
 
 def _version() -> str:
@@ -183,5 +269,3 @@ def _trace(text: str) -> None:
 def default_registry() -> Registry:
     """The plug-ins of this process: built-ins and whatever is installed."""
     return Registry()
-
-

@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from raceway.core.bodies.ring import GYROSCOPIC
 from raceway.core.energy import energy_balance
+from raceway.core.friction import friction_energy
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds
 from raceway.core.lines import Line, lines
@@ -158,11 +160,15 @@ def _cost(simulation: Simulation | None, wall: float, compile_s: float, build: f
 def _stability(model: Model, simulation: Simulation | None) -> dict[str, Any]:
     drift = None
     law = model.scene.contact.law
-    potential = law.state_size == 0 and not law.dissipative and model.system.conservative
+    potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
     if simulation is not None and model.scene.integrator.method.inertial and potential:
         if simulation.start != "ramp" and not model.scene.kinematics.orbiting:
             drift = energy_balance(model.system, simulation.whole).drift
+    friction = None
+    if simulation is not None and model.scene.contact.friction > 0.0:
+        friction = float(friction_energy(model.system, simulation.whole).lost[-1])
     return {
+        "friction_energy_j": friction,
         "critical_time_step_s": simulation.critical_time_step if simulation else None,
         "energy_drift": drift,
         "hourglass_energy_ratio": None,

@@ -127,7 +127,7 @@ def _ramp_turns(model: Model) -> float:
 
 def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
     """Stable limit of explicit steps at the stiffest of the states known before the run."""
-    tangents = [equilibrium.stiffness] if orbit is None else list(orbit.stiffness)
+    tangents = [equilibrium.stiffness, *([] if orbit is None else orbit.stiffness)]
     return min(model.system.critical_time_step(tangent) for tangent in tangents)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
+from raceway.core.bodies.ring import CAGE
 from raceway.core.system import COORDINATES
 from raceway.errors import ConvergenceError
 from raceway.model import Model
@@ -46,7 +47,7 @@ def settle(model: Model) -> Equilibrium:
     system = model.system
     _refuse_no_load(model)
     q, ball, iterations = system.settle(model.guess)
-    now = system.evaluate(q, ball=ball)
+    now = system.without(CAGE).evaluate(q, ball=ball)
     _refuse_free_motion(model, now.stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
     warnings = _warnings(model, inner, outer, now.contact_force)

@@ -7,6 +7,7 @@ import numpy as np
 
 from raceway.core.bodies.ring import CENTRIFUGAL, DAMPING
 from raceway.core.contact import stored_energy
+from raceway.core.friction import friction_energy
 from raceway.core.record import Record
 from raceway.core.system import System
 
@@ -32,8 +33,9 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
 
     Notes
     -----
-    For laws without memory, balls that do not orbit, and contact forces that have a potential.  The stored energy is integrated from the law itself, not from the motion, so that the
-    balance measures the integrator; work and losses are integrals in time of fourth order.
+    For laws without memory, balls that do not orbit, and no gyroscopic moments.  The stored energy is integrated from the
+    law itself, not from the motion, so that the balance measures the integrator; work and losses are integrals in time of
+    fourth order, those of friction sums over steps of first order.
     """
     n, pairs = record.gap.shape
     energy = np.empty(n * pairs)
@@ -45,6 +47,8 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     stored = energy.reshape(n, pairs).sum(axis=1)
     stored -= (record.ball[:, :, 1] * system.table[:, CENTRIFUGAL]).sum(axis=1)
     stored += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
+    friction = friction_energy(system, record)
+    stored += friction.stored
     kinetic = 0.5 * np.einsum("ni,ij,nj->n", v, system.mass, v)
     dt = record.time[1] - record.time[0]
     work = cumulative(np.einsum("ni,ni->n", record.force, v), dt)
@@ -52,7 +56,7 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     if system.scalars[DAMPING] > 0.0:
         speed = np.gradient(record.gap, dt, axis=0)
         lost = lost + system.scalars[DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
-    losses = cumulative(lost, dt)
+    losses = cumulative(lost, dt) + friction.lost
     total = kinetic + stored - work + losses
     size = max(kinetic.max(), np.ptp(stored), np.ptp(work), np.ptp(losses), 1e-300)
     return EnergyBalance(kinetic, stored, work, losses, float(np.abs(total - total[0]).max() / size))

@@ -15,7 +15,7 @@ More, Sorensen: Computing a trust region step, SIAM J. Sci. Stat. Comput. 4 (198
 import numpy as np
 from numba import float64, int64
 
-from raceway.core.bodies.ring import CENTRIFUGAL, TILT_ARM
+from raceway.core.bodies.ring import CAGE, CENTRIFUGAL, TILT_ARM, stop
 from raceway.core.contact import stored_energy
 from raceway.core.dense import cholesky_solve
 from raceway.core.jit import jit
@@ -61,7 +61,7 @@ def settle(
     stiffness : (5, 5) linear stiffness added to the contacts' (the shaft's against tilts)
     free : (5,) 1 for unknowns, 0 for coordinates that are held
     tolerance : residual over the sum of the inner races' forces and the loads
-    t : time [s]: orbiting balls stand still where they are then
+    t : time [s]: balls that orbit stand still where they are then
     report : (2,) out: iterations, relative residual
 
     Returns
@@ -69,6 +69,9 @@ def settle(
     int
         ``CONVERGED``, ``NOT_CONVERGED``, ``BALLS_FAILED``, ``NOT_FINITE`` or ``RUN_AWAY`` (nothing holds the ring).
     """
+    if scalars[CAGE] != 0.0:
+        scalars, table = scalars.copy(), table.copy()
+        stop(t, scalars, table)
     arm = scalars[TILT_ARM]
     scale = np.ones(5)
     scale[3] = 1.0 / arm

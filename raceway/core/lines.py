@@ -43,12 +43,14 @@ def lines(time: np.ndarray, displacement: np.ndarray, wanted: dict[str, float]) 
 
     Notes
     -----
-    Of frequencies that the window (time span T) cannot tell apart, |f1 - f2| < 0.5 / T, the first one is kept.
+    Of frequencies that the window (time span T) cannot tell apart, |f1 - f2| < 0.5 / T, the first one is kept; those
+    above half the sampling rate are left out.
     """
+    most = 0.5 * (len(time) - 1) / (time[-1] - time[0])
     least = 0.5 / (time[-1] - time[0])
     kept: dict[str, float] = {}
     for name, frequency in wanted.items():
-        if all(abs(frequency - other) >= least for other in (0.0, *kept.values())):
+        if frequency < most and all(abs(frequency - other) >= least for other in (0.0, *kept.values())):
             kept[name] = frequency
     found = phasors(time, displacement[:, :3], list(kept.values()))
     return [

@@ -7,7 +7,7 @@ It starts near the solution: from the equilibrium without those forces, or from 
 
 import numpy as np
 
-from raceway.core.bodies.ring import TILT_ARM
+from raceway.core.bodies.ring import CAGE, TILT_ARM, stop
 from raceway.core.dense import solve
 from raceway.core.jit import jit
 from raceway.core.signatures import SETTLE
@@ -21,6 +21,9 @@ def find_root(
     system, law, law_params, scalars, table, stiffness, free, load, tolerance, t, q, ball, law_state, work, f, K, report
 ):
     """Same arguments and result as ``raceway.core.equilibrium.settle``; slips are taken from ``ball`` as committed."""
+    if scalars[CAGE] != 0.0:
+        scalars, table = scalars.copy(), table.copy()
+        stop(t, scalars, table)
     arm = scalars[TILT_ARM]
     rest, zeros = np.zeros(5), np.zeros_like(ball)
     for k in range(ball.shape[0]):
@@ -46,7 +49,7 @@ def find_root(
                 for j in range(5):
                     total += stiffness[i, j] * q[j]
                 r[i] = total * free[i]
-                norm = max(norm, abs(r[i]) * weight[i])
+                norm = max(norm, abs(r[i]) * weight[i]) if np.isfinite(r[i]) else np.inf
         else:
             norm = np.inf
         report[0] = iteration

@@ -10,10 +10,12 @@ import numpy as np
 from raceway.core.bodies import WORK_ROWS
 from raceway.core.bodies.ring import (
     CAGE,
+    DIAMETER,
     FRICTION,
     GYROSCOPIC,
     OFFSET_INNER,
     OFFSET_OUTER,
+    SIDE,
     TILT_ARM,
     place,
 )
@@ -171,7 +173,7 @@ class System:
         q_now, ball_now, total = base._by_parts(settle, q, start, tolerance, base.load, (1, 4, 16))
         if self.conservative:
             return q_now, ball_now, total
-        whole = self.without(FRICTION)
+        whole = self.without(FRICTION, CAGE)
         guess = np.zeros((self.ball_count, 4))
         if self.scalars[GYROSCOPIC] != 0.0:
             q_now, guess, more = whole._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
@@ -229,10 +231,12 @@ class System:
 
     def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
         """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
-        e, _ = self.centre_vectors(q, t)
+        e, direction = self.centre_vectors(q, t)
         inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
         outer = np.arctan2(ball[:, 0], ball[:, 1])
-        return np.column_stack([self.scalars[OFFSET_INNER] * inner, self.scalars[OFFSET_OUTER] * outer])
+        turned = self.table[:, SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
+        groove = self.scalars[OFFSET_INNER] + 0.5 * self.scalars[DIAMETER]
+        return np.column_stack([self.scalars[OFFSET_INNER] * inner - groove * turned, self.scalars[OFFSET_OUTER] * outer])
 
     def at_standstill(self) -> System:
         """Without friction and with balls that do not orbit: for periodic motions that a transient may start on."""

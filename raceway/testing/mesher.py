@@ -40,7 +40,7 @@ class MesherSuite(Suite):
         for name, mesh in mesher.mesh(example_scene().bearing).items():
             corner = np.asarray(mesh.points)[np.asarray(mesh.cells)]
             # Nodes 0 to 3 around the bottom, 4 to 7 above them: the edges at node 0 and at its opposite, node 6.
-            for at, ends in ((0, (1, 3, 4)), (6, (7, 5, 2))):
+            for at, ends in ((0, (1, 3, 4)), (6, (5, 7, 2))):
                 edges = corner[:, ends] - corner[:, [at]]
                 volume = np.linalg.det(edges)
                 require(

@@ -27,4 +27,4 @@ impact             one mass against one contact, for the published impacts and t
 """
 
 #: Rows of ``work``: gap, gap rate, force, d_gap, d_rate, then scratch of the ball solvers.
-WORK_ROWS = 20
+WORK_ROWS = 24

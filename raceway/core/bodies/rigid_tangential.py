@@ -7,13 +7,17 @@ g_i = f_i n_i + (tau_i - T_i) t_i and the outer one takes g_o = f_o n_o + (tau_o
 
 *Gyroscopic*: T = share * M / D with M = J w_R w_c sin(beta).  The ball rolls without spin on the outer race:
 tan(beta) = sin(a_o) / (cos(a_o) + D/d_m), and its spin w_R follows from rolling on both races.  M follows the angles,
-with derivatives.  A ball whose inner contact is open carries all of it on the outer race.
+with derivatives.  The inner race carries no more than its normal force, the outer one the rest: so it fades continuously
+where the inner contact opens.
 
-*Friction*: tau = k_t (L a - slip), at most mu f (return mapping); L is the ball centre's distance from the groove
-centre, the slip is memory.  A ball does not roll in this plane, so sticking contacts add a tangential stiffness that
-rolling balls do not have.
+*Friction*: a contact that sticks stores k_t u^2 / 2 with u = L a - slip outside, L a - r turn - slip inside: L is the
+distance of ball and groove centre at the first touch, r the groove's radius, turn that of the ring's section by its
+tilts, the slip is memory.  So tau = k_t u L / s, at most mu f (return mapping), and work is stored or lost, never
+gained.  A ball does not roll in this plane, so sticking contacts add a tangential stiffness that rolling balls do not
+have.
 
-Neither has a potential: tangents are not symmetric.
+Both put the couple -r h on the section of the inner ring (of friction -r k_t u, which belongs to the stored energy).
+Gyroscopic moments and sliding have no potential: tangents are not symmetric.
 
 References
 ----------
@@ -42,7 +46,7 @@ from raceway.core.bodies.ring import (
     TILT_ARM,
     place,
 )
-from raceway.core.bodies.section import add_ball
+from raceway.core.bodies.section import add_ball, add_couple
 from raceway.core.contact import add_damping
 from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
@@ -83,14 +87,17 @@ def rigid_tangential(
     z = table.shape[0]
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     mu, stick, diameter = scalars[FRICTION], scalars[STICK], scalars[DIAMETER]
+    groove = li + 0.5 * diameter
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
     ea, er, va, vr = work[5][:z], work[5][z:], work[6][:z], work[6][z:]
-    da, dr, merit, done = work[7][:z], work[7][z:], work[8][:z], work[8][z:]
+    da, dr, slope, done = work[7][:z], work[7][z:], work[8][:z], work[8][z:]
     ni_a, ni_r, no_a, no_r = work[9][:z], work[9][z:], work[10][:z], work[10][z:]
     si, so = work[11][:z], work[11][z:]
     keep_f, keep_k, keep_c, h, h_s, h_a = work[12], work[13], work[14], work[15], work[17], work[18]
     cosine, sine = work[16][:z], work[16][z:]
     cross_i, cross_o = work[19][:z], work[19][z:]
+    couple, m_s, m_a, m_o, m_t, h_t = work[20][:z], work[20][z:], work[21][:z], work[21][z:], work[22][:z], work[22][z:]
+    cross_s = work[23][:z]
     for i in range(5):
         f[i] = 0.0
         if K.size > 0:
@@ -100,14 +107,16 @@ def rigid_tangential(
     place(t, q, v, scalars, table, work, 16, 5, 6)
     remaining = z
     for k in range(z):
-        merit[k], done[k], da[k], dr[k] = np.inf, 0.0, 0.0, 0.0
+        slope[k], done[k], da[k], dr[k] = 0.0, 0.0, 0.0, 0.0
         centrifugal = table[k, CENTRIFUGAL]
         length = np.sqrt(ea[k] * ea[k] + er[k] * er[k])
         if centrifugal == 0.0 and length <= li + lo:
             # Nothing presses this ball on either race: midway, without forces.
             scale = (lo + 0.5 * (length - li - lo)) / length
             ball[k, 0], ball[k, 1] = scale * ea[k], scale * er[k]
-            ball[k, 2], ball[k, 3] = ball_known[k, 2], ball_known[k, 3]
+            angle = np.arctan2(ea[k], er[k])
+            ball[k, 2] = li * angle - groove * table[k, SIDE] * (q[3] * sine[k] - q[4] * cosine[k])
+            ball[k, 3] = lo * angle
             done[k] = 2.0
             remaining -= 1
             continue
@@ -136,61 +145,85 @@ def rigid_tangential(
             if done[k] != 0.0:
                 continue
             # Tangential forces h and their derivatives by the contact's length (h_s) and angle (h_a).
+            couple[k], m_s[k], m_a[k], m_o[k], m_t[k], h_t[k] = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for side in range(2):
                 c = k + side * z
-                angle = np.arctan2(ni_a[k], ni_r[k]) if side == 0 else np.arctan2(no_a[k], no_r[k])
-                reach = li if side == 0 else lo
                 h[c], h_s[c], h_a[c] = 0.0, 0.0, 0.0
-                if mu > 0.0:
-                    tau = stick * (reach * angle - ball_known[k, 2 + side])
-                    limit = mu * force[c]
-                    if abs(tau) <= limit:
-                        h[c], h_a[c] = tau, stick * reach
-                    else:
-                        sign = 1.0 if tau > 0.0 else -1.0
-                        h[c] = sign * limit
-                        h_s[c] = -sign * mu * (d_gap[c] + ball_gain * d_rate[c])
-                    ball[k, 2 + side] = reach * angle - h[c] / stick
-            cross_i[k], cross_o[k] = 0.0, 0.0
+                if mu == 0.0:
+                    continue
+                if side == 0:
+                    turned = groove * table[k, SIDE] * (q[3] * sine[k] - q[4] * cosine[k])
+                    reach, length, place_now = li, si[k], li * np.arctan2(ni_a[k], ni_r[k]) - turned
+                else:
+                    reach, length, place_now = lo, so[k], lo * np.arctan2(no_a[k], no_r[k])
+                lever = reach / length if length > 0.0 else 1.0
+                u = place_now - ball_known[k, 2 + side]
+                tau, limit = stick * u * lever, mu * force[c]
+                if abs(tau) <= limit:
+                    h[c], h_a[c], h_s[c] = tau, stick * reach * lever, -tau * lever / reach
+                    if side == 0:
+                        h_t[k] = -stick * groove * lever
+                        m_a[k], m_t[k] = -groove * stick * reach, groove * groove * stick
+                else:
+                    sign = 1.0 if tau > 0.0 else -1.0
+                    h[c] = sign * limit
+                    h_s[c] = -sign * mu * (d_gap[c] + ball_gain * d_rate[c])
+                    u = h[c] / (stick * lever)
+                    if side == 0:
+                        m_s[k] = -groove * (h_s[c] / lever + h[c] / reach)
+                ball[k, 2 + side] = place_now - u
+                if side == 0:
+                    couple[k] = -groove * stick * u
+            cross_i[k], cross_o[k], cross_s[k] = 0.0, 0.0, 0.0
             if scalars[GYROSCOPIC] != 0.0:
                 inner, outer = np.arctan2(ni_a[k], ni_r[k]), np.arctan2(no_a[k], no_r[k])
                 share_i, share_o = scalars[SHARE_INNER] / diameter, scalars[SHARE_OUTER] / diameter
-                if force[k] == 0.0:
-                    share_i, share_o, inner = 0.0, 2.0 / diameter, outer
                 ratio, scale = scalars[BALL_OVER_PITCH], scalars[GYROSCOPIC]
                 moment = gyroscopic_moment(inner, outer, ratio, scale)
                 by_i = gyroscopic_moment(inner + _ANGLE_STEP, outer, ratio, scale)
                 by_i = (by_i - gyroscopic_moment(inner - _ANGLE_STEP, outer, ratio, scale)) / (2.0 * _ANGLE_STEP)
                 by_o = gyroscopic_moment(inner, outer + _ANGLE_STEP, ratio, scale)
                 by_o = (by_o - gyroscopic_moment(inner, outer - _ANGLE_STEP, ratio, scale)) / (2.0 * _ANGLE_STEP)
-                if force[k] == 0.0:
-                    by_o, by_i = by_o + by_i, 0.0
-                h[k] -= share_i * moment
+                carried, grows = share_i * moment, 0.0
+                if abs(carried) > force[k]:
+                    # No more than the normal force; the outer race takes the rest.
+                    sign = 1.0 if moment > 0.0 else -1.0
+                    carried, grows = sign * force[k], -sign * (d_gap[k] + ball_gain * d_rate[k])
+                    share_i, share_o = 0.0, 2.0 / diameter
+                    h[z + k] += carried
+                h[k] -= carried
+                h_s[k] -= grows
                 h_a[k] -= share_i * by_i
                 h[z + k] -= share_o * moment
                 h_a[z + k] -= share_o * by_o
-                cross_i[k], cross_o[k] = -share_i * by_o, -share_o * by_i
+                cross_i[k], cross_o[k], cross_s[k] = -share_i * by_o, -share_o * by_i, grows
+                couple[k] += groove * carried
+                m_s[k] += groove * grows
+                m_a[k] += groove * share_i * by_i
+                m_o[k] = groove * share_i * by_o
             fi, fo = force[k], force[z + k]
             ti_a, ti_r, to_a, to_r = ni_r[k], -ni_a[k], no_r[k], -no_a[k]
             ra = fi * ni_a[k] + h[k] * ti_a - fo * no_a[k] - h[z + k] * to_a
             rr = fi * ni_r[k] + h[k] * ti_r - fo * no_r[k] - h[z + k] * to_r + table[k, CENTRIFUGAL]
-            size = np.sqrt(ra * ra + rr * rr)
-            if size > 1.5 * merit[k] and np.sqrt(da[k] * da[k] + dr[k] * dr[k]) > 1e-13:
+            if slope[k] > 0.0 and -(ra * da[k] + rr * dr[k]) > 0.9 * slope[k]:
+                # Beyond the balance along the last step by more than it began with: go half-way back.
                 da[k] *= 0.5
                 dr[k] *= 0.5
+                slope[k] *= 0.5
                 ball[k, 0] -= da[k]
                 ball[k, 1] -= dr[k]
                 continue
-            merit[k] = size
             ki, ko = -d_gap[k] - ball_gain * d_rate[k], -d_gap[z + k] - ball_gain * d_rate[z + k]
             wi, wo = (1.0 / si[k] if si[k] > 0.0 else 0.0), 1.0 / so[k]
+            oi_a = cross_o[k] * ti_a * wi + cross_s[k] * ni_a[k]
+            oi_r = cross_o[k] * ti_r * wi + cross_s[k] * ni_r[k]
             # dR/dp = -G_i - G_o + cross terms through the moment's dependence on both angles.
             haa, har, hra, hrr = _contact_matrix(ki, fi, h[k], h_s[k], h_a[k], wi, ni_a[k], ni_r[k])
             oaa, oar, ora, orr = _contact_matrix(ko, fo, h[z + k], h_s[z + k], h_a[z + k], wo, no_a[k], no_r[k])
-            jaa = -haa - oaa + cross_i[k] * ti_a * to_a * wo + cross_o[k] * to_a * ti_a * wi
-            jar = -har - oar + cross_i[k] * ti_a * to_r * wo + cross_o[k] * to_a * ti_r * wi
-            jra = -hra - ora + cross_i[k] * ti_r * to_a * wo + cross_o[k] * to_r * ti_a * wi
-            jrr = -hrr - orr + cross_i[k] * ti_r * to_r * wo + cross_o[k] * to_r * ti_r * wi
+            jaa = -haa - oaa + cross_i[k] * ti_a * to_a * wo + to_a * oi_a
+            jar = -har - oar + cross_i[k] * ti_a * to_r * wo + to_a * oi_r
+            jra = -hra - ora + cross_i[k] * ti_r * to_a * wo + to_r * oi_a
+            jrr = -hrr - orr + cross_i[k] * ti_r * to_r * wo + to_r * oi_r
             det = jaa * jrr - jar * jra
             if not abs(det) > 1e-14 * (jaa + jrr) ** 2:
                 shift = -1e-7 * abs(jaa + jrr) - 1.0
@@ -206,6 +239,7 @@ def rigid_tangential(
             ball[k, 0] += sa
             ball[k, 1] += sr
             da[k], dr[k] = sa, sr
+            slope[k] = ra * sa + rr * sr
             if size <= 1e-10 * max(-gap[k], -gap[z + k], 1e-12):
                 # What this step leaves is of second order; forces and tangents are kept from before it.
                 keep_f[k], keep_f[z + k] = fi, fo
@@ -229,21 +263,34 @@ def rigid_tangential(
         elastic, viscous = -keep_k[k], -keep_c[k]
         ki, ko = elastic + ball_gain * viscous, -keep_k[z + k] - ball_gain * keep_c[z + k]
         wi, wo = 1.0 / si[k], 1.0 / so[k]
+        # Outer tangential force by the inner contact's angle and length.
+        oi_a, oi_r = cross_o[k] * ti_a * wi + cross_s[k] * ni_a[k], cross_o[k] * ti_r * wi + cross_s[k] * ni_r[k]
         eaa, ear, era, err = _contact_matrix(elastic, fi, h[k], h_s[k], h_a[k], wi, ni_a[k], ni_r[k])
         paa, par, pra, prr = _contact_matrix(ki, fi, h[k], h_s[k], h_a[k], wi, ni_a[k], ni_r[k])
         oaa, oar, ora, orr = _contact_matrix(ko, fo, h[z + k], h_s[z + k], h_a[z + k], wo, no_a[k], no_r[k])
         # Ring force by the ball's place (P), imbalance by the ball's place (J) and by the ring's motion (E).
         paa, par = -paa + cross_i[k] * ti_a * to_a * wo, -par + cross_i[k] * ti_a * to_r * wo
         pra, prr = -pra + cross_i[k] * ti_r * to_a * wo, -prr + cross_i[k] * ti_r * to_r * wo
-        jaa, jar = paa - oaa + cross_o[k] * to_a * ti_a * wi, par - oar + cross_o[k] * to_a * ti_r * wi
-        jra, jrr = pra - ora + cross_o[k] * to_r * ti_a * wi, prr - orr + cross_o[k] * to_r * ti_r * wi
-        xaa, xar = eaa - cross_o[k] * to_a * ti_a * wi, ear - cross_o[k] * to_a * ti_r * wi
-        xra, xrr = era - cross_o[k] * to_r * ti_a * wi, err - cross_o[k] * to_r * ti_r * wi
+        jaa, jar = paa - oaa + to_a * oi_a, par - oar + to_a * oi_r
+        jra, jrr = pra - ora + to_r * oi_a, prr - orr + to_r * oi_r
+        xaa, xar = eaa - to_a * oi_a, ear - to_a * oi_r
+        xra, xrr = era - to_r * oi_a, err - to_r * oi_r
         det = jaa * jrr - jar * jra
         if det == 0.0:
             return 1
         taa, tar = (paa * jrr - par * jra) / det, (par * jaa - paa * jar) / det
         tra, trr = (pra * jrr - prr * jra) / det, (prr * jaa - pra * jar) / det
+        # The couple by e (ca, cr) and by the ball's place (ba, br); turning the section moves both forces alike.
+        ca = m_s[k] * ni_a[k] + m_a[k] * wi * ti_a
+        cr = m_s[k] * ni_r[k] + m_a[k] * wi * ti_r
+        ba, br = m_o[k] * wo * to_a - ca, m_o[k] * wo * to_r - cr
+        ua, ur = (ba * jrr - br * jra) / det, (br * jaa - ba * jar) / det
+        ha, hr = h_t[k] * ti_a, h_t[k] * ti_r
+        add_couple(
+            cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER], couple[k],
+            ha - taa * ha - tar * hr, hr - tra * ha - trr * hr,
+            ca - ua * xaa - ur * xra, cr - ua * xar - ur * xrr, m_t[k] - ua * ha - ur * hr, f, K,
+        )  # fmt: skip
         maa, mar, mrr = viscous * ni_a[k] ** 2, viscous * ni_a[k] * ni_r[k], viscous * ni_r[k] ** 2
         add_ball(
             cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER],

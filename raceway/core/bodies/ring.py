@@ -56,6 +56,15 @@ def place(t, q, v, scalars, table, work, direction, centre, velocity):
         work[velocity, n + k] = (v[1] + lever * v[4] + cage * z) * c + (v[2] - lever * v[3] - cage * y) * s
 
 
+@jit(void(float64, VECTOR, MATRIX))
+def stop(t, scalars, table):
+    """Let orbiting balls stand still where they are at a time: a static state has no rates."""
+    c, s = np.cos(scalars[6] * t), np.sin(scalars[6] * t)
+    for k in range(table.shape[0]):
+        table[k, 0], table[k, 1] = table[k, 0] * c - table[k, 1] * s, table[k, 1] * c + table[k, 0] * s
+    scalars[6] = 0.0
+
+
 @jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR))
 def ring_force(table, arm, work, direction, row, f):
     """f (5,): the balls' forces on the ring [N], from work[row] = axial (Z,), radial (Z,); f = sum J^T (axial, radial).

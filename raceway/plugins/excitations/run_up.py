@@ -55,8 +55,12 @@ class RunUp:
 
     def phase(self, time: np.ndarray) -> np.ndarray:
         """Angle of the force (n,) [rad] at times (n,)."""
+        import numpy as np
+
         first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
-        return first * time + 0.5 * (last - first) / self.duration_s * time**2 - radians(self.phase_lag_deg)
+        changing = np.minimum(time, self.duration_s)
+        turned = first * changing + 0.5 * (last - first) / self.duration_s * changing**2
+        return turned + last * (time - changing) - radians(self.phase_lag_deg)
 
     def steady(self) -> Bidirectional:
         """The same rotor at its first speed."""

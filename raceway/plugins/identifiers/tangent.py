@@ -16,7 +16,7 @@ class Tangent:
     """Response of M q'' + C q' + K q = F e^{jwt} with the 5x5 tangent of the equilibrium; no time integration."""
 
     name: ClassVar[str] = "tangent"
-    needs: ClassVar[frozenset[str]] = frozenset({"equilibrium"})
+    needs: ClassVar[frozenset[str]] = frozenset({"equilibrium", "period"})
     definition: ClassVar[str] = "tangent: small harmonic force about the static equilibrium, tilts as supported, in the direction of the force"
 
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:

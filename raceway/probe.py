@@ -1,0 +1,140 @@
+"""Calls a plug-in's kernel a few times before a run, so that a broken one is refused by name and not met inside a loop.
+
+This takes less than a millisecond.  It finds what would corrupt a run; ``raceway check-plugin`` finds the rest.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from raceway.errors import PluginError
+
+#: Gaps [m] and rates [m/s] that are tried, all contacts at once.
+_GAPS = (1e-3, 1e-9, 0.0, -1e-9, -1e-6, -1e-5)
+_RATES = (0.0, -0.02, 0.02)
+#: Stands in outputs before a call; no force is so small.
+_MARK = -7.25e-301
+
+
+def probe_law(law: Any, kernel: Any, params: Any, state: Any, distribution: str | None = None) -> None:
+    """Refuse a contact law that breaks its contract on a few gaps and rates.
+
+    Parameters
+    ----------
+    law : the plug-in, for its name;  kernel : what its ``kernel()`` returned
+    params : what its ``build()`` returned, (n, k);  state : (n, m), a row for each contact; not changed
+    distribution : whose it is; looked up in the registry when left out
+
+    Raises
+    ------
+    PluginError
+        Which plug-in of which distribution, what was found, and what the contract says.
+    """
+    from raceway.core.signatures import LAW
+
+    who = _who("contact law", "contact_law", law, distribution)
+    n = len(state)
+    _check_array(params, who, "build()", f"({n}, k): a row for each contact", (n, None))
+    _check_signature(kernel, LAW, "LAW", who)
+    state = np.ascontiguousarray(state, dtype=float)
+    for gap in _GAPS:
+        for rate in _RATES:
+            where = f"at gap {gap:g} m, rate {rate:g} m/s"
+            force, d_gap, d_rate, new = _call_law(kernel, params, state, gap, rate, who, where)
+            outputs = {"force": force, "d_gap": d_gap, "d_rate": d_rate, "state_new": new}
+            _check_outputs(outputs, who, where)
+            if gap >= 0.0 and force.any():
+                worst = force[np.argmax(np.abs(force))]
+                raise PluginError(f"{who}: force {worst:.4g} {where}, outside contact; the contract says zero for gap >= 0")
+            if (force < 0.0).any():
+                raise PluginError(f"{who}: force {force.min():.4g} {where}; the contract says never negative")
+
+
+def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: str | None = None) -> None:
+    """Refuse an excitation that breaks its contract at a few times.
+
+    Parameters
+    ----------
+    kernel : what its ``kernel()`` returned;  params : what its ``parameters()`` returned, (k,)
+
+    Raises
+    ------
+    PluginError
+        As ``probe_law``.
+    """
+    from raceway.core.signatures import FORCE
+
+    who = _who("excitation", "excitation", excitation, distribution)
+    _check_array(params, who, "parameters()", "(k,)", (None,))
+    _check_signature(kernel, FORCE, "FORCE", who)
+    period = excitation.period_s or 1.0 / excitation.frequency_hz
+    for part in (0.0, 0.13, 0.5, 3.7):
+        out = np.full(5, _MARK)
+        where = f"at t = {part * period:g} s"
+        _guarded(kernel, who, where, part * period, params, out)
+        _check_outputs({"out": out}, who, where)
+
+
+def _call_law(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str, where: str) -> tuple[Any, ...]:
+    n = len(state)
+    force, d_gap, d_rate = np.full((3, n), _MARK)
+    new, old = np.full_like(state, _MARK), state.copy()
+    _guarded(kernel, who, where, np.full(n, gap), np.full(n, rate), params, old, new, 1e-6, force, d_gap, d_rate)
+    if not np.array_equal(old, state):
+        raise PluginError(f"{who}: changes state_old {where}; the contract says it is read only")
+    return force, d_gap, d_rate, new
+
+
+def _guarded(kernel: Any, who: str, where: str, *arguments: Any) -> None:
+    try:
+        kernel(*arguments)
+    except Exception as why:  # the plug-in's own code
+        raise PluginError(
+            f"{who}: the kernel raises {type(why).__name__}: {why} {where}; the contract says it never raises: inside a "
+            "compiled loop an exception is lost"
+        ) from why
+
+
+def _check_outputs(outputs: dict[str, Any], who: str, where: str) -> None:
+    for word, values in outputs.items():
+        if (values == _MARK).any():
+            raise PluginError(
+                f"{who}: the kernel leaves `{word}` as it was {where}; the contract says that outputs are overwritten whole"
+            )
+        if not np.isfinite(values).all():
+            bad = values[~np.isfinite(values)][0]
+            raise PluginError(f"{who}: the kernel gives `{word}` = {bad:g} {where}; the contract says finite")
+
+
+def _check_array(values: Any, who: str, source: str, wanted: str, shape: tuple[int | None, ...]) -> None:
+    array = isinstance(values, np.ndarray)
+    found = f"{values.dtype} of shape {values.shape}" if array else type(values).__name__
+    fits = array and values.ndim == len(shape) and all(w in (None, s) for w, s in zip(shape, values.shape, strict=False))
+    if not fits or values.dtype != np.float64 or not values.flags.c_contiguous:
+        raise PluginError(f"{who}: {source} returned {found}; the contract says a C-contiguous float64 array {wanted}")
+    if not np.isfinite(values).all():
+        raise PluginError(f"{who}: {source} returned values that are not finite")
+
+
+def _check_signature(kernel: Any, signature: Any, word: str, who: str) -> None:
+    compiled = getattr(kernel, "overloads", None)
+    if compiled is None:
+        raise PluginError(
+            f"{who}: kernel() returned {kernel!r}, which is not compiled; decorate the function with @jit({word})"
+        )
+    if tuple(signature.args) not in compiled:
+        have = ", ".join(str(s) for s in compiled) or "no signature"
+        raise PluginError(f"{who}: kernel() is compiled for {have}, not for {word}; decorate the function with @jit({word})")
+
+
+def _who(words: str, kind: str, plugin: Any, distribution: str | None) -> str:
+    if distribution is None:
+        from raceway.registry import default_registry
+
+        owners = [
+            e.distribution for e in default_registry().entries.get((kind, plugin.name), []) if e.plugin is type(plugin)
+        ]
+        distribution = owners[0] if owners else type(plugin).__module__
+    return f"{words} '{plugin.name}' of {distribution}"

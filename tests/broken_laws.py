@@ -1,0 +1,191 @@
+"""Contact laws that each break one duty; what finds them is said in the tests."""
+
+from typing import ClassVar
+
+import attrs
+import numpy as np
+from numba import float64, njit, void
+
+from raceway import option
+from raceway.contact_laws.hertz import Hertz
+from raceway.core.jit import jit
+from raceway.core.signatures import LAW
+
+
+@jit(LAW)
+def negative(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        closed = gap[i] < 0.0
+        force[i] = 1e6 * max(-gap[i], 0.0) - (1e5 * gap_rate[i] if closed else 0.0)
+        d_gap[i] = -1e6 if closed else 0.0
+        d_rate[i] = -1e5 if closed else 0.0
+
+
+@jit(LAW)
+def sticky(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        force[i] = 1e6 * max(1e-6 - gap[i], 0.0)
+        d_gap[i] = -1e6 if gap[i] < 1e-6 else 0.0
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def not_a_number(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        force[i] = params[i, 0] * (-gap[i]) ** 1.5
+        d_gap[i] = 0.0
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def incomplete(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        if gap[i] < 0.0:
+            force[i] = params[i, 0] * (-gap[i]) ** 1.5
+            d_gap[i] = -1.5 * params[i, 0] * (-gap[i]) ** 0.5
+            d_rate[i] = 0.0
+
+
+@jit(LAW)
+def raising(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        if gap[i] < -5e-6:
+            raise ValueError("too deep")
+        force[i] = 0.0
+        d_gap[i] = 0.0
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def writing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        state_old[i, 0] = approach
+        state_new[i, 0] = approach
+        force[i] = params[i, 0] * approach**1.5
+        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach)
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def wrong_slope(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        force[i] = params[i, 0] * approach**1.5
+        d_gap[i] = -1.51 * params[i, 0] * np.sqrt(approach)
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def losing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        factor = max(1.0 - 0.5 * gap_rate[i], 0.0)
+        inside = 1.0 if factor > 0.0 else 0.0
+        force[i] = params[i, 0] * approach**1.5 * factor
+        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach) * factor
+        d_rate[i] = -0.5 * params[i, 0] * approach**1.5 * inside
+
+
+@jit(LAW)
+def gaining(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        factor = max(1.0 + 0.5 * gap_rate[i], 0.0)
+        inside = 1.0 if factor > 0.0 else 0.0
+        force[i] = params[i, 0] * approach**1.5 * factor
+        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach) * factor
+        d_rate[i] = 0.5 * params[i, 0] * approach**1.5 * inside
+
+
+@jit(LAW)
+def falling(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        force[i] = params[i, 0] * approach**1.5 * max(1.0 - approach / 1.5e-5, 0.0) ** 2
+        d_gap[i] = 0.0
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def allocating(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    approach = np.maximum(-gap, 0.0)
+    for i in range(gap.size):
+        force[i] = params[i, 0] * approach[i] ** 1.5
+        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach[i])
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def infinite(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        force[i] = params[i, 0] * approach**1.5 + np.exp(1e3 * approach) - 1.0
+        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach) - 1e3 * np.exp(1e3 * approach) * (1.0 if approach > 0.0 else 0.0)
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def neighbours(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        force[i] = params[0, 0] * approach**1.5
+        d_gap[i] = -1.5 * params[0, 0] * np.sqrt(approach)
+        d_rate[i] = 0.0
+
+
+@njit(void(float64[:], float64[:], float64[:, :]))
+def other_signature(gap, force, params):
+    force[:] = gap
+
+
+def plain_python(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    force[:] = 0.0
+
+
+@attrs.frozen
+class Broken(Hertz):
+    """A law with any of the kernels above."""
+
+    name: ClassVar[str] = "broken"
+    function = option(help="the kernel")
+    state_size: int = option(0, help="columns of memory")
+
+    def kernel(self):
+        return self.function
+
+
+@attrs.frozen
+class OwnUnits(Hertz):
+    """Hides a length of its own."""
+
+    name: ClassVar[str] = "own_units"
+
+    def build(self, pairs):
+        return (pairs.hertz_factor / (1.0 + 1e-6 * pairs.curvature_b))[:, None].copy()
+
+
+@attrs.frozen
+class FlatParameters(Hertz):
+    name: ClassVar[str] = "flat"
+
+    def build(self, pairs):
+        return pairs.hertz_factor
+
+
+@attrs.frozen
+class NeedsOption(Hertz):
+    name: ClassVar[str] = "needs_option"
+    stiffness: float = option(unit="N/m3", help="required")
+
+
+@attrs.define
+class Thawed:
+    name: ClassVar[str] = "thawed"
+    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant"})
+    state_size: ClassVar[int] = 0
+    dissipative: ClassVar[bool] = False
+    factor: float = option(1.0, help="a number")
+
+    build = Hertz.build
+    kernel = Hertz.kernel

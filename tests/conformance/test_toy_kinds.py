@@ -1,0 +1,109 @@
+"""Suites of kinds without many built-ins, on small plug-ins that work and on ones that do not."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway import RacewayError
+from raceway.testing import FormatSuite, MesherSuite, ReportSuite
+
+BOX = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
+
+
+@attrs.frozen
+class Box:
+    """One hexahedron for each ring."""
+
+    name = "box"
+
+    def mesh(self, bearing):
+        cells = np.arange(8)[None]
+        return {ring: SimpleNamespace(points=bearing.pitch_diameter * BOX, cells=cells) for ring in ("inner", "outer")}
+
+
+class InsideOut(Box):
+    name = "inside_out"
+
+    def mesh(self, bearing):
+        return {"inner": SimpleNamespace(points=BOX[::-1].copy(), cells=np.array([[1, 0, 2, 3, 4, 5, 6, 7]]))}
+
+
+class Dangling(Box):
+    name = "dangling"
+
+    def mesh(self, bearing):
+        return {"inner": SimpleNamespace(points=BOX, cells=np.arange(1, 9)[None])}
+
+
+@attrs.frozen
+class Json:
+    """Plain tables as JSON."""
+
+    name = "json"
+    suffixes = (".json",)
+
+    def read(self, path):
+        try:
+            return json.loads(Path(path).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as why:
+            raise RacewayError(f"`{path}` cannot be read: {why}") from why
+
+    def write(self, path, what):
+        Path(path).write_text(json.dumps(what), encoding="utf-8")
+
+    def example_content(self):
+        return {"points": [[0.0, 1.0]], "name": "box"}
+
+
+class Careless(Json):
+    name = "careless"
+    suffixes = ("JSON",)
+
+    def read(self, path):
+        return json.loads(Path(path).read_text(encoding="latin-1") or "{}")
+
+
+@attrs.frozen
+class Text:
+    """One line of text."""
+
+    name = "text"
+
+    def write(self, result, folder):
+        path = Path(folder) / "result.txt"
+        path.write_text(f"{result.identification.equivalent_stiffness:.4g} N/m")
+        return [path]
+
+
+class Forgetful(Text):
+    name = "forgetful"
+
+    def write(self, result, folder):
+        super().write(result, folder)
+        return []
+
+
+def failed(suite, plugin):
+    return {row.name for row in suite.conformity(plugin).rows if not row.good}
+
+
+@pytest.mark.parametrize(("suite", "plugin"), [(MesherSuite, Box()), (FormatSuite, Json()), (ReportSuite, Text())])
+def test_sound_ones_conform(suite, plugin):
+    assert suite.conformity(plugin).conforms
+
+
+@pytest.mark.parametrize(
+    ("suite", "plugin", "checks"),
+    [
+        (MesherSuite, InsideOut(), {"volumes"}),
+        (MesherSuite, Dangling(), {"meshes"}),
+        (FormatSuite, Careless(), {"declaration", "bad_files"}),
+        (ReportSuite, Forgetful(), {"writes"}),
+    ],
+)
+def test_broken_ones_do_not(suite, plugin, checks):
+    assert checks <= failed(suite, plugin)

@@ -1,0 +1,241 @@
+"""A broken, blocked, missing or doubled plug-in is named, and never takes the others down."""
+
+import pytest
+
+from raceway.errors import PluginError
+from raceway.registry import Registry
+from raceway.requires import check_requires
+from tests.fake_site import LAW, FakeSite
+
+BROKEN = {
+    "import": ("import a_module_that_nobody_has", "fails to import: ModuleNotFoundError"),
+    "exit": ("import sys; sys.exit(3)", "fails to import: SystemExit"),
+    "hook-unknown": (
+        "from raceway import hookimpl\n@hookimpl\ndef raceway_contact_lows(): return []",
+        "does not fit the hooks: unknown hook 'raceway_contact_lows'",
+    ),
+    "hook-arguments": (
+        "from raceway import hookimpl\n@hookimpl\ndef raceway_contact_laws(scene): return []",
+        "does not fit the hooks",
+    ),
+    "hook-raises": (
+        "from raceway import hookimpl\n@hookimpl\ndef raceway_excitations(): raise RuntimeError('no licence')",
+        "`raceway_excitations` raises RuntimeError: no licence",
+    ),
+    "hook-returns": (
+        LAW.format(name="single", cls="Single").replace("return [Single]", "return Single"),
+        "which is not a list of classes",
+    ),
+    "instance": (
+        LAW.format(name="made", cls="Made").replace("[Made]", "[Made()]"),
+        "is not a class",
+    ),
+    "duties": (
+        "import attrs\nfrom raceway import hookimpl\n@attrs.frozen\nclass Half:\n    name = 'half'\n"
+        + "@hookimpl\ndef raceway_contact_laws(): return [Half]",
+        "has no `discretisations`, has no `state_size`, has no `dissipative`, has no `build`, has no `kernel`",
+    ),
+    "unnamed": (
+        LAW.format(name="x", cls="NoName").replace('    name: ClassVar[str] = "x"', "    pass"),
+        "has no class attribute `name`",
+    ),
+}
+
+
+@pytest.fixture
+def site(tmp_path, monkeypatch):
+    return FakeSite(tmp_path, monkeypatch)
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_plugin_is_named_and_the_others_work(site, case):
+    source, reason = BROKEN[case]
+    site.install(f"broken-{case}", source, entry="broken")
+    site.install("good", LAW.format(name="good_law", cls="Good"))
+    registry = Registry()
+    told = [str(f) for f in registry.faults if "broken" in f.source]
+    assert len(told) == 1 and reason in told[0] and f"broken-{case}" in told[0]
+    assert registry.find("contact_law", "good_law").distribution == "good"
+    assert registry.find("contact_law", "hertz").distribution == "raceway"
+    with pytest.raises(PluginError, match="broken"):
+        registry.find("contact_law", "no_such_law")
+
+
+def test_two_plugins_of_one_name_shadow_each_other(site):
+    site.install("first", LAW.format(name="twin", cls="Twin1"))
+    site.install("second", LAW.format(name="twin", cls="Twin2"))
+    registry = Registry()
+    with pytest.raises(PluginError, match="`Twin1` of first and `Twin2` of second.*RACEWAY_DISABLE"):
+        registry.find("contact_law", "twin")
+    assert ("contact_law", "twin") in registry.shadowed()
+
+
+def test_a_built_in_cannot_be_replaced_silently(site):
+    site.install("other", LAW.format(name="hertz", cls="OtherHertz"))
+    with pytest.raises(PluginError, match="`Hertz` of raceway and `OtherHertz` of other"):
+        Registry().find("contact_law", "hertz")
+
+
+def test_equal_entry_point_names_of_two_distributions_both_load(site):
+    site.install("alpha", LAW.format(name="alpha_law", cls="Alpha"), entry="laws")
+    site.install("beta", LAW.format(name="beta_law", cls="Beta"), entry="laws")
+    registry = Registry()
+    assert not [f for f in registry.faults if "laws" in f.source]
+    assert {"alpha_law", "beta_law"} <= set(registry.names("contact_law"))
+
+
+@pytest.mark.parametrize("blocked", ["two", "entry-two", " two , other"])
+def test_disable(site, monkeypatch, blocked):
+    site.install("one", LAW.format(name="law_one", cls="One"))
+    site.install("two", LAW.format(name="law_two", cls="Two"), entry="entry-two")
+    monkeypatch.setenv("RACEWAY_DISABLE", blocked)
+    names = Registry().names("contact_law")
+    assert "law_one" in names and "law_two" not in names and "hertz" in names
+
+
+def test_exact_set(site, monkeypatch):
+    site.install("one", LAW.format(name="law_one", cls="One"))
+    site.install("two", LAW.format(name="law_two", cls="Two"))
+    monkeypatch.setenv("RACEWAY_PLUGINS", "two, three")
+    registry = Registry()
+    names = registry.names("contact_law")
+    assert "law_two" in names and "law_one" not in names and "hertz" in names
+    assert [str(f) for f in registry.faults] == ["plug-in `three`: named in RACEWAY_PLUGINS, but not installed"]
+    monkeypatch.setenv("RACEWAY_PLUGINS", "")
+    assert "law_two" not in Registry().names("contact_law")
+
+
+def test_trace_writes_every_hook_call(site, monkeypatch, capfd):
+    monkeypatch.setenv("RACEWAY_TRACE", "1")
+    registry = Registry()
+    registry.hook.raceway_chunk_done(done=1, total=2)
+    told = capfd.readouterr().err
+    assert "raceway_contact_laws" in told and "raceway_chunk_done" in told and "total: 2" in told
+
+
+LIFE_CYCLE = """
+from raceway import hookimpl
+calls = []
+@hookimpl
+def raceway_plan_made(plan): calls.append(plan); raise ZeroDivisionError("in the plug-in")
+@hookimpl
+def raceway_chunk_done(done, total): calls.append((done, total))
+@hookimpl
+def raceway_run_finished(result): calls.append(result)
+@hookimpl
+def raceway_run_failed(error): calls.append(error)
+"""
+
+
+def test_life_cycle_hooks_name_the_plugin_that_fails(tmp_path):
+    path = tmp_path / "watcher.py"
+    path.write_text(LIFE_CYCLE)
+    registry = Registry(third_party=False)
+    registry.load_file(path)
+    registry.notify("raceway_chunk_done", done=3, total=4)
+    registry.notify("raceway_run_finished", result="result")
+    registry.notify("raceway_run_failed", error=ValueError())
+    with pytest.raises(PluginError, match=r"watcher\.py.*raceway_plan_made.*ZeroDivisionError: in the plug-in"):
+        registry.notify("raceway_plan_made", plan="plan")
+
+
+def test_one_off_file(tmp_path):
+    path = tmp_path / "my_law.py"
+    path.write_text(LAW.format(name="one_off", cls="OneOff"))
+    registry = Registry(third_party=False)
+    (entry,) = registry.load_file(path)
+    assert (entry.kind, entry.name, entry.distribution) == ("contact_law", "one_off", "my_law.py")
+    assert len(entry.version) == 12
+    assert registry.load_file(path) == [entry], "loading it twice is loading it once"
+    assert "one_off" not in Registry(third_party=False).names("contact_law")
+    changed = tmp_path / "other.py"
+    changed.write_text(LAW.format(name="one_off", cls="Other"))
+    registry.load_file(changed)
+    with pytest.raises(PluginError, match="two plug-ins claim the name 'one_off'"):
+        registry.find("contact_law", "one_off")
+
+
+@pytest.mark.parametrize(
+    ("name", "source", "reason"),
+    [
+        ("missing.py", None, "No such file"),
+        ("law.txt", "", r"must be a Python file"),
+        ("syntax.py", "def broken(:", "SyntaxError"),
+        ("raises.py", "\n\nraise KeyError('gone')", r"raises\.py`, line 3: KeyError: 'gone'"),
+        ("empty.py", "x = 1", "has no hook: write for instance @hookimpl"),
+        ("bad.py", BROKEN["duties"][0], "has no `discretisations`"),
+        ("hook.py", BROKEN["hook-unknown"][0], "unknown hook"),
+    ],
+)
+def test_one_off_file_that_cannot_be_used(tmp_path, name, source, reason):
+    if source is not None:
+        (tmp_path / name).write_text(source)
+    registry = Registry(third_party=False)
+    before = [e.plugin for e in registry.all()]
+    with pytest.raises(PluginError, match=reason):
+        registry.load_file(tmp_path / name)
+    assert [e.plugin for e in registry.all()] == before and not registry.faults
+    assert registry.find("contact_law", "hertz").name == "hertz"
+
+
+def test_names_on_the_command_line():
+    registry = Registry(third_party=False)
+    assert registry.find_any("hertz").kind == "contact_law"
+    assert registry.find_any("contact-law:penalty").name == "penalty"
+    for text, reason in {
+        "herz": r"no plug-in named 'herz' \(did you mean 'hertz'\?\); installed: contact_law:hertz",
+        "law:hertz": "no kind of plug-in named 'law'.*kinds: contact_law, excitation",
+        "integrator:hertz": "no integrator named 'hertz'",
+    }.items():
+        with pytest.raises(PluginError, match=reason):
+            registry.find_any(text)
+
+
+def test_a_name_that_two_kinds_have_is_ambiguous(tmp_path):
+    path = tmp_path / "law.py"
+    path.write_text(LAW.format(name="newmark", cls="NewmarkLaw"))
+    registry = Registry(third_party=False)
+    registry.load_file(path)
+    with pytest.raises(PluginError, match="'newmark' is ambiguous; write contact_law:newmark or integrator:newmark"):
+        registry.find_any("newmark")
+    assert registry.find_any("integrator:newmark").distribution == "raceway"
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        (
+            {"raceway-thing": ">=1.2"},
+            "is required by this scene and not installed. Install it: pip install 'raceway-thing>=1.2'",
+        ),
+        ({"raceway-thing": ""}, "Install it: pip install raceway-thing"),
+        ({"goood": ""}, "not installed (did you mean 'good'?)"),
+        ({"good": ">=2"}, "requires >=2, installed is good 1.4. Install a fitting one: pip install --upgrade 'good>=2'"),
+        ({"good_law": "<1"}, "installed is good 1.4"),
+        ({"good": "newest"}, "is not a version specifier"),
+        ({"good": 1.2}, 'must be a string such as ">=1.2"'),
+        ({"broken": ""}, "is installed, but could not be loaded: fails to import"),
+        ({"blocked": ""}, "the environment variable RACEWAY_DISABLE leaves it out"),
+        (">=1", "must be a table of names and versions"),
+    ],
+)
+def test_requires_refuses(site, monkeypatch, table, message):
+    _three(site, monkeypatch)
+    mistakes = []
+    check_requires(table, Registry(), mistakes)
+    assert len(mistakes) == 1 and message in str(mistakes[0]) and str(mistakes[0]).startswith("`requires")
+
+
+def test_requires_accepts_distribution_entry_point_and_plugin(site, monkeypatch):
+    _three(site, monkeypatch)
+    mistakes = []
+    met = {"good": ">=1.2, <2", "Good": "==1.4", "good_law": ">=1", "good-entry": "", "hertz": "", "raceway": ">=0.1"}
+    check_requires(met, Registry(), mistakes)
+    assert not mistakes
+
+
+def _three(site, monkeypatch):
+    site.install("good", LAW.format(name="good_law", cls="Good"), version="1.4", entry="good-entry")
+    site.install("broken", "import a_module_that_nobody_has")
+    site.install("blocked", LAW.format(name="blocked_law", cls="Blocked"))
+    monkeypatch.setenv("RACEWAY_DISABLE", "blocked")
