@@ -21,7 +21,8 @@ from raceway import build_model, load_scene, make_plan
 from raceway.core.orbit import steady_orbit
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import from_orbit
-from raceway.model import Model, settle
+from raceway.model import Model
+from raceway.statics import settle
 
 EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "b7206.toml"
 #: Two loops of the same physics, solved to 1e-9 of the largest force, differ by rounding only.

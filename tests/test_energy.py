@@ -8,8 +8,8 @@ import pytest
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway.core.contact import stored_energy
 from raceway.core.energy import cumulative, energy_balance
-from raceway.model import settle
 from raceway.simulate import simulate
+from raceway.statics import settle
 
 
 def drift(integrator: str, steps: int, damping: float = 0.0, inertia: bool = False, law: str = "hertz") -> float:

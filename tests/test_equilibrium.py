@@ -9,7 +9,8 @@ from benchmarks.evidence._scenes import imbalance, model_of, settled, static
 from benchmarks.evidence.equilibria import EXTREME_RESIDUAL, families, loose, random_scenes, solve
 from raceway.core.bodies.ring import CENTRIFUGAL, COSINE, SINE
 from raceway.errors import ConvergenceError
-from raceway.model import Model, settle
+from raceway.model import Model
+from raceway.statics import settle
 from tests.reference.ring import Ring
 from tests.reference.statics import equilibrium
 

@@ -10,8 +10,8 @@ from benchmarks.evidence.identified_stiffness import INTEGRATORS, LIMIT, referen
 from raceway import scene_from_dict
 from raceway.core.identification import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
 from raceway.core.record import Motion, Record, Schedule
-from raceway.model import settle
 from raceway.run import run
+from raceway.statics import settle
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi
 FREQUENCY = SPEED / (2.0 * np.pi)

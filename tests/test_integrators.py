@@ -12,8 +12,8 @@ from raceway import scene_from_dict
 from raceway.core.record import Schedule
 from raceway.core.start import at_rest
 from raceway.errors import StabilityError
-from raceway.model import settle
 from raceway.simulate import simulate
+from raceway.statics import settle
 
 INTEGRATORS = orders.INTEGRATORS
 

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.evidence._scenes import model_of, rig_force, rotating
 from raceway.core.orbit import at_time, differentiation, steady_orbit
-from raceway.model import settle
+from raceway.statics import settle
 from tests.reference.ring import Ring
 from tests.reference.shooting import periodic, swinging
 

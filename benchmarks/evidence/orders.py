@@ -16,8 +16,9 @@ from benchmarks.evidence._scenes import model_of, rig_force, rotating
 from raceway import scene_from_dict
 from raceway.core.record import Motion, Schedule
 from raceway.core.system import System
-from raceway.model import Model, settle
+from raceway.model import Model
 from raceway.simulate import simulate
+from raceway.statics import settle
 from tests.reference.ring import Ring
 from tests.reference.shooting import rotating as rotating_force
 from tests.reference.shooting import trajectory

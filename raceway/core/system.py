@@ -213,7 +213,7 @@ class System:
                 raise ConvergenceError(
                     f"there is no static equilibrium: nothing holds the ring against the load along {free}. Hold it or load "
                     "more balls.",
-                    {"q": start, "ball": ball_now},
+                    {"q": np.array(q, dtype=float), "ball": ball_now},
                 )
         what = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
         raise ConvergenceError(
