@@ -17,8 +17,12 @@ from typing import Any
 import numba
 import numpy as np
 
+_compiled = numba.njit(error_model="numpy")
+#: Written into its caller, so that what the caller does not use is not computed.
+_inlined = numba.njit(error_model="numpy", inline="always")
 
-@numba.njit
+
+@_compiled
 def hertz(factor: float, damping: float, approach: float, rate: float) -> Any:
     """Force, d(force)/d(approach) and d(force)/d(approach rate) of one contact; rate is that of the approach."""
     if approach <= 0.0:
@@ -30,7 +34,7 @@ def hertz(factor: float, damping: float, approach: float, rate: float) -> Any:
     return force, 1.5 * slope, damping
 
 
-@numba.njit
+@_inlined
 def massless_ball(ea, er, va, vr, li, lo, ki, ko, damping, gain, known, share, guess):  # type: ignore[no-untyped-def]
     """Both races in series: ball position, force, its direction, two tangents in it, the outer approach."""
     length = sqrt(ea * ea + er * er)
@@ -67,7 +71,7 @@ def massless_ball(ea, er, va, vr, li, lo, ki, ko, damping, gain, known, share, g
     return lo + outer, fi, na, nr, di * part, ri * part, fi / length, outer
 
 
-@numba.njit
+@_inlined
 def heavy_ball(ea, er, va, vr, li, lo, ki, ko, damping, gain, known_a, known_r, centrifugal, pa, pr):  # type: ignore[no-untyped-def]
     """Ball position, forces (inner, outer), approaches, force on the ring and its tangents in the meridian plane."""
     da, dr, slope = 0.0, 0.0, 0.0
@@ -121,7 +125,7 @@ def heavy_ball(ea, er, va, vr, li, lo, ki, ko, damping, gain, known_a, known_r, 
     return pa, pr, np.nan, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
 
 
-@numba.njit
+@_compiled
 def eliminate(J, x):  # type: ignore[no-untyped-def]
     """x <- J^-1 x for 5 unknowns; J is symmetric to damping and positive: no pivoting."""
     for c in range(5):
@@ -141,7 +145,7 @@ def eliminate(J, x):  # type: ignore[no-untyped-def]
 def fused_loop(inertial: bool, implicit: bool) -> Callable[..., Any]:
     """The loop for one case; the two flags are constants when it is compiled."""
 
-    @numba.njit
+    @_compiled
     def loop(  # type: ignore[no-untyped-def]
         scalars, table, factors, force, mass, damping, stiffness, free, load, beta, gamma, tolerance, dt, steps,
         q0, v0, a0, ball, before, rows, probes,

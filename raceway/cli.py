@@ -6,21 +6,19 @@ Whatever is heavy is imported inside the command that needs it: ``--help``, ``ch
 
 from __future__ import annotations
 
-import os
-import re
 from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from raceway import __version__
-from raceway.console import Commands, described, print_json, warn
-from raceway.errors import ConvergenceError, Mistake, RacewayError, SceneError
+from raceway.command_inputs import changed_tables, faults, load, require_matplotlib, slug, tell_faults, writable
+from raceway.console import Commands, described, print_json
+from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.registry import default_registry
 
 if TYPE_CHECKING:
-    from raceway.registry import Registry
     from raceway.scene import Scene
 
 _RESULTS = Path("raceway-out")
@@ -50,10 +48,13 @@ def _common(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
 
 
-_scene = click.argument("scene", type=click.Path(path_type=Path))
+_scene = click.argument("scene", type=click.Path(path_type=Path, readable=False))
 _set = click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
 _out = click.option(
-    "--out", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the results [raceway-out/TITLE]."
+    "--out",
+    type=click.Path(path_type=Path, readable=False),
+    metavar="DIR",
+    help="Folder of the results [raceway-out/TITLE].",
 )
 
 
@@ -72,12 +73,12 @@ def run(scene: Path, changes: tuple[str, ...], out: Path | None, pictures: bool,
     Example:
       raceway run examples/b7206.toml --set excitation.speed_rpm=15000 --set supports.tilt=free --pictures
     """
-    registry = _registry()
-    loaded = _load(scene, changes, registry)
-    folder = _writable(out or _RESULTS / slug(loaded.title))
+    registry = default_registry()
+    loaded = load(scene, changes, registry)
+    folder = writable(out or _RESULTS / slug(loaded.title))
     if pictures:
-        _require_matplotlib("leave out --pictures")
-    _tell_faults(registry)
+        require_matplotlib("leave out --pictures")
+    tell_faults(registry)
     with _progress() as progress:
         from raceway.run import run as compute
 
@@ -109,10 +110,10 @@ def plan(scene: Path, changes: tuple[str, ...], as_json: bool) -> int:
     """
     from raceway.plan import make_plan
 
-    registry = _registry()
-    loaded = _load(scene, changes, registry)
+    registry = default_registry()
+    loaded = load(scene, changes, registry)
     content = make_plan(loaded).as_dict()
-    _tell_faults(registry)
+    tell_faults(registry)
     _show({"title": loaded.title, **content}, as_json, None, lambda screen: screen.plan_screen(loaded.title, content))
     return 0
 
@@ -130,10 +131,10 @@ def check(scene: Path, changes: tuple[str, ...], as_json: bool) -> int:
     """
     from raceway.plan import make_plan
 
-    registry = _registry()
-    loaded = _load(scene, changes, registry)
+    registry = default_registry()
+    loaded = load(scene, changes, registry)
     make_plan(loaded)
-    _tell_faults(registry)
+    tell_faults(registry)
     if as_json:
         print_json({"errors": []})
     else:
@@ -158,13 +159,15 @@ def compare(
       raceway compare examples/b7206.toml --vary excitation.kind=unidirectional,bidirectional \\
           --vary excitation.speed_rpm=10980:15000:5
     """
-    registry = _registry()
-    tables = _tables(scene, changes)
-    title = _load(scene, changes, registry).title
-    folder = _writable(out or _RESULTS / f"{slug(title)}-compare")
+    registry = default_registry()
+    tables, mistakes = changed_tables(scene, changes)
+    if mistakes:
+        raise SceneError(mistakes)
+    title = str(tables["title"])
+    folder = writable(out or _RESULTS / f"{slug(title)}-compare")
     if pictures:
-        _require_matplotlib("add --no-pictures")
-    _tell_faults(registry)
+        require_matplotlib("add --no-pictures")
+    tell_faults(registry)
     with _progress() as progress:
         from raceway.result import write_json
         from raceway.studies.compare import compare as study
@@ -181,20 +184,21 @@ def compare(
 
 @main.command(short_help="Compute the published reference cases.")
 @click.option("--only", metavar="CASE", help="One case instead of all.")
+@click.option("--all", "every", is_flag=True, help="Show every number, not only the worst of each case.")
 @_common
-def verify(only: str | None, as_json: bool) -> int:
+def verify(only: str | None, every: bool, as_json: bool) -> int:
     """Compute published reference cases; exit code 1 when a number misses its tolerance.
 
     \b
     Example:
-      raceway verify --json
+      raceway verify --only harris-table-6.1 --all
     """
     with _progress() as progress:
         from raceway.studies.verify import verify as study
 
         verification = study(only, progress)
     content = verification.as_dict()
-    _show(content, as_json, None, lambda screen: screen.verify_screen(content, verification.passed))
+    _show(content, as_json, None, lambda screen: screen.verify_screen(content, verification.passed, every))
     return 0 if verification.passed else 1
 
 
@@ -211,15 +215,15 @@ def plugins(as_json: bool) -> int:
     """
     from raceway.screen import plugin_rows
 
-    registry = _registry()
+    registry = default_registry()
     rows = plugin_rows(registry.all())
-    faults = _faults(registry)
+    broken = faults(registry)
     if as_json:
-        print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in faults]})
-        return 2 if faults else 0
+        print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in broken]})
+        return 2 if broken else 0
     _show(rows, False, None, lambda screen: screen.plugins_screen(rows))
-    if faults:
-        raise RacewayError("\n  ".join(faults))
+    if broken:
+        raise RacewayError("\n  ".join(broken))
     return 0
 
 
@@ -235,7 +239,7 @@ def schema(as_json: bool) -> int:
     from raceway.schema import scene_schema
 
     del as_json  # it is JSON either way
-    print_json(scene_schema(_registry()))
+    print_json(scene_schema(default_registry()))
     return 0
 
 
@@ -268,79 +272,6 @@ def cache(clear: bool, as_json: bool) -> int:
     return 0
 
 
-def slug(title: str) -> str:
-    """A folder's name from a title: letters, digits, dots and dashes, at most 80."""
-    return re.sub(r"[^A-Za-z0-9._]+", "-", title)[:80].strip("-._") or "scene"
-
-
-def _registry() -> Registry:
-    from raceway.registry import default_registry
-
-    return default_registry()
-
-
-def _faults(registry: Registry) -> list[str]:
-    found = [str(fault) for fault in registry.faults]
-    for kind, name in registry.shadowed():
-        owners = " and ".join(f"{e.plugin.__qualname__} of {e.distribution}" for e in registry.entries[kind, name])
-        found.append(
-            f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}. Remove one, or name it in RACEWAY_DISABLE"
-        )
-    return found
-
-
-def _tell_faults(registry: Registry) -> None:
-    """Plug-ins that the scene does not use are no reason to stop."""
-    for text in _faults(registry):
-        warn(f"{text} (not used here)")
-
-
-def _tables(scene: Path, changes: tuple[str, ...]) -> dict[str, Any]:
-    """The scene's tables with the changes; a folder in its place is a common slip."""
-    from raceway.scene_file import parse_change, read_toml, with_value
-
-    if scene.is_dir():
-        inside = sorted(str(p) for p in scene.glob("*.toml"))
-        hint = f"; scenes in it: {', '.join(inside[:5])}" if inside else " without a scene (*.toml) in it"
-        raise SceneError.at(str(scene), None, f"is a folder{hint}")
-    tables = read_toml(scene)
-    mistakes: list[Mistake] = []
-    for change in changes:
-        try:
-            tables = with_value(tables, *parse_change(change))
-        except SceneError as error:
-            mistakes += [Mistake(f"--set {m.path}", m.value, m.message) for m in error.mistakes]
-    if mistakes:
-        raise SceneError(mistakes)
-    tables.setdefault("title", scene.stem)
-    return tables
-
-
-def _load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
-    from raceway.scene_file import scene_from_dict
-
-    return scene_from_dict(_tables(scene, changes), registry)
-
-
-def _writable(folder: Path) -> Path:
-    """Refuse a folder that cannot be written before anything is computed; make nothing yet."""
-    place = folder
-    while not place.exists() and place != place.parent:
-        place = place.parent
-    if not place.is_dir():
-        raise RacewayError(
-            f"`{folder}` cannot be the folder of the results: `{place}` is a file. Choose another with --out."
-        )
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise RacewayError(f"`{folder}` cannot be written: no permission in `{place}`. Choose another folder with --out.")
-    return folder
-
-
-def _require_matplotlib(otherwise: str) -> None:
-    if find_spec("matplotlib") is None:
-        raise RacewayError(f'pictures need matplotlib: pip install "raceway[pictures]", or {otherwise}.')
-
-
 def _progress() -> Any:
     from raceway.cache_folder import current_folder
     from raceway.progress import ProgressBar
@@ -369,7 +300,8 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
         error.add_note(f"the last good state is lost: {why}")
         return
     error.files = {path.stem.replace("-", "_"): str(path) for path in paths}  # type: ignore[attr-defined]
-    error.add_note("last good state: " + ", ".join(str(path) for path in paths))
+    what = "failure and last good state" if len(paths) > 1 else "failure"
+    error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
 def _show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[Any], Any]) -> None:
@@ -383,6 +315,6 @@ def _show(content: Any, as_json: bool, failed: RacewayError | None, screen: Call
 
     from raceway import screen as tables
 
-    Console(highlight=False).print(screen(tables), crop=False, overflow="ignore")
+    Console(highlight=False).print(screen(tables), crop=False)
     if failed is not None:
         raise failed

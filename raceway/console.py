@@ -26,7 +26,9 @@ from raceway.options import nearest
 class Commands(click.Group):
     """A group of commands that ends with one message and an exit code, whatever happens."""
 
-    def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any) -> Any:
+    def main(  # type: ignore[override]  # click declares overloads; this one always exits
+        self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any
+    ) -> Any:
         words = list(sys.argv[1:] if args is None else args)
         extra["standalone_mode"] = False
         sys.exit(guarded(lambda: super(Commands, self).main(words, prog_name="raceway", **extra), words))

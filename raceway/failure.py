@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import os
+import io
 from pathlib import Path
 
 import numpy as np
 
-from raceway.errors import ConvergenceError, RacewayError
+from raceway.errors import ConvergenceError
+from raceway.files import write_whole
 from raceway.result import without_nan, write_json
 from raceway.scene import Scene
 
@@ -17,7 +18,7 @@ def save_failure(error: ConvergenceError, scene: Scene, folder: Path) -> list[Pa
 
     Parameters
     ----------
-    error : with ``state``, arrays by name (q, v, a (5,): displacement [m, rad], velocity, acceleration; ball (Z, 2) [m]; t [s])
+    error : with ``state``, arrays by name: t [s]; q, v, a (5,) displacement [m, rad] and its rates; ball (Z, 2) [m]
 
     Raises
     ------
@@ -33,17 +34,7 @@ def save_failure(error: ConvergenceError, scene: Scene, folder: Path) -> list[Pa
     }
     paths = [write_json(without_nan(content), folder / "failure.json")]
     if arrays:
-        paths.append(_save_arrays(arrays, folder / "last-good-state.npz"))
+        memory = io.BytesIO()
+        np.savez(memory, **arrays)  # type: ignore[arg-type]
+        paths.append(write_whole(memory.getvalue(), folder / "last-good-state.npz"))
     return paths
-
-
-def _save_arrays(arrays: dict[str, np.ndarray], path: Path) -> Path:
-    scratch = path.with_name(f".{path.stem}.{os.getpid()}.npz")
-    try:
-        np.savez(scratch, **arrays)  # type: ignore[arg-type]
-        scratch.replace(path)
-    except OSError as why:
-        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}.") from None
-    finally:
-        scratch.unlink(missing_ok=True)
-    return path

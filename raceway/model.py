@@ -12,6 +12,8 @@ from raceway.contracts import ContactPairs
 from raceway.core.bodies import ring
 from raceway.core.geometry import BallBearing
 from raceway.core.hertz import Ellipse, contact_modulus
+from raceway.core.plugin_kernel import plugin_kernel
+from raceway.core.signatures import FORCE, LAW
 from raceway.core.system import System
 from raceway.errors import PluginError
 from raceway.estimate import axial_approach
@@ -73,7 +75,7 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     system = System(
         kernel=kernel,
         base_kernel=base,
-        law=scene.contact.law.kernel(),
+        law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
         law_params=_law_params(scene, inner, outer, modulus, reference),
         law_state=np.zeros((2 * len(azimuth), scene.contact.law.state_size)),
         scalars=_scalars(scene, plan, geometry, inner, outer, reference),
@@ -222,7 +224,7 @@ def _excitation(scene: Scene) -> dict[str, Any]:
         raise PluginError(
             f"excitation '{scene.excitation.name}': parameters() returned shape {parameters.shape}; it must be (k,)"
         )
-    return {"force": scene.excitation.kernel(), "force_params": parameters}
+    return {"force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"), "force_params": parameters}
 
 
 def _first_guess(scene: Scene, geometry: BallBearing, x: float) -> np.ndarray:

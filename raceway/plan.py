@@ -17,7 +17,7 @@ from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
-_STEP_S = {"weightless": 1.6e-6, "inertial": 4.0e-6, "tangential": 12.0e-6}
+_STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
 _START_S = 0.6
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ import numpy as np
 from raceway.core.identification import Identification
 from raceway.core.lines import Line
 from raceway.core.system import COORDINATES
-from raceway.errors import RacewayError
+from raceway.files import write_whole
 from raceway.model import Model
 from raceway.simulate import Simulation
 from raceway.statics import Equilibrium
@@ -158,13 +157,4 @@ def write_json(content: Any, path: Path) -> Path:
     RacewayError
         Folder or disk that cannot be written.
     """
-    text = json.dumps(content, indent=1, allow_nan=False) + "\n"
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        scratch.write_text(text, encoding="utf-8")
-        scratch.replace(path)
-    except OSError as why:
-        scratch.unlink(missing_ok=True)
-        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}. Choose another folder with --out.") from None
-    return path
+    return write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), path)

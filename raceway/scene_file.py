@@ -47,7 +47,9 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         reason = "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else why.strerror or str(why)
         raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
     if not text.strip():
-        raise SceneError.at(str(path), None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)")
+        raise SceneError.at(
+            str(path), None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)"
+        )
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as why:
@@ -216,6 +218,6 @@ def _plugin_table(
     method = structure(options, plugin, name, mistakes)
     if core is None:
         return method
-    frame = structure({**shared, "kind": word}, core, name, mistakes)
+    frame: Any = structure({**shared, "kind": word}, core, name, mistakes)
     slot = next(f.name for f in attrs.fields(core) if "plugin" in f.metadata)
     return None if frame is None or method is None else attrs.evolve(frame, **{slot: method})

@@ -73,8 +73,8 @@ def _plugin_table(name: str, kind: str, default: str | None, registry: Registry)
     schema: dict[str, Any] = {"type": "object"}
     if not branches:
         return {**schema, "not": {}, "description": f"no {kind.replace('_', ' ')} is installed"}
-    words = {"enum": [e.name for e in usable], **({} if default is None else {"default": default})}
-    return {**schema, "properties": {"kind": words}, "oneOf": branches}
+    kinds: dict[str, Any] = {"enum": [e.name for e in usable], **({} if default is None else {"default": default})}
+    return {**schema, "properties": {"kind": kinds}, "oneOf": branches}
 
 
 def keys(cls: type) -> list[Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.padding import Padding
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from raceway.registry import Entry
 
 _LEFT_OUT_SHOWN = 3
+#: Columns of numbers in the table of ``verify`` and their significant digits.
+_VERIFIED = (("reference", 5), ("computed", 5), ("error", 2), ("tolerance", 2))
 
 
 Row = tuple[str, str, str]
@@ -74,7 +77,7 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
 
 def written(files: Sequence[str]) -> list[RenderableType]:
     """The files' names, each unbroken on its line, so that it can be copied."""
-    return [Text(f"written: {name}", no_wrap=True) for name in files]
+    return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
 
 
 def _bearing(scene: Mapping[str, Any]) -> str:
@@ -209,11 +212,13 @@ def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType
 
 def rows_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> RenderableType:
     """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned."""
-    table = Table(title=title or None, title_justify="left", header_style="bold")
+    table = Table(title=title or None, title_justify="left", header_style="bold", box=SIMPLE_HEAD, pad_edge=False)
     keys = list(dict.fromkeys(key for row in rows for key in row))
     for key in keys:
         numeric = any(isinstance(row.get(key), float | int) for row in rows)
-        table.add_column(key.replace("_", " "), justify="right" if numeric else "left", overflow="fold")
+        table.add_column(
+            key if "." in key else key.replace("_", " "), justify="right" if numeric else "left", overflow="fold"
+        )
     for row in rows:
         table.add_row(*(_cell(row.get(key)) for key in keys))
     return table
@@ -225,28 +230,46 @@ def _cell(value: Any) -> str:
     return escape(number(value) if isinstance(value, float) else "-" if value is None else str(value))
 
 
-def verify_screen(verification: Mapping[str, Any], passed: bool) -> RenderableType:
-    """Published cases, what was computed, and whether it agrees."""
-    table = Table(header_style="bold")
-    for name in ("case", "quantity"):
-        table.add_column(name, overflow="fold")
-    for name in ("reference", "computed", "error", "tolerance"):
+def verify_screen(verification: Mapping[str, Any], passed: bool, every: bool = False) -> RenderableType:
+    """Published cases, what was computed, and whether it agrees.
+
+    Parameters
+    ----------
+    every : a line for each number, not only the worst of each case and those that are off
+    """
+    table = Table(header_style="bold", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    table.add_column("number" if every else "case: the worst of its numbers", min_width=28, overflow="fold")
+    for name, _ in _VERIFIED:
         table.add_column(name, justify="right", no_wrap=True)
     table.add_column("")
     before = None
-    for row in verification["rows"]:
-        numbers = [
+    for row in verification["rows"] if every else _worst(verification["rows"]):
+        if row["case"] != before:
+            table.add_row(f"[bold]{escape(row['case'])}[/]")
+        numbers = (
             number(row["reference"]),
             number(row["computed"]),
             number(row["error"], "", 2),
             number(row["tolerance"], "", 2),
-        ]
+        )
         verdict = "[green]ok[/]" if row["ok"] else f"[red]off[/] {escape(row.get('note') or '')}"
-        table.add_row(escape(row["case"]) if row["case"] != before else "", escape(row["quantity"]), *numbers, verdict)
+        table.add_row(f"  {escape(row['quantity'])}", *numbers, verdict)
         before = row["case"]
     kept = sum(bool(row["ok"]) for row in verification["rows"])
     style = "green" if passed else "red"
-    return Group(table, Text(f"{kept} of {len(verification['rows'])} numbers within their tolerance", style=style))
+    parts: list[RenderableType] = [table]
+    parts.append(Text(f"{kept} of {len(verification['rows'])} numbers within their tolerance", style=style))
+    return Group(*parts)
+
+
+def _worst(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Of each case the number closest to its tolerance, and all that are off, in their order."""
+
+    def strain(row: Mapping[str, Any]) -> float:
+        return float("inf") if row["error"] is None or not row["tolerance"] else row["error"] / row["tolerance"]
+
+    closest = {case: max((r for r in rows if r["case"] == case), key=strain) for case in {r["case"] for r in rows}}
+    return [row for row in rows if not row["ok"] or closest[row["case"]] is row]
 
 
 def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:

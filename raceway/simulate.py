@@ -31,6 +31,7 @@ class Simulation:
     critical_time_step : 2 / (largest frequency of the stiffest state met) [s]
     start : how it began: "orbit", "ramp", "static"
     warnings : what a user should know
+    orbit : the steady orbit that it began on
     """
 
     record: Record
@@ -38,16 +39,22 @@ class Simulation:
     critical_time_step: float | None
     start: str
     warnings: tuple[str, ...]
+    orbit: Orbit | None = None
 
 
 def simulate(
-    model: Model, equilibrium: Equilibrium, on_progress: OnProgress | None = None, coarsen: int = 1
+    model: Model,
+    equilibrium: Equilibrium,
+    on_progress: OnProgress | None = None,
+    coarsen: int = 1,
+    orbit: Orbit | None = None,
 ) -> Simulation:
     """Integrate the plan's turns.
 
     Parameters
     ----------
     coarsen : divides the steps per turn; the recorded samples stay where they were
+    orbit : the steady orbit, where it is known already
 
     Raises
     ------
@@ -56,7 +63,7 @@ def simulate(
     """
     system, method, scene = model.system, model.scene.integrator.method, model.scene
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
-    start, orbit, warnings = _chosen_start(model, equilibrium)
+    start, orbit, warnings = _chosen_start(model, equilibrium, orbit)
     critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
     steps_per_turn = _steps_per_turn(model, period, critical) // coarsen
     dt = period / steps_per_turn
@@ -79,10 +86,12 @@ def simulate(
     used = model.plan.turns - ceil(ramp_turns)
     if start == "static" and method.inertial:
         used = max(model.plan.turns // 3, 1)
-    return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings)
+    return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings, orbit)
 
 
-def _chosen_start(model: Model, equilibrium: Equilibrium) -> tuple[str, Orbit | None, tuple[str, ...]]:
+def _chosen_start(
+    model: Model, equilibrium: Equilibrium, known: Orbit | None
+) -> tuple[str, Orbit | None, tuple[str, ...]]:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     scene, method = model.scene, model.scene.integrator.method
     start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
@@ -97,7 +106,7 @@ def _chosen_start(model: Model, equilibrium: Equilibrium) -> tuple[str, Orbit | 
         excitation = steady()
         system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
     try:
-        return start, steady_orbit(system, excitation.period_s, equilibrium.displacement), ()
+        return start, known or steady_orbit(system, excitation.period_s, equilibrium.displacement), ()
     except ConvergenceError as why:
         return "ramp", None, (f"{why}: started with a ramp instead",)
 
@@ -159,13 +168,12 @@ def step_error(model: Model, equilibrium: Equilibrium, simulation: Simulation, v
         return 0.0, "no time step: each sample is an equilibrium"
     if schedule.steps_per_turn % 2 or schedule.steps_per_turn < 16:
         return None, "steps_per_turn is odd or below 16: no run with half as many"
-    if not method.implicit and simulation.critical_time_step is not None:
-        if 2.0 * schedule.dt >= simulation.critical_time_step:
-            return None, "twice the step would exceed the stable limit"
+    if not method.implicit and 2.0 * schedule.dt >= (simulation.critical_time_step or np.inf):
+        return None, "twice the step would exceed the stable limit"
     if "speeds" in model.scene.identifier.method.needs:
         return None, "several speeds are run: no second run with half as many steps"
     try:
-        coarse = simulate(model, equilibrium, coarsen=2)
+        coarse = simulate(model, equilibrium, coarsen=2, orbit=simulation.orbit)
     except ConvergenceError as why:
         return None, f"the run with half as many steps failed: {why}"
     other = model.scene.identifier.method.identify([coarse.record], equilibrium, model).dynamic_stiffness

@@ -85,7 +85,7 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
     weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
     scaled = weight[:, None] * system.reduced(stiffness + system.stiffness) * weight
     values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
-    if values[-1] > 0.0 and values[0] > 1e-9 * values[-1]:
+    if values[-1] > 0.0 and values[0] > 1e-12 * values[-1]:
         return
     motion = np.abs(vectors[:, 0])
     names = [COORDINATES[chosen[k]] for k in np.argsort(-motion) if motion[k] > 0.3 * motion.max()]

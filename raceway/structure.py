@@ -7,6 +7,7 @@ translation of what it raises into ``Mistake``.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, TypeVar, get_args
 
 import attrs
@@ -47,7 +48,14 @@ def _switch(value: Any, _type: Any = None) -> bool:
 
 
 def _kind(value: Any) -> str:
-    names = {bool: "true or false", int: "a whole number", float: "a number with a fraction", str: "a string", list: "a list", dict: "a table"}
+    names = {
+        bool: "true or false",
+        int: "a whole number",
+        float: "a number with a fraction",
+        str: "a string",
+        list: "a list",
+        dict: "a table",
+    }
     return names.get(type(value), type(value).__name__)
 
 
@@ -91,18 +99,24 @@ _HOOKS: dict[Any, Any] = {
 }
 
 
+def _equal_to(kind: Any) -> Callable[[Any], bool]:
+    return lambda other: bool(other == kind)
+
+
 def _converter() -> cattrs.Converter:
     converter = cattrs.Converter(detailed_validation=True, forbid_extra_keys=True)
     for kind, hook in _HOOKS.items():
         if isinstance(kind, type):  # plain types: cattrs looks at its own hooks before any predicate
             converter.register_structure_hook(kind, hook)
         else:
-            converter.register_structure_hook_func(lambda t, k=kind: t == k, hook)
+            converter.register_structure_hook_func(_equal_to(kind), hook)
 
     def factory(cls: type) -> Any:
         attrs.resolve_types(cls)
-        overrides = {a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init}
-        inner = make_dict_structure_fn(
+        overrides: dict[str, Any] = {
+            a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init
+        }
+        inner: Any = make_dict_structure_fn(
             cls, converter, _cattrs_forbid_extra_keys=True, _cattrs_detailed_validation=True, **overrides
         )
 
@@ -184,5 +198,3 @@ def _describe(cls: Any, name: str) -> str:
             text = field.metadata.get("help", "")
             return f": {text}{f' [{unit}]' if unit else ''}"
     return ""
-
-

@@ -42,9 +42,9 @@ def test_every_report_has_been_run_and_every_file_has_a_module():
 def test_blocks_are_replaced_whole_and_unknown_ones_refused():
     row = near("x [m]", 1.001, 1.0, 0.01, "python")
     reports = {"one": {"title": "One", "rows": [attrs.asdict(row)], "date": "d", "commit": "c"}}
-    text = "a\n<!-- evidence:one -->\nold\n<!-- /evidence -->\nb\n<!-- evidence:summary -->\n<!-- /evidence -->\n"
+    text = "a\n<!-- evidence:one -->\nstale\n<!-- /evidence -->\nb\n<!-- evidence:summary -->\n<!-- /evidence -->\n"
     new = _files.render(text, reports)
-    assert "old" not in new and "| x [m] | 1.001 | 1 within 1 % | yes |  |" in new and "1 of 1" in new
+    assert "stale" not in new and "| x [m] | 1.001 | 1 within 1 % | yes |  |" in new and "1 of 1" in new
     assert _files.render(new, reports) == new
     with pytest.raises(KeyError, match="two"):
         _files.render(text.replace("evidence:one", "evidence:two"), reports)
@@ -60,7 +60,9 @@ def test_unknown_report_is_exit_code_2(capsys):
     assert "expected_values" in capsys.readouterr().err
 
 
-def test_json_has_no_nan():
-    for name in REPORTS:
-        text = (_files.FOLDER / f"{name}.json").read_text(encoding="utf-8")
-        json.loads(text, parse_constant=lambda word: pytest.fail(f"{name}: {word}"))
+@pytest.mark.parametrize("name", sorted(REPORTS))
+def test_json_has_no_nan(name):
+    def refuse(word: str) -> None:
+        raise AssertionError(f"{name}.json holds {word}")
+
+    json.loads((_files.FOLDER / f"{name}.json").read_text(encoding="utf-8"), parse_constant=refuse)

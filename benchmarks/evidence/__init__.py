@@ -8,10 +8,16 @@ Each public module of this package is one report: a string ``TITLE`` and a funct
 from __future__ import annotations
 
 from importlib import import_module
+from math import isfinite
 from pkgutil import iter_modules
 from types import ModuleType
 
 import attrs
+
+
+def _finite_or_text(value: float | str) -> float | str:
+    """JSON knows no NaN and no infinity: they become words."""
+    return str(value) if isinstance(value, float) and not isfinite(value) else value
 
 
 @attrs.frozen
@@ -29,7 +35,7 @@ class Row:
     """
 
     quantity: str
-    value: float | int | str
+    value: float | str = attrs.field(converter=_finite_or_text)
     limit: str
     ok: bool = attrs.field(converter=bool)
     command: str

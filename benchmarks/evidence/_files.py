@@ -101,7 +101,7 @@ def table(data: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def shown(value: float | int | str) -> str:
+def shown(value: float | str) -> str:
     """A value with four significant digits; whole numbers and text as they are."""
     if isinstance(value, float):
         return f"{value:.4g}"
@@ -113,7 +113,9 @@ def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
     lines = ["| report | rows that hold | date | commit |", "|---|---|---|---|"]
     for name, data in reports.items():
         good = sum(row["ok"] for row in data["rows"])
-        lines.append(f"| [{data['title']}]({links}{name}.md) | {good} of {len(data['rows'])} | {data['date']} | {data['commit']} |")
+        lines.append(
+            f"| [{data['title']}]({links}{name}.md) | {good} of {len(data['rows'])} | {data['date']} | {data['commit']} |"
+        )
     return "\n".join(lines)
 
 

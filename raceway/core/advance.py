@@ -53,7 +53,7 @@ def advance(
     counters = np.zeros(COUNTERS)
     motion = np.zeros((4, 5))
     motion[0], motion[1], motion[2] = start.q, start.v, start.a
-    motion[3] = -system.mass @ start.a
+    motion[3] = -system.mass @ start.a if start.rest is None else start.rest
     ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
     done = 0
     while done < schedule.steps:
@@ -79,7 +79,7 @@ def advance(
         gap=probes[:, 0],
         contact_force=probes[:, 1],
         ball=np.concatenate([part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)], axis=2),
-        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before),
+        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy()),
         schedule=schedule,
         counts={
             "steps": schedule.steps,

@@ -31,9 +31,9 @@ def _difference(log_chi: float) -> float:
     excess = np.expm1(2.0 * log_chi)
     m1 = 1.0 / chi2
     first, second = ellipkm1(m1), ellipe(1.0 - m1)
-    if log_chi < 1e-4:  # K/E - 1 = m/2 + 3 m^2/16 + ... : the difference cancels
+    if log_chi < 1e-4:  # K/E - 1 = m/2 + 5 m^2/16 + 7 m^3/32 + ... : the difference cancels
         m = excess / chi2
-        return float(1.0 - 2.0 / chi2 * (0.5 + 3.0 * m / 16.0 + 3.0 * m * m / 32.0))
+        return float(1.0 - 2.0 / chi2 * (0.5 + 5.0 * m / 16.0 + 7.0 * m * m / 32.0))
     return float(1.0 - 2.0 / excess * (first / second - 1.0))
 
 

@@ -107,30 +107,48 @@ def fit_lines(time: np.ndarray, signal: np.ndarray, frequency_hz: float, harmoni
 
     Parameters
     ----------
-    time : (n,) [s];  signal : (n, k)
+    time : (n,) [s], equidistant;  signal : (n, k)
 
     Returns
     -------
     lines : (harmonics, k) complex phasors;  rest : (n, k) what the fit leaves
+
+    Notes
+    -----
+    No drift is fitted to less than one and a half turns: over a single turn a straight line and a sine are alike, so that
+    harmonics beyond those fitted would leak into the drift and from there into the first line.
     """
     wt = 2.0 * np.pi * frequency_hz * time[:, None] * np.arange(1, harmonics + 1)
-    span = time - time.mean()
-    basis = np.hstack([np.ones((len(time), 1)), (span / max(np.abs(span).max(), 1e-300))[:, None], np.cos(wt), np.sin(wt)])
+    columns = [np.cos(wt), np.sin(wt), np.ones((len(time), 1))]
+    if turns_of(time, frequency_hz) >= 1.5:
+        span = time - time.mean()
+        columns.append((span / np.abs(span).max())[:, None])
+    basis = np.hstack(columns)
     solution, *_ = np.linalg.lstsq(basis, signal, rcond=None)
-    lines = solution[2 : 2 + harmonics] - 1j * solution[2 + harmonics :]
+    lines = solution[:harmonics] - 1j * solution[harmonics : 2 * harmonics]
     return lines, signal - basis @ solution
+
+
+def turns_of(time: np.ndarray, frequency_hz: float) -> float:
+    """Turns that n equidistant samples cover, each standing for one step."""
+    return float(len(time) * (time[1] - time[0]) * frequency_hz)
+
+
+def without_drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
+    """The signal (n, k) less its mean and the straight line through the means of its whole turns; fewer than two: the mean."""
+    turns = max(int(turns_of(time, frequency_hz) + 1e-6), 1)
+    samples_per_turn = round(1.0 / (frequency_hz * (time[1] - time[0])))
+    whole = min(turns * samples_per_turn, len(time))
+    if turns < 2:
+        return signal - signal[:whole].mean(axis=0)
+    means = signal[:whole].reshape(turns, samples_per_turn, -1).mean(axis=1)
+    centres = time[:whole].reshape(turns, samples_per_turn).mean(axis=1)
+    offset = centres - centres.mean()
+    slope = offset @ (means - means.mean(axis=0)) / (offset @ offset)
+    return signal - means.mean(axis=0) - (time - centres.mean())[:, None] * slope
 
 
 def fourier_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
     """1x phasor (k,) of a signal (n, k) over whole turns, after its drift over those turns is removed."""
     kernel = np.exp(-2j * np.pi * frequency_hz * time)
-    samples_per_turn = round(1.0 / (frequency_hz * (time[1] - time[0])))
-    turns = max(len(time) // samples_per_turn, 1)
-    means = signal[: turns * samples_per_turn].reshape(turns, samples_per_turn, -1).mean(axis=1)
-    centres = time[: turns * samples_per_turn].reshape(turns, samples_per_turn).mean(axis=1)
-    slope = np.zeros(signal.shape[1])
-    if turns > 1:
-        offset = centres - centres.mean()
-        slope = offset @ (means - means.mean(axis=0)) / (offset @ offset)
-    straight = signal - means.mean(axis=0) - (time - centres.mean())[:, None] * slope
-    return 2.0 * (kernel[:, None] * straight).mean(axis=0)
+    return 2.0 * (kernel[:, None] * without_drift(time, signal, frequency_hz)).mean(axis=0)

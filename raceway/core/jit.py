@@ -12,7 +12,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -54,39 +54,49 @@ def kernel_folder() -> Path | None:
 
 @contextmanager
 def _numba_cache_in(folder: Path) -> Iterator[None]:
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(folder)
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
-def jit(signature: Any) -> Callable[[Callable[..., Any]], Any]:
+def jit(signature: Any, allocates: bool = False) -> Callable[[Callable[..., Any]], Any]:
     """Compile a kernel for one explicit signature, now, through the cache.
 
     Parameters
     ----------
     signature : numba signature
         For instance ``raceway.core.signatures.LAW``.
+    allocates : whether the kernel may create arrays
+        Time loops do, once; laws, excitations and bodies may not: without allocation numba counts no references, and
+        those atomic operations take as long as the arithmetic of a whole step.
 
     Raises
     ------
     PluginError
         When numba cannot compile the function for that signature; the message names function and file.
+
+    Notes
+    -----
+    Division by zero gives an infinity or NaN, as in numpy, and is not an exception: an exception cannot leave a function
+    pointer, and its check keeps loops from being vectorised.
     """
+    options: dict[str, Any] = {"error_model": "numpy"}
+    if not allocates and hasattr(numba.core.registry.cpu_target.options, "_nrt"):  # an option that numba does not promise
+        options["_nrt"] = False
 
     def decorate(function: Callable[..., Any]) -> Any:
         start = time.perf_counter()
         try:
-            kernel = _compile(function, signature)
-        except numba.core.errors.NumbaError as why:
+            kernel = _compile(function, signature, options)
+        except (numba.core.errors.NumbaError, TypeError) as why:  # TypeError: another number of arguments
             code = function.__code__
-            reason = str(why).strip().splitlines()
-            first = next((line for line in reason if line.strip()), "unknown reason")
             raise PluginError(
                 f"kernel `{function.__qualname__}` ({Path(code.co_filename).name}, line {code.co_firstlineno}) does "
-                f"not compile for the signature {signature}: {first.strip()}"
+                f"not compile for the signature {signature_words(signature)}: {_reason(why, function, signature, options)}"
             ) from why
         hit = sum(kernel.stats.cache_hits.values()) > 0
         clock["load_s" if hit else "compile_s"] += time.perf_counter() - start
@@ -96,17 +106,55 @@ def jit(signature: Any) -> Callable[[Callable[..., Any]], Any]:
     return decorate
 
 
-def _compile(function: Callable[..., Any], signature: Any) -> Any:
+def signature_words(signature: Any) -> str:
+    """A numba signature as one writes it: ``none(float64[::1], float64[:, ::1])``."""
+
+    def word(kind: Any) -> str:
+        if not isinstance(kind, numba.types.Array):
+            return str(kind)
+        last = "::1" if kind.layout == "C" else ":"
+        return f"{kind.dtype}[{', '.join([':'] * (kind.ndim - 1) + [last])}]"
+
+    return f"{signature.return_type}({', '.join(word(kind) for kind in signature.args)})"
+
+
+def _reason(why: Exception, function: Callable[..., Any], signature: Any, options: dict[str, Any]) -> str:
+    """The telling line of numba's report: not the name of the compiler pass, not the empty ones."""
+    if "_nrt" in options:
+        try:
+            numba.njit(signature, error_model="numpy")(function)
+            return "it creates arrays, which no kernel may; use the arrays that it is given, or scalars"
+        except (numba.core.errors.NumbaError, TypeError):
+            pass
+    lines = [line.strip() for line in str(why).splitlines() if line.strip()]
+    return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
+
+
+def _compile(function: Callable[..., Any], signature: Any, options: dict[str, Any]) -> Any:
     folder = kernel_folder()
-    if folder is not None:
+    if folder is None:
+        return numba.njit(signature, **options)(function)
+    for attempt in (1, 2):
         try:
             with _numba_cache_in(folder):
-                return numba.njit(signature, cache=True)(function)
-        except (OSError, EOFError, ValueError, RuntimeError) as why:
-            # A full disk, a truncated cache file, or a source that numba cannot locate.
+                return numba.njit(signature, cache=True, **options)(function)
+        except (numba.core.errors.NumbaError, TypeError):
+            raise
+        except Exception as why:  # a full disk, or a damaged file: reading one may raise anything
+            if attempt == 1:
+                _discard(folder, function)
+                continue
             warnings.warn(
                 f"the kernel cache in {folder} did not serve `{function.__qualname__}` ({why}); compiled in memory",
                 RuntimeWarning,
                 stacklevel=3,
             )
-    return numba.njit(signature)(function)
+    return numba.njit(signature, **options)(function)
+
+
+def _discard(folder: Path, function: Callable[..., Any]) -> None:
+    """Remove the cache files of one function, which numba names after it and its line."""
+    name = function.__qualname__.replace("<", "").replace(">", "")
+    for path in folder.rglob(f"*.{name}-{function.__code__.co_firstlineno}.*"):
+        with suppress(OSError):
+            path.unlink()

@@ -25,7 +25,12 @@ from raceway.core.system import System
 from raceway.errors import ConvergenceError
 
 
-@jit(int64(SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, CUBE, CUBE))
+@jit(
+    int64(
+        SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, CUBE, CUBE
+    ),
+    allocates=True,
+)
 def evaluate_many(system, law, law_params, scalars, table, law_state, times, q, v, ball, ball_rate, f, K, C):
     """Contact forces (n, 5) and tangents (n, 5, 5) at n states; the index of the first that fails, or n."""
     work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
@@ -83,7 +88,8 @@ def steady_orbit(
 
     Parameters
     ----------
-    start : (5,) static equilibrium, from which the guess is continued
+    start : (5,) static equilibrium; the guess is the series of equilibria under load and force, and failing that the
+        static equilibrium at all times.  A guess that is far off lets Newton end on another, resonant orbit.
     samples : odd number of times per period
     inertial : False leaves out inertia and damping: a series of equilibria
 
@@ -92,6 +98,19 @@ def steady_orbit(
     ConvergenceError
         With the last residual.
     """
+    if inertial:
+        try:
+            slow = steady_orbit(system, period, start, samples, inertial=False)
+            return _solve(system, period, slow.displacement, samples, True, tolerance)
+        except ConvergenceError:
+            pass
+    return _solve(system, period, np.tile(start, (samples, 1)), samples, inertial, tolerance)
+
+
+def _solve(
+    system: System, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float
+) -> Orbit:
+    """Newton on all times at once from a first guess (samples, 5)."""
     z = system.ball_count
     times = np.arange(samples) * (period / samples)
     force = np.array([system.outer_force(t) for t in times])
@@ -102,7 +121,7 @@ def steady_orbit(
     part = np.ix_(chosen, chosen)
     mass, damping, stiffness = system.mass[part], system.damping[part], system.stiffness[part]
     weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
-    q = np.tile(start, (samples, 1))
+    q = start.copy()
     ball = np.zeros((samples, z, system.ball_columns))
     rate = np.zeros_like(ball)
     f, K, C = np.empty((samples, 5)), np.empty((samples, 5, 5)), np.empty((samples, 5, 5))

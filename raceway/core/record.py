@@ -16,6 +16,8 @@ class Motion:
     ----------
     q, v, a : (5,) displacement, velocity, acceleration (of generalised-alpha: its own a)
     ball, ball_before : (Z, 2 or 4) positions (and slips) of the balls now and one step earlier [m]
+    rest : (5,) internal less outer forces [N, N m]; None where it is -M a: of generalised-alpha it is not, and a run that
+        goes on from another's final motion needs it
     """
 
     q: np.ndarray
@@ -23,6 +25,7 @@ class Motion:
     a: np.ndarray
     ball: np.ndarray
     ball_before: np.ndarray
+    rest: np.ndarray | None = None
 
 
 @attrs.frozen(eq=False)

@@ -16,7 +16,7 @@ CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE = range(4)
 _LIMIT = 100
 
 
-@jit(SETTLE)
+@jit(SETTLE, allocates=True)
 def find_root(
     system, law, law_params, scalars, table, stiffness, free, load, tolerance, t, q, ball, law_state, work, f, K, report
 ):

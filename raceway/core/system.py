@@ -19,7 +19,7 @@ from raceway.core.bodies.ring import (
     TILT_ARM,
     place,
 )
-from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, settle
+from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.core.root import find_root
 from raceway.errors import ConvergenceError
 
@@ -208,6 +208,13 @@ class System:
                     break
             if status == CONVERGED:
                 return q_now, ball_now, total
+            if status == RUN_AWAY:
+                free = COORDINATES[int(np.argmax(np.abs(q_now) * [1.0, 1.0, 1.0, self.arm, self.arm]))]
+                raise ConvergenceError(
+                    f"there is no static equilibrium: nothing holds the ring against the load along {free}. Hold it or load "
+                    "more balls.",
+                    {"q": np.array(q, dtype=float), "ball": ball_now},
+                )
         what = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
         raise ConvergenceError(
             f"no static equilibrium found after {total} iterations: {what}, relative residual {report[1]:.1e}",
@@ -217,9 +224,10 @@ class System:
     def centre_vectors(self, q: np.ndarray, t: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
         """(Z, 2) vector (axial, radial) from the outer to the inner groove centre of every ball, and its azimuth's
         direction (Z, 2) as cosine and sine."""
-        out = np.zeros((6, self.ball_count))
-        place(t, np.ascontiguousarray(q, dtype=float), np.zeros(5), self.scalars, self.table, *out)
-        return out[:2].T.copy(), out[4:].T.copy()
+        work = np.zeros((3, 2 * self.ball_count))
+        place(float(t), np.ascontiguousarray(q, dtype=float), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
+        direction, centre, _ = work.reshape(3, 2, -1)
+        return centre.T.copy(), direction.T.copy()
 
     def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
         """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""

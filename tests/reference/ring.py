@@ -123,6 +123,8 @@ class Ring:
                     break
                 factor_[worse] *= 0.5
             p = p + factor_[:, None] * step
+        for k in np.flatnonzero(np.linalg.norm(self._gradient(e, p)[0], axis=1) > 1e-9 * (self.centrifugal + 1.0)):
+            p[k] = self.one_ball(e[k])  # where a contact opens the damped Newton can stall
         self.ball = p
         _, inner, outer = self._gradient(e, p)
         hessian = inner + outer

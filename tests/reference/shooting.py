@@ -29,7 +29,7 @@ def trajectory(
     ring: Ring, mass: np.ndarray, load: np.ndarray, force: Force, free: np.ndarray, q0: np.ndarray, v0: np.ndarray,
     times: np.ndarray, tolerance: float = 1e-11, variational: bool = False,
 ):  # fmt: skip
-    """States at ``times`` (n,): q (n, 5), v (n, 5), and with ``variational`` the (2 f, 2 f) derivative of the last by the first.
+    """States at ``times`` (n,): q, v (n, 5), and with ``variational`` the (2 f, 2 f) derivative of the last by the first.
 
     Parameters
     ----------
@@ -93,7 +93,9 @@ def periodic(
     n = len(chosen)
     times = np.linspace(0.0, period, samples + 1)
     q0, v0 = q0.copy(), v0.copy()
-    weight = np.concatenate([np.where(chosen > 2, ring.arm, 1.0), np.where(chosen > 2, ring.arm, 1.0) * period / (2 * np.pi)])
+    weight = np.concatenate(
+        [np.where(chosen > 2, ring.arm, 1.0), np.where(chosen > 2, ring.arm, 1.0) * period / (2 * np.pi)]
+    )
     for _ in range(12):
         q, v, flow = trajectory(ring, mass, load, force, free, q0, v0, times, variational=True)
         miss = np.concatenate([(q[-1] - q[0])[chosen], (v[-1] - v[0])[chosen]])

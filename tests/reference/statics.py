@@ -11,7 +11,7 @@ from tests.reference.ring import Ring
 def equilibrium(
     ring: Ring, load: np.ndarray, free: np.ndarray, start: np.ndarray, tilt_stiffness: float = 0.0, stages: int = 8
 ) -> np.ndarray:
-    """Displacement q (5,) that balances ``load`` (5,): MINPACK's hybrid method, the radial load and moments raised in stages.
+    """Displacement q (5,) that balances ``load`` (5,): MINPACK's hybrid method, radial load and moments in stages.
 
     Parameters
     ----------

@@ -14,7 +14,8 @@ Every kernel has the signature ``raceway.core.signatures.SYSTEM``::
     law_params (2 Z, k), law_old, law_new (2 Z, m)   the law's parameters and memory: inner races first, then outer
     scalars, table       constants of the model, laid out in ``raceway.core.bodies.ring``
     work (WORK_ROWS, 2 Z)   on return rows 0 and 2 hold gap [m] and force [N] of every contact
-    f (5,), K, C (5, 5)  internal force [N, N m] and its derivatives by q and by v
+    f (5,), K, C (5, 5)  internal force [N, N m] and its derivatives by q and by v; a caller that needs no tangents gives
+                         K and C of shape (0, 0), which are left alone
 
 and returns 0, or 1 when the balls did not find their equilibrium.  Damping and tilt stiffness of the shaft, masses and
 outer loads are linear and belong to ``raceway.core.system``.  Z counts the balls of all rows.

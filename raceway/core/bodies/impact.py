@@ -39,10 +39,13 @@ def impact(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, l
     add_damping(scalars[DAMPING], gap, rate, force, d_gap, d_rate)
     for i in range(5):
         f[i] = 0.0
+    f[0] = force[0]
+    if K.size == 0:
+        return 0
+    for i in range(5):
         for j in range(5):
             K[i, j] = 0.0
             C[i, j] = 0.0
-    f[0] = force[0]
     K[0, 0] = -d_gap[0]
     C[0, 0] = -d_rate[0]
     return 0

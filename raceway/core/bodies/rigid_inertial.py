@@ -13,21 +13,26 @@ import numpy as np
 from raceway.core.bodies.ring import (
     CENTRIFUGAL,
     DAMPING,
-    LEVER,
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_FACTOR,
     OUTER_SHARE,
-    SIDE,
     TILT_ARM,
-    add_ball,
     place,
+    ring_force,
+    ring_tangent,
 )
 from raceway.core.contact import add_damping
 from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
 
 _ITERATIONS = 200
+#: Rows of ``work`` beyond the law's, two quantities each, a half row long; 12 to 15 keep what belongs to settled balls.
+CENTRE, VELOCITY, STEP, SEARCH, INNER, OUTER, LENGTH = 5, 6, 7, 8, 9, 10, 11
+#: Row of the azimuths.
+DIRECTION = 16
+#: Rows that the iteration has done with, used again for what goes to the ring.
+CARRIED, STIFF, VISCOUS = 9, 5, 7
 
 
 @jit(SYSTEM)
@@ -38,26 +43,16 @@ def rigid_inertial(
     z = table.shape[0]
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
-    ea, er, va, vr = work[5][:z], work[5][z:], work[6][:z], work[6][z:]
-    da, dr, slope, done = work[7][:z], work[7][z:], work[8][:z], work[8][z:]
-    ni_a, ni_r, no_a, no_r = work[9][:z], work[9][z:], work[10][:z], work[10][z:]
-    si, so = work[11][:z], work[11][z:]
-    cosine, sine = work[16][:z], work[16][z:]
-    for i in range(5):
-        f[i] = 0.0
-        for j in range(5):
-            K[i, j] = 0.0
-            C[i, j] = 0.0
-    place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine)
+    place(t, q, v, scalars, table, work, DIRECTION, CENTRE, VELOCITY)
     for k in range(z):
-        slope[k] = 0.0
-        done[k] = 0.0
+        work[SEARCH, k] = 0.0
+        work[SEARCH, z + k] = 0.0
         seat = lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
         if ball[k, 0] == 0.0 and ball[k, 1] == 0.0:
-            length = np.sqrt(ea[k] * ea[k] + er[k] * er[k])
+            length = np.sqrt(work[CENTRE, k] * work[CENTRE, k] + work[CENTRE, z + k] * work[CENTRE, z + k])
             if length > li + lo:
                 scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
-                ball[k, 0], ball[k, 1] = scale * ea[k], scale * er[k]
+                ball[k, 0], ball[k, 1] = scale * work[CENTRE, k], scale * work[CENTRE, z + k]
             else:
                 ball[k, 1] = seat
         elif ball[k, 0] * ball[k, 0] + ball[k, 1] * ball[k, 1] <= lo * lo:
@@ -66,44 +61,49 @@ def rigid_inertial(
     for _ in range(_ITERATIONS):
         for k in range(z):
             pa, pr = ball[k, 0], ball[k, 1]
-            so[k] = np.sqrt(pa * pa + pr * pr)
-            xa, xr = ea[k] - pa, er[k] - pr
-            si[k] = np.sqrt(xa * xa + xr * xr)
-            no_a[k], no_r[k] = pa / so[k], pr / so[k]
-            if si[k] > 0.0:
-                ni_a[k], ni_r[k] = xa / si[k], xr / si[k]
+            work[LENGTH, z + k] = np.sqrt(pa * pa + pr * pr)
+            xa, xr = work[CENTRE, k] - pa, work[CENTRE, z + k] - pr
+            work[LENGTH, k] = np.sqrt(xa * xa + xr * xr)
+            work[OUTER, k], work[OUTER, z + k] = pa / work[LENGTH, z + k], pr / work[LENGTH, z + k]
+            if work[LENGTH, k] > 0.0:
+                work[INNER, k], work[INNER, z + k] = xa / work[LENGTH, k], xr / work[LENGTH, k]
             else:
-                ni_a[k], ni_r[k] = no_a[k], no_r[k]
-            gap[k] = li - si[k]
-            gap[z + k] = lo - so[k]
+                work[INNER, k], work[INNER, z + k] = work[OUTER, k], work[OUTER, z + k]
+            gap[k] = li - work[LENGTH, k]
+            gap[z + k] = lo - work[LENGTH, z + k]
             own_a = ball_gain * pa + ball_known[k, 0]
             own_r = ball_gain * pr + ball_known[k, 1]
-            rate[k] = -(ni_a[k] * (va[k] - own_a) + ni_r[k] * (vr[k] - own_r))
-            rate[z + k] = -(no_a[k] * own_a + no_r[k] * own_r)
+            rate[k] = -(work[INNER, k] * (work[VELOCITY, k] - own_a) + work[INNER, z + k] * (work[VELOCITY, z + k] - own_r))
+            rate[z + k] = -(work[OUTER, k] * own_a + work[OUTER, z + k] * own_r)
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
         for k in range(z):
-            if done[k] != 0.0:
+            if work[SEARCH, z + k] != 0.0:
                 continue
             fi, fo = force[k], force[z + k]
-            ga = -fi * ni_a[k] + fo * no_a[k]
-            gr = -fi * ni_r[k] + fo * no_r[k] - table[k, CENTRIFUGAL]
-            if slope[k] < 0.0:
+            ga = -fi * work[INNER, k] + fo * work[OUTER, k]
+            gr = -fi * work[INNER, z + k] + fo * work[OUTER, z + k] - table[k, CENTRIFUGAL]
+            if work[SEARCH, k] < 0.0:
                 # Beyond the minimum along the last step by more than it began with: go half-way back.
-                along = ga * da[k] + gr * dr[k]
-                if along > -0.9 * slope[k]:
-                    da[k] *= 0.5
-                    dr[k] *= 0.5
-                    slope[k] *= 0.5
-                    ball[k, 0] -= da[k]
-                    ball[k, 1] -= dr[k]
+                along = ga * work[STEP, k] + gr * work[STEP, z + k]
+                if along > -0.9 * work[SEARCH, k]:
+                    work[STEP, k] *= 0.5
+                    work[STEP, z + k] *= 0.5
+                    work[SEARCH, k] *= 0.5
+                    ball[k, 0] -= work[STEP, k]
+                    ball[k, 1] -= work[STEP, z + k]
                     continue
             ki = -d_gap[k] - ball_gain * d_rate[k]
             ko = -d_gap[z + k] - ball_gain * d_rate[z + k]
-            wi, wo = fi / si[k] if si[k] > 0.0 else 0.0, fo / so[k]
-            haa = (ki - wi) * ni_a[k] * ni_a[k] + wi + (ko - wo) * no_a[k] * no_a[k] + wo
-            har = (ki - wi) * ni_a[k] * ni_r[k] + (ko - wo) * no_a[k] * no_r[k]
-            hrr = (ki - wi) * ni_r[k] * ni_r[k] + wi + (ko - wo) * no_r[k] * no_r[k] + wo
+            wi, wo = fi / work[LENGTH, k] if work[LENGTH, k] > 0.0 else 0.0, fo / work[LENGTH, z + k]
+            haa = (ki - wi) * work[INNER, k] * work[INNER, k] + wi + (ko - wo) * work[OUTER, k] * work[OUTER, k] + wo
+            har = (ki - wi) * work[INNER, k] * work[INNER, z + k] + (ko - wo) * work[OUTER, k] * work[OUTER, z + k]
+            hrr = (
+                (ki - wi) * work[INNER, z + k] * work[INNER, z + k]
+                + wi
+                + (ko - wo) * work[OUTER, z + k] * work[OUTER, z + k]
+                + wo
+            )
             det = haa * hrr - har * har
             if not det > 1e-14 * (haa + hrr) * (haa + hrr):
                 shift = 1e-7 * (haa + hrr) + 1.0
@@ -116,30 +116,32 @@ def rigid_inertial(
             if size > reach:
                 sa *= reach / size
                 sr *= reach / size
-            deep = max(-gap[k], -gap[z + k])
-            if size <= 1e-8 * max(deep, 1e-12):
+            # The shallower of the closed contacts sets the scale: under a light ring load the centrifugal force presses
+            # the ball far deeper into the outer race than the inner race is.  Below rounding nothing can be asked.
+            shallow = -gap[z + k] if gap[k] >= 0.0 else (-gap[k] if gap[z + k] >= 0.0 else min(-gap[k], -gap[z + k]))
+            if size <= max(1e-8 * shallow, 1e-14 * lo):
                 # One linear correction ends the iteration: what it leaves is of second order.
-                inner = ni_a[k] * sa + ni_r[k] * sr
-                outer = no_a[k] * sa + no_r[k] * sr
+                inner = work[INNER, k] * sa + work[INNER, z + k] * sr
+                outer = work[OUTER, k] * sa + work[OUTER, z + k] * sr
                 force[k] = max(fi - ki * inner, 0.0)
                 force[z + k] = max(fo + ko * outer, 0.0)
                 gap[k] += inner
                 gap[z + k] -= outer
-                if si[k] > 0.0:
-                    ni_a[k] -= (sa - ni_a[k] * inner) / si[k]
-                    ni_r[k] -= (sr - ni_r[k] * inner) / si[k]
+                if work[LENGTH, k] > 0.0:
+                    work[INNER, k] -= (sa - work[INNER, k] * inner) / work[LENGTH, k]
+                    work[INNER, z + k] -= (sr - work[INNER, z + k] * inner) / work[LENGTH, k]
                 ball[k, 0] += sa
                 ball[k, 1] += sr
                 # Kept for the tangent below, since the law is called again for the balls that still move.
                 work[12, k], work[12, z + k] = force[k], force[z + k]
                 work[13, k], work[13, z + k] = d_gap[k], d_gap[z + k]
                 work[14, k], work[14, z + k] = d_rate[k], d_rate[z + k]
-                work[15, k], work[15, z + k] = ni_a[k], ni_r[k]
-                done[k] = 1.0
+                work[15, k], work[15, z + k] = work[INNER, k], work[INNER, z + k]
+                work[SEARCH, z + k] = 1.0
                 remaining -= 1
                 continue
-            da[k], dr[k] = sa, sr
-            slope[k] = ga * sa + gr * sr
+            work[STEP, k], work[STEP, z + k] = sa, sr
+            work[SEARCH, k] = ga * sa + gr * sr
             ball[k, 0] += sa
             ball[k, 1] += sr
         if remaining == 0:
@@ -149,29 +151,38 @@ def rigid_inertial(
     for k in range(z):
         fi, fo = work[12, k], work[12, z + k]
         force[k], force[z + k] = fi, fo
-        if fi == 0.0 and work[13, k] == 0.0:
+        work[CARRIED, k], work[CARRIED, z + k] = fi * work[15, k], fi * work[15, z + k]
+    ring_force(table, arm, work, DIRECTION, CARRIED, f)
+    if K.size == 0:
+        return 0
+    for k in range(z):
+        if force[k] == 0.0 and work[13, k] == 0.0:
+            work[STIFF, k], work[STIFF, z + k], work[STIFF + 1, k], work[STIFF + 1, z + k] = 0.0, 0.0, 0.0, 0.0
+            work[VISCOUS, k], work[VISCOUS, z + k], work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = 0.0, 0.0, 0.0, 0.0
             continue
+        fi, fo = force[k], force[z + k]
         na, nr = work[15, k], work[15, z + k]
         elastic, viscous = -work[13, k], -work[14, k]
         ki = elastic + ball_gain * viscous
         ko = -work[13, z + k] - ball_gain * work[14, z + k]
-        wi, wo = fi / si[k], fo / so[k]
+        wi, wo = fi / work[LENGTH, k], fo / work[LENGTH, z + k]
         # A by the ring's motion (elastic part), P by the ball's motion, H = P + the outer contact's.
-        aa, ar, rr = (elastic - wi) * na * na + wi, (elastic - wi) * na * nr, (elastic - wi) * nr * nr + wi
+        eaa, ear, err = (elastic - wi) * na * na + wi, (elastic - wi) * na * nr, (elastic - wi) * nr * nr + wi
         paa, par, prr = (ki - wi) * na * na + wi, (ki - wi) * na * nr, (ki - wi) * nr * nr + wi
-        haa = paa + (ko - wo) * no_a[k] * no_a[k] + wo
-        har = par + (ko - wo) * no_a[k] * no_r[k]
-        hrr = prr + (ko - wo) * no_r[k] * no_r[k] + wo
+        haa = paa + (ko - wo) * work[OUTER, k] * work[OUTER, k] + wo
+        har = par + (ko - wo) * work[OUTER, k] * work[OUTER, z + k]
+        hrr = prr + (ko - wo) * work[OUTER, z + k] * work[OUTER, z + k] + wo
         det = haa * hrr - har * har
         if not det > 0.0:
             return 1
-        taa, tar = (paa * hrr - par * har) / det, (par * haa - paa * har) / det
-        tra, trr = (par * hrr - prr * har) / det, (prr * haa - par * har) / det
+        inverse = 1.0 / det
+        taa, tar = (paa * hrr - par * har) * inverse, (par * haa - paa * har) * inverse
+        tra, trr = (par * hrr - prr * har) * inverse, (prr * haa - par * har) * inverse
         maa, mar, mrr = viscous * na * na, viscous * na * nr, viscous * nr * nr
-        add_ball(
-            cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER], fi * na, fi * nr,
-            aa - taa * aa - tar * ar, ar - taa * ar - tar * rr, ar - tra * aa - trr * ar, rr - tra * ar - trr * rr,
-            maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr,
-            mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr, f, K, C,
-        )  # fmt: skip
+        work[STIFF, k], work[STIFF, z + k] = eaa - taa * eaa - tar * ear, ear - taa * ear - tar * err
+        work[STIFF + 1, k], work[STIFF + 1, z + k] = ear - tra * eaa - trr * ear, err - tra * ear - trr * err
+        work[VISCOUS, k], work[VISCOUS, z + k] = maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr
+        work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr
+    ring_tangent(table, arm, work, DIRECTION, STIFF, K)
+    ring_tangent(table, arm, work, DIRECTION, VISCOUS, C)
     return 0

@@ -44,10 +44,9 @@ from raceway.core.bodies.ring import (
     SIDE,
     STICK,
     TILT_ARM,
-    add_ball,
-    add_couple,
     place,
 )
+from raceway.core.bodies.section import add_ball, add_couple
 from raceway.core.contact import add_damping
 from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
@@ -102,10 +101,11 @@ def rigid_tangential(
     cross_s, merit = work[23][:z], work[23][z:]
     for i in range(5):
         f[i] = 0.0
-        for j in range(5):
-            K[i, j] = 0.0
-            C[i, j] = 0.0
-    place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine)
+        if K.size > 0:
+            for j in range(5):
+                K[i, j] = 0.0
+                C[i, j] = 0.0
+    place(t, q, v, scalars, table, work, 16, 5, 6)
     remaining = z
     for k in range(z):
         slope[k], merit[k], done[k], da[k], dr[k] = 0.0, np.inf, 0.0, 0.0, 0.0

@@ -11,20 +11,21 @@ import numpy as np
 
 from raceway.core.bodies.ring import (
     DAMPING,
-    LEVER,
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_SHARE,
-    SIDE,
     TILT_ARM,
-    add_ball,
     place,
+    ring_force,
+    ring_tangent,
 )
 from raceway.core.contact import add_damping
 from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
 
 _ITERATIONS = 60
+#: Rows of ``work`` beyond the law's, two quantities each, a half row long.
+NORMAL, BRACKET, SPEED, LENGTH, CARRIED, STIFF, VISCOUS, VELOCITY, DIRECTION = 5, 6, 7, 8, 9, 10, 12, 14, 15
 
 
 @jit(SYSTEM)
@@ -35,86 +36,72 @@ def rigid_weightless(
     z = table.shape[0]
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
-    ea, er, low, high, speed = work[5], work[6], work[7], work[8], work[9]
-    cosine, sine = work[10][:z], work[10][z:]
-    for i in range(5):
-        f[i] = 0.0
-        for j in range(5):
-            K[i, j] = 0.0
-            C[i, j] = 0.0
-    place(t, q, v, scalars, table, ea[:z], er[:z], work[11][:z], work[11][z:], cosine, sine)
+    place(t, q, v, scalars, table, work, DIRECTION, NORMAL, VELOCITY)
     for k in range(z):
-        length = np.sqrt(ea[k] * ea[k] + er[k] * er[k])
-        approach = length - li - lo
-        ea[z + k] = length
-        er[z + k] = approach
-        speed[k] = (work[11, k] * ea[k] + work[11, z + k] * er[k]) / length if length > 0.0 else 0.0
-        low[k], high[k] = 0.0, max(approach, 0.0)
-        share = table[k, OUTER_SHARE] if approach > 0.0 else 0.5
-        ball[k, 0] = lo + share * approach
-    for iteration in range(_ITERATIONS):
+        a, r = work[NORMAL, k], work[NORMAL, z + k]
+        work[LENGTH, k] = np.sqrt(a * a + r * r)
+        inverse = 1.0 / max(work[LENGTH, k], 1e-300)
+        work[NORMAL, k], work[NORMAL, z + k] = a * inverse, r * inverse
+        work[SPEED, k] = work[VELOCITY, k] * work[NORMAL, k] + work[VELOCITY, z + k] * work[NORMAL, z + k]
+        work[SPEED, z + k] = work[LENGTH, k] - li - lo
+        work[BRACKET, k], work[BRACKET, z + k] = 0.0, max(work[SPEED, z + k], 0.0)
+        share = table[k, OUTER_SHARE] if work[SPEED, z + k] > 0.0 else 0.5
+        work[LENGTH, z + k] = share * work[SPEED, z + k]
+    # All balls go through every iteration, settled ones too, so that each loop is free of branches.
+    moving = 1
+    for _ in range(_ITERATIONS):
         for k in range(z):
-            own = ball_gain * ball[k, 0] + ball_known[k, 0]
-            outer = ball[k, 0] - lo
-            gap[k] = outer - er[z + k]
-            gap[z + k] = -outer
-            rate[k] = own - speed[k]
+            own = ball_gain * (lo + work[LENGTH, z + k]) + ball_known[k, 0]
+            gap[k] = work[LENGTH, z + k] - work[SPEED, z + k]
+            gap[z + k] = -work[LENGTH, z + k]
+            rate[k] = own - work[SPEED, k]
             rate[z + k] = -own
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
-        moving = False
+        moving = 0
         for k in range(z):
-            approach = er[z + k]
-            if approach <= 0.0:
-                continue
             ki = -d_gap[k] - ball_gain * d_rate[k]
             ko = -d_gap[z + k] - ball_gain * d_rate[z + k]
-            imbalance = force[k] - force[z + k]
-            if not (ki + ko > 0.0) or imbalance == 0.0:
-                continue
-            outer = ball[k, 0] - lo
-            if imbalance > 0.0:
-                low[k] = outer
-            else:
-                high[k] = outer
-            step = imbalance / (ki + ko)
-            if abs(step) <= 1e-8 * approach:
-                # One linear correction ends the iteration: what it leaves is of second order.
-                ball[k, 0] += step
-                force[k] -= ki * step
-                force[z + k] += ko * step
-                gap[k] += step
-                gap[z + k] -= step
-                continue
-            trial = outer + step
-            if trial <= low[k] or trial >= high[k]:
-                trial = 0.5 * (low[k] + high[k])
-                if trial == low[k] or trial == high[k]:
-                    continue
-            ball[k, 0] = lo + trial
-            moving = True
-        if not moving:
+            stiff = ki + ko
+            imbalance = force[k] - force[z + k] if work[SPEED, z + k] > 0.0 and stiff > 0.0 else 0.0
+            work[BRACKET, k] = work[LENGTH, z + k] if imbalance > 0.0 else work[BRACKET, k]
+            work[BRACKET, z + k] = work[LENGTH, z + k] if imbalance < 0.0 else work[BRACKET, z + k]
+            step = imbalance / max(stiff, 1e-300)
+            trial = work[LENGTH, z + k] + step
+            # A correction this small ends the iteration linearly: what it leaves is of second order.
+            last = abs(step) <= 1e-8 * work[SPEED, z + k]
+            middle = 0.5 * (work[BRACKET, k] + work[BRACKET, z + k])
+            between = trial > work[BRACKET, k] and trial < work[BRACKET, z + k]
+            trial = trial if last or between else middle
+            trial = trial if imbalance != 0.0 else work[LENGTH, z + k]
+            final = step if last else 0.0
+            gap[k] += final
+            gap[z + k] -= final
+            force[k] -= ki * final
+            force[z + k] += ko * final
+            moving += 1 if not last and imbalance != 0.0 and trial != work[LENGTH, z + k] else 0
+            work[LENGTH, z + k] = trial
+        if moving == 0:
             break
-        if iteration == _ITERATIONS - 1:
-            return 1
     for k in range(z):
-        if er[z + k] <= 0.0:
-            force[k] = 0.0
-            force[z + k] = 0.0
-            continue
-        total = -d_gap[k] - d_gap[z + k] - ball_gain * (d_rate[k] + d_rate[z + k])
-        if not total > 0.0:
-            continue
-        length = ea[z + k]
-        na, nr = ea[k] / length, er[k] / length
-        carried = force[k]
-        share = (-d_gap[z + k] - ball_gain * d_rate[z + k]) / total
-        normal = -d_gap[k] * share - carried / length
-        dashpot = -d_rate[k] * share
-        add_ball(
-            cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER], carried * na, carried * nr,
-            normal * na * na + carried / length, normal * na * nr, normal * na * nr,
-            normal * nr * nr + carried / length,
-            dashpot * na * na, dashpot * na * nr, dashpot * na * nr, dashpot * nr * nr, f, K, C,
-        )  # fmt: skip
-    return 0
+        closed = 1.0 if work[SPEED, z + k] > 0.0 else 0.0
+        force[k] *= closed
+        force[z + k] *= closed
+        ball[k, 0] = lo + work[LENGTH, z + k]
+        work[CARRIED, k], work[CARRIED, z + k] = force[k] * work[NORMAL, k], force[k] * work[NORMAL, z + k]
+    ring_force(table, arm, work, DIRECTION, CARRIED, f)
+    if K.size > 0:
+        for k in range(z):
+            stiff = -d_gap[k] - d_gap[z + k] - ball_gain * (d_rate[k] + d_rate[z + k])
+            na, nr = work[NORMAL, k], work[NORMAL, z + k]
+            closed = 1.0 if work[SPEED, z + k] > 0.0 and stiff > 0.0 else 0.0
+            share = closed * (-d_gap[z + k] - ball_gain * d_rate[z + k]) / max(stiff, 1e-300)
+            across = closed * force[k] / max(work[LENGTH, k], 1e-300)
+            along, dashpot = -d_gap[k] * share - across, -d_rate[k] * share
+            work[STIFF, k], work[STIFF, z + k] = along * na * na + across, along * na * nr
+            work[STIFF + 1, k], work[STIFF + 1, z + k] = along * na * nr, along * nr * nr + across
+            work[VISCOUS, k], work[VISCOUS, z + k] = dashpot * na * na, dashpot * na * nr
+            work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = dashpot * na * nr, dashpot * nr * nr
+        ring_tangent(table, arm, work, DIRECTION, STIFF, K)
+        ring_tangent(table, arm, work, DIRECTION, VISCOUS, C)
+    return 1 if moving > 0 else 0

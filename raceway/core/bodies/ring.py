@@ -3,13 +3,13 @@
 Notes
 -----
 A row of balls has a side (+1: a positive axial motion of the inner ring seats it, -1: the mirror image), a lever X (its
-axial distance from the reference point) and a shift (axial approach built in by the preload of a pair).  The vector
-from the outer to the inner groove centre is e = (e_rest + shift + side (x + R (tilt_y sin - tilt_z cos)),
-e_rest + (y + X tilt_z) cos + (z - X tilt_y) sin).
+axial distance from the reference point) and a shift (axial approach built in by the preload of a pair).  With
+u = tilt_y sin - tilt_z cos and rho = y cos + z sin, the vector from the outer to the inner groove centre is
+e = (e_rest + shift + side (x + R u), e_rest + rho - X u).
 """
 
 import numpy as np
-from numba import float64, void
+from numba import float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.signatures import MATRIX, VECTOR
@@ -28,27 +28,32 @@ COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT = range
 COLUMNS = 8
 
 
-@jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR))
-def place(t, q, v, scalars, table, ea, er, va, vr, cosine, sine):
-    """e (axial ea, radial er), its velocity (va, vr) and the direction of the azimuth of every ball; all (Z,)."""
+# Kernels below take rows of ``work`` by their number: a view of an array costs two atomic operations, and a kernel's
+# views together cost as much as its arithmetic.
+
+
+@jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64, int64, int64))
+def place(t, q, v, scalars, table, work, direction, centre, velocity):
+    """Of every ball: the azimuth's cos and sin, e (axial, radial) and its velocity, into three rows of ``work``.
+
+    Notes
+    -----
+    A ball that orbits meets the ring at another place every moment: de/dt has a part of the cage speed.
+    """
+    n = table.shape[0]
     arm, cage = scalars[4], scalars[6]
     turn_c, turn_s = 1.0, 0.0
     if cage != 0.0:
         turn_c, turn_s = np.cos(cage * t), np.sin(cage * t)
-    for k in range(table.shape[0]):
-        c, s = table[k, 0], table[k, 1]
-        if cage != 0.0:
-            c, s = c * turn_c - s * turn_s, s * turn_c + c * turn_s
+    for k in range(n):
         side, lever = table[k, 5], table[k, 6]
+        c, s = table[k, 0] * turn_c - table[k, 1] * turn_s, table[k, 1] * turn_c + table[k, 0] * turn_s
+        work[direction, k], work[direction, n + k] = c, s
         y, z = q[1] + lever * q[4], q[2] - lever * q[3]
-        ea[k] = scalars[0] + table[k, 7] + side * (q[0] + arm * (q[3] * s - q[4] * c))
-        er[k] = scalars[1] + y * c + z * s
-        va[k] = side * (v[0] + arm * (v[3] * s - v[4] * c))
-        vr[k] = (v[1] + lever * v[4]) * c + (v[2] - lever * v[3]) * s
-        if cage != 0.0:
-            va[k] += cage * side * arm * (q[3] * c + q[4] * s)
-            vr[k] += cage * (z * c - y * s)
-        cosine[k], sine[k] = c, s
+        work[centre, k] = scalars[0] + table[k, 7] + side * (q[0] + arm * (q[3] * s - q[4] * c))
+        work[centre, n + k] = scalars[1] + y * c + z * s
+        work[velocity, k] = side * (v[0] + arm * ((v[3] + cage * q[4]) * s - (v[4] - cage * q[3]) * c))
+        work[velocity, n + k] = (v[1] + lever * v[4] + cage * z) * c + (v[2] - lever * v[3] - cage * y) * s
 
 
 @jit(void(float64, VECTOR, MATRIX))
@@ -60,44 +65,75 @@ def stop(t, scalars, table):
     scalars[6] = 0.0
 
 
-@jit(void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, VECTOR, MATRIX))  # fmt: skip
-def add_couple(c, s, arm, side, lever, couple, ka, kr, ma, mr, mm, f, K):
-    """Add the couple [N m] that tangential forces put on a ball's section of the ring, with its derivatives.
+@jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR))
+def ring_force(table, arm, work, direction, row, f):
+    """f (5,): the balls' forces on the ring [N], from work[row] = axial (Z,), radial (Z,); f = sum J^T (axial, radial).
+
+    ``direction`` is the row that ``place`` put the azimuths in.
+    """
+    n = table.shape[0]
+    x, y, z, tilt_y, tilt_z = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(n):
+        c, s = work[direction, k], work[direction, n + k]
+        axial, radial = table[k, 5] * work[row, k], work[row, n + k]
+        couple = arm * axial - table[k, 6] * radial
+        x += axial
+        y += radial * c
+        z += radial * s
+        tilt_y += couple * s
+        tilt_z += couple * c
+    f[0], f[1], f[2], f[3], f[4] = x, y, z, tilt_y, -tilt_z
+
+
+@jit(void(MATRIX, float64, MATRIX, int64, int64, MATRIX))
+def ring_tangent(table, arm, work, direction, row, K):
+    """K (5, 5): sum of J^T [[aa, ar], [ra, rr]] J over the balls.
+
+    Parameters
+    ----------
+    work : work[row] = aa (Z,), ar (Z,);  work[row + 1] = ra (Z,), rr (Z,)
 
     Notes
     -----
-    The section turns by side (tilt_y s - tilt_z c).  (ka, kr): derivative of the ball's force by that turn, (ma, mr) of
-    the couple by e, mm of the couple by the turn.
+    Each ball's tangent is taken to the three coordinates x, rho and u first; all entries are then sums times 1, cos, sin
+    and their products, kept in registers: three times as fast as adding each ball to K in memory.
     """
-    turn = (0.0, 0.0, 0.0, side * s, -side * c)
-    ja = (side, 0.0, 0.0, side * arm * s, -side * arm * c)
-    jr = (0.0, c, s, -lever * s, lever * c)
-    for i in range(5):
-        f[i] += turn[i] * couple
-    for j in range(5):
-        row = ma * ja[j] + mr * jr[j] + mm * turn[j]
-        for i in range(5):
-            K[i, j] += turn[i] * row + (ja[i] * ka + jr[i] * kr) * turn[j]
-
-
-@jit(void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, VECTOR, MATRIX, MATRIX))  # fmt: skip
-def add_ball(c, s, arm, side, lever, fa, fr, kaa, kar, kra, krr, caa, car, cra, crr, f, K, C):
-    """Add one ball's force (axial fa, radial fr) and 2x2 tangents to the ring's f (5,), K and C (5, 5).
-
-    Notes
-    -----
-    e = J q with the rows J_a = side (1, 0, 0, R s, -R c) and J_r = (0, c, s, -X s, X c).
-    """
-    ja = (side, 0.0, 0.0, side * arm * s, -side * arm * c)
-    jr = (0.0, c, s, -lever * s, lever * c)
-    for i in range(5):
-        f[i] += ja[i] * fa + jr[i] * fr
-    for j in range(5):
-        ga, gr = kaa * ja[j] + kar * jr[j], kra * ja[j] + krr * jr[j]
-        for i in range(5):
-            K[i, j] += ja[i] * ga + jr[i] * gr
-    if caa != 0.0 or crr != 0.0:
-        for j in range(5):
-            ga, gr = caa * ja[j] + car * jr[j], cra * ja[j] + crr * jr[j]
-            for i in range(5):
-                C[i, j] += ja[i] * ga + jr[i] * gr
+    xx, xr_c, xr_s, rx_c, rx_s = 0.0, 0.0, 0.0, 0.0, 0.0
+    xu_c, xu_s, ux_c, ux_s = 0.0, 0.0, 0.0, 0.0
+    rr_cc, rr_cs, rr_ss = 0.0, 0.0, 0.0
+    ru_cc, ru_cs, ru_ss, ur_cc, ur_cs, ur_ss = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    uu_cc, uu_cs, uu_ss = 0.0, 0.0, 0.0
+    z = table.shape[0]
+    for k in range(z):
+        c, s, lever = work[direction, k], work[direction, z + k], table[k, 6]
+        aa, ar, ra, rr = work[row, k], table[k, 5] * work[row, z + k], table[k, 5] * work[row + 1, k], work[row + 1, z + k]
+        cc, cs, ss = c * c, c * s, s * s
+        xu, ux = arm * aa - lever * ar, arm * aa - lever * ra
+        ru, ur = arm * ra - lever * rr, arm * ar - lever * rr
+        uu = arm * xu - lever * ru
+        xx += aa
+        xr_c += ar * c
+        xr_s += ar * s
+        rx_c += ra * c
+        rx_s += ra * s
+        xu_c += xu * c
+        xu_s += xu * s
+        ux_c += ux * c
+        ux_s += ux * s
+        rr_cc += rr * cc
+        rr_cs += rr * cs
+        rr_ss += rr * ss
+        ru_cc += ru * cc
+        ru_cs += ru * cs
+        ru_ss += ru * ss
+        ur_cc += ur * cc
+        ur_cs += ur * cs
+        ur_ss += ur * ss
+        uu_cc += uu * cc
+        uu_cs += uu * cs
+        uu_ss += uu * ss
+    K[0, 0], K[0, 1], K[0, 2], K[0, 3], K[0, 4] = xx, xr_c, xr_s, xu_s, -xu_c
+    K[1, 0], K[1, 1], K[1, 2], K[1, 3], K[1, 4] = rx_c, rr_cc, rr_cs, ru_cs, -ru_cc
+    K[2, 0], K[2, 1], K[2, 2], K[2, 3], K[2, 4] = rx_s, rr_cs, rr_ss, ru_ss, -ru_cs
+    K[3, 0], K[3, 1], K[3, 2], K[3, 3], K[3, 4] = ux_s, ur_cs, ur_ss, uu_ss, -uu_cs
+    K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = -ux_c, -ur_cc, -ur_cs, -uu_cs, uu_cc

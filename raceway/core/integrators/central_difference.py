@@ -20,7 +20,7 @@ from raceway.core.jit import jit
 from raceway.core.signatures import LOOP
 
 
-@jit(LOOP)
+@jit(LOOP, allocates=True)
 def central_difference(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
@@ -28,7 +28,8 @@ def central_difference(
     """See ``raceway.core.integrators``."""
     z = ball.shape[0]
     work = np.zeros((WORK_ROWS, 2 * z))
-    f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
+    # No tangents are asked for.
+    f, K, C = np.empty(5), np.empty((0, 0)), np.empty((0, 0))
     q, half, guess, a, outer, time = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(1)
     known, trial = np.empty_like(ball), np.empty_like(ball)
     law_new = law_state.copy()
@@ -90,9 +91,13 @@ def central_difference(
             motion[1, i] = half[i] + 0.5 * dt * a[i]
             motion[2, i] = a[i]
             motion[3, i] = 0.0
+            for j in range(5):
+                motion[3, i] -= mass[i, j] * a[j]
         for k in range(z):
             for c in range(ball.shape[1]):
                 ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
-        law_state[:, :] = law_new
+        for i in range(law_state.shape[0]):
+            for j in range(law_state.shape[1]):
+                law_state[i, j] = law_new[i, j]
         note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)
     return count

@@ -25,7 +25,7 @@ from raceway.core.signatures import LOOP
 _NEWTON_LIMIT = 40
 
 
-@jit(LOOP)
+@jit(LOOP, allocates=True)
 def implicit(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
@@ -136,6 +136,8 @@ def implicit(
         for k in range(z):
             for c in range(ball.shape[1]):
                 ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
-        law_state[:, :] = law_new
+        for i in range(law_state.shape[0]):
+            for j in range(law_state.shape[1]):
+                law_state[i, j] = law_new[i, j]
         note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)
     return count

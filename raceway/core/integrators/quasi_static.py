@@ -17,7 +17,7 @@ from raceway.core.root import find_root
 from raceway.core.signatures import LOOP
 
 
-@jit(LOOP)
+@jit(LOOP, allocates=True)
 def quasi_static(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
@@ -51,7 +51,7 @@ def quasi_static(
             )  # fmt: skip
         counters[0] += report[0] + 1.0
         if status != 0:
-            counters[1] = 1.0 if status == 2 else (3.0 if status == 3 else 2.0)
+            counters[1] = 1.0 if status == 2 else (3.0 if status >= 3 else 2.0)
             counters[2] = report[1]
             return step
         for i in range(5):

@@ -24,7 +24,7 @@ class Fft1x:
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
-        from raceway.core.identification import fit_lines, fourier_line, identification, stiffness
+        from raceway.core.identification import fit_lines, fourier_line, identification, stiffness, without_drift
 
         record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
         force = fourier_line(record.time, record.force, frequency)
@@ -33,11 +33,13 @@ class Fft1x:
         other, _ = fit_lines(record.time, np.hstack([record.force, record.displacement]), frequency, 3)
         per_turn = record.schedule.steps_per_turn // record.schedule.stride
         turns = len(record.time) // per_turn
+        force_straight = without_drift(record.time, record.force, frequency)
+        straight = without_drift(record.time, record.displacement, frequency)
         single = []
         for turn in range(turns):
             part = slice(turn * per_turn, (turn + 1) * per_turn)
-            force_1 = fourier_line(record.time[part], record.force[part], frequency)
-            single.append(stiffness(force_1, fourier_line(record.time[part], record.displacement[part], frequency)))
+            force_1 = fourier_line(record.time[part], force_straight[part], frequency)
+            single.append(stiffness(force_1, fourier_line(record.time[part], straight[part], frequency)))
         motion = record.displacement[:, :3] - record.displacement[:, :3].mean(axis=0)
         wt = 2.0 * np.pi * frequency * record.time[:, None]
         pure = (line[:3] * np.exp(1j * wt)).real

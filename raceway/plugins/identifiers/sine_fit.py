@@ -26,7 +26,7 @@ class SineFit:
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
-        from raceway.core.identification import fit_lines, fourier_line, identification, stiffness
+        from raceway.core.identification import fit_lines, fourier_line, identification, stiffness, without_drift
 
         record, frequency = records[0], model.excitation.frequency_hz
         signals = np.hstack([record.force, record.displacement])
@@ -34,10 +34,11 @@ class SineFit:
         force, line = lines[0, :5], lines[0, 5:]
         whole = stiffness(force, line)
         per_turn = record.schedule.steps_per_turn // record.schedule.stride
+        straight = without_drift(record.time, signals, frequency)
         single = []
         for turn in range(len(record.time) // per_turn):
             part = slice(turn * per_turn, (turn + 1) * per_turn)
-            one, _ = fit_lines(record.time[part], signals[part], frequency, self.harmonics)
+            one, _ = fit_lines(record.time[part], straight[part], frequency, self.harmonics)
             single.append(stiffness(one[0, :5], one[0, 5:]))
         scale = np.linalg.norm(line[1:3]) * np.sqrt(0.5 * len(record.time))
         other = stiffness(

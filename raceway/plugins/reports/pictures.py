@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import io
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.files import write_whole
 from raceway.options import between, option
 
 if TYPE_CHECKING:
@@ -83,16 +83,7 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
     figure.set_dpi(dots_per_inch)
     memory = io.BytesIO()
     FigureCanvasAgg(figure).print_png(memory)
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        scratch.write_bytes(memory.getvalue())
-        scratch.replace(path)
-    except OSError as why:
-        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}. Choose another folder with --out.") from None
-    finally:
-        scratch.unlink(missing_ok=True)
-    return path
+    return write_whole(memory.getvalue(), path)
 
 
 def orbit(result: Any) -> Figure:
@@ -160,7 +151,7 @@ def ball_loads(result: Any) -> Figure:
     import numpy as np
 
     figure = new_figure(7.0, 6.4)
-    axes = figure.add_subplot(projection="polar")
+    axes: Any = figure.add_subplot(projection="polar")
     z = result.model.geometry.ball_count
     azimuth = result.model.azimuth
     closed = np.append(np.arange(z), 0)
@@ -178,7 +169,9 @@ def ball_loads(result: Any) -> Figure:
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.set_xticklabels(["0° (+y)", "30°", "60°", "90° (+z)", *(f"{a}°" for a in range(120, 360, 30))])
     axes.tick_params(labelsize=10, pad=6)
-    axes.set_title(f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}", fontsize=12, pad=14)
+    axes.set_title(
+        f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}", fontsize=12, pad=14
+    )
     axes.grid(color="#d8dee4", linewidth=0.7)
     figure.legend(loc="outside lower center", ncols=2, fontsize=10, frameon=False)
     return figure

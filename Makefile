@@ -1,0 +1,56 @@
+# make demo     the main job on a fresh clone: needs python3 (3.11 or later) and make only
+# make test     everything installed, the quick tests
+# make lint     ruff, import-linter, mypy
+# make evidence every number that README and docs show, computed again
+
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+SCENE  ?= examples/b7206.toml
+
+# What a bare Debian lacks for gmsh (linked) and pyvista (opened at run time, without a display).
+APT_PACKAGES := libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
+APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
+
+.PHONY: demo test lint evidence system-libraries apt-line clean
+
+demo: $(VENV)/.base
+	$(BIN)/raceway run $(SCENE)
+
+test: $(VENV)/.all system-libraries
+	$(BIN)/python -m pytest -n 2 -q
+
+lint: $(VENV)/.all
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
+	$(BIN)/mypy
+
+evidence: $(VENV)/.all
+	$(BIN)/python -m benchmarks.evidence
+
+# The package is installed in place, so only a change of pyproject.toml installs anything again.
+$(VENV)/.python:
+	$(PYTHON) -c 'import sys; sys.exit("Raceway needs Python 3.11 or later, this is " + sys.version.split()[0] + ": make PYTHON=python3.12 ..." if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv $(VENV)
+	touch $@
+
+$(VENV)/.base: $(VENV)/.python pyproject.toml
+	$(BIN)/python -m pip install -q -e .
+	touch $@
+
+$(VENV)/.all: $(VENV)/.python pyproject.toml
+	$(BIN)/python -m pip install -q -e '.[all]'
+	touch $@ $(VENV)/.base
+
+# Loads both libraries and draws without a display; prints the one line that a bare Debian needs when that fails.
+system-libraries: $(VENV)/.all
+	@$(BIN)/python -c 'import gmsh, pyvista; pyvista.Plotter(off_screen=True).show(auto_close=True)' >/dev/null 2>$(VENV)/.libraries.log \
+	  && echo "gmsh and pyvista: system libraries present" \
+	  || { cat $(VENV)/.libraries.log; echo "gmsh or pyvista lacks system libraries. As root: $(APT_LINE)"; exit 1; }
+
+apt-line:
+	@echo $(APT_LINE)
+
+clean:
+	rm -rf $(VENV) raceway-out build dist

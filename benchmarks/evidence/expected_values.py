@@ -1,0 +1,84 @@
+"""The table and the trends that an independent rigid-ring solver gave for the B7206C, with the program's own numbers.
+
+Static scenes: pure axial load for the table; for the trends the rig's rotating force, quasi-static, as a radial load
+towards ball 0 with fixed balls.  Secant stiffness is that force over the displacement along it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.evidence import Row, near
+from benchmarks.evidence._scenes import rig_force, settled, static
+
+TITLE = "B7206C against the values expected of an independent solver"
+COMMAND = "python -m benchmarks.evidence expected_values"
+SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)
+
+#: Axial load [N]: axial displacement [um], contact angle [deg], ball load [N], p inner, outer [MPa], k axial, k radial
+#: with tilt locked, with tilt free [N/um].
+TABLE = {
+    400.0: (17.96, 17.35, 111.8, 1128.0, 939.0, 38.6, 183.4, 16.5),
+    1200.0: (33.01, 19.26, 303.1, 1573.0, 1309.0, 68.6, 250.3, 34.7),
+    2000.0: (43.02, 20.52, 475.5, 1828.0, 1521.0, 91.6, 286.6, 46.9),
+}
+_NAMES = (
+    "axial displacement [um]",
+    "contact angle [deg]",
+    "ball load [N]",
+    "peak pressure, inner [MPa]",
+    "peak pressure, outer [MPa]",
+    "axial stiffness [N/um]",
+    "radial stiffness, tilt locked [N/um]",
+    "radial stiffness, tilt free [N/um]",
+)
+#: (tilt, axial load [N], centrifugal force): k at 10 980 r/min [N/um], k / that at the other speeds.
+TRENDS = {
+    ("locked", 400.0, False): (180.1, (0.991, 0.979, 0.960, 0.926)),
+    ("locked", 400.0, True): (163.0, (0.932, 0.848, 0.756, 0.668)),
+    ("locked", 1000.0, False): (237.5, (0.999, 0.997, 0.995, 0.992)),
+    ("locked", 1000.0, True): (235.3, (0.994, 0.987, 0.976, 0.962)),
+    ("locked", 2000.0, False): (286.4, (1.000, 0.999, 0.999, 0.998)),
+    ("locked", 2000.0, True): (285.8, (0.999, 0.997, 0.995, 0.993)),
+    ("free", 400.0, False): (24.47, (1.084, 1.172, 1.266, 1.365)),
+    ("free", 400.0, True): (24.32, (1.081, 1.167, 1.259, 1.356)),
+    ("free", 1000.0, False): (34.34, (1.035, 1.075, 1.120, 1.169)),
+    ("free", 1000.0, True): (34.30, (1.034, 1.074, 1.118, 1.167)),
+    ("free", 2000.0, False): (48.39, (1.012, 1.026, 1.044, 1.064)),
+    ("free", 2000.0, True): (48.37, (1.012, 1.026, 1.043, 1.063)),
+}
+
+
+def axial_row(axial: float) -> np.ndarray:
+    """(8,) the program's numbers in the order of ``TABLE``."""
+    model, now = settled(static(axial, "locked"))
+    load = now.contact_force[0]
+    locked, free = np.linalg.inv(now.stiffness[:3, :3]), np.linalg.inv(now.stiffness)
+    pressures = model.inner.peak_pressure(load), model.outer.peak_pressure(load)
+    stiffness = 1.0 / np.array([free[0, 0], locked[1, 1], free[1, 1]])
+    return np.array(
+        [now.displacement[0] * 1e6, np.degrees(now.angle_inner[0]), load, *np.array(pressures) / 1e6, *stiffness / 1e6]
+    )
+
+
+def secant(axial: float, tilt: str, speed_rpm: float, inertia: bool) -> float:
+    """Radial stiffness under the rig's force [N/m]."""
+    force = rig_force(speed_rpm)
+    return float(force / settled(static(axial, tilt, force, speed_rpm, inertia))[1].displacement[1])
+
+
+def rows() -> list[Row]:
+    found = []
+    for axial, expected in TABLE.items():
+        for name, value, wanted in zip(_NAMES, axial_row(axial), expected, strict=True):
+            found.append(near(f"{axial:.0f} N axial: {name}", value, wanted, 0.005, COMMAND))
+    for (tilt, axial, inertia), (first, ratios) in TRENDS.items():
+        curve = np.array([secant(axial, tilt, speed, inertia) for speed in SPEEDS])
+        balls = "with" if inertia else "without"
+        where = f"tilt {tilt}, {axial:.0f} N, {balls} centrifugal force"
+        found.append(near(f"{where}: k at 10 980 r/min [N/um]", curve[0] / 1e6, first, 0.005, COMMAND))
+        ok = np.abs(curve[1:] / curve[0] - ratios).max() <= 0.002
+        text = " ".join(f"{ratio:.4f}" for ratio in curve[1:] / curve[0])
+        limit = " ".join(f"{ratio:.3f}" for ratio in ratios) + " within 0.002"
+        found.append(Row(f"{where}: k / k(10 980) at 12 000 to 15 000 r/min", text, limit, ok, COMMAND))
+    return found

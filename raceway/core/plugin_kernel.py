@@ -1,0 +1,37 @@
+"""Looks at a plug-in's compiled kernel before a loop takes it: numba's own words for a wrong one help nobody."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from raceway.core.jit import signature_words
+from raceway.errors import PluginError, RacewayError
+
+
+def plugin_kernel(plugin: Any, kind: str, signature: Any, name: str) -> Any:
+    """The kernel of a plug-in, compiled for the signature of its kind.
+
+    Parameters
+    ----------
+    plugin : with ``kernel()``;  kind : "contact law" or "excitation", for messages
+    signature : ``raceway.core.signatures.LAW`` or ``FORCE``;  name : "LAW" or "FORCE"
+
+    Raises
+    ------
+    PluginError
+        ``kernel()`` raises, returns something that is not compiled, or is compiled for other arguments.
+    """
+    label = f"{kind} '{plugin.name}' ({type(plugin).__module__})"
+    remedy = f"decorate it with @jit({name}) of raceway.core.jit and raceway.core.signatures"
+    try:
+        kernel = plugin.kernel()
+    except RacewayError as why:
+        raise PluginError(f"{label}: {why}") from why
+    except Exception as why:  # a third party's own code
+        raise PluginError(f"{label}: kernel() raises {type(why).__name__}: {why}") from why
+    if not hasattr(kernel, "nopython_signatures"):
+        raise PluginError(f"{label}: kernel() returns {type(kernel).__name__}, which is not compiled: {remedy}")
+    if not any(has.args == signature.args and has.return_type == signature.return_type for has in kernel.nopython_signatures):
+        found = " or ".join(signature_words(has) for has in kernel.nopython_signatures) or "no signature"
+        raise PluginError(f"{label}: its kernel has {found}, the rule is {signature_words(signature)}: {remedy}")
+    return kernel

@@ -1,0 +1,83 @@
+"""The command line in tests: in this process, or as a user starts it, with plug-ins that look installed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+from click.testing import CliRunner, Result
+
+from raceway.cli import main
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+ARTICLE, MINIMAL = str(EXAMPLES / "b7206.toml"), str(EXAMPLES / "minimal.toml")
+
+
+def invoke(*words: Any) -> Result:
+    """A command in this process; nothing but an exit may leave it."""
+    found = CliRunner().invoke(main, [str(word) for word in words])
+    assert found.exception is None or isinstance(found.exception, SystemExit), found.exception
+    assert "Traceback" not in found.output
+    return found
+
+
+def raceway(*words: Any, **environment: Any) -> subprocess.CompletedProcess[str]:
+    """A command in a process of its own."""
+    return python("-m", "raceway", *words, **environment)
+
+
+def python(*words: Any, cwd: Any = None, **environment: Any) -> subprocess.CompletedProcess[str]:
+    """A Python process; keywords become environment variables."""
+    variables = {**os.environ, **{name: str(value) for name, value in environment.items()}}
+    command = [sys.executable, *(str(word) for word in words)]
+    return subprocess.run(command, capture_output=True, text=True, env=variables, cwd=cwd, timeout=120, check=False)
+
+
+def install(folder: Path, name: str, code: str, entry: str | None = None) -> Path:
+    """A folder for PYTHONPATH with a module and the metadata of an installed distribution around it."""
+    (folder / f"{name}.py").write_text(dedent(code), encoding="utf-8")
+    info = folder / f"{name}-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n", encoding="utf-8")
+    (info / "entry_points.txt").write_text(f"[raceway]\n{entry or name} = {name}\n", encoding="utf-8")
+    return folder
+
+
+LAW = '''
+from typing import ClassVar
+
+import attrs
+
+from raceway import hookimpl
+
+
+@attrs.frozen
+class Law:
+    """A law of a test."""
+
+    name: ClassVar[str] = "{name}"
+    discretisations: ClassVar[frozenset[str]] = frozenset({{"resultant"}})
+    state_size: ClassVar[int] = 0
+    dissipative: ClassVar[bool] = False
+
+    def build(self, pairs):
+        return pairs.hertz_factor[:, None].copy()
+
+    def kernel(self):
+{kernel}
+
+
+@hookimpl
+def raceway_contact_laws():
+    return [Law]
+'''
+
+
+def law(name: str, kernel: str = "return None") -> str:
+    """Source of a contact law with the body of its ``kernel()``."""
+    body = "\n".join(f"        {line}" for line in dedent(kernel).strip().splitlines())
+    return LAW.format(name=name, kernel=body)

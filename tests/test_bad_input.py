@@ -1,0 +1,297 @@
+"""Every way to hand in something wrong: one message with path, value, rule and remedy, and the right exit code."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, raceway
+
+#: What is set; the path that is named; words of the message.
+SCENES = {
+    "unknown key": ("load.axail=3", "load.axail", "did you mean 'axial'?"),
+    "unknown key of a plug-in": ("contact.stifness=1e15", "contact.stifness", "unknown key"),
+    "unknown kind": ("excitation.kind=bidirectonal", "excitation.kind", "did you mean 'bidirectional'?"),
+    "unknown word": ("supports.tilt=looked", "supports.tilt", "did you mean 'locked'?"),
+    "unknown table": ("beering.ball_count=3", "beering", "did you mean 'bearing'?"),
+    "fraction for an integer": ("bearing.ball_count=12.7", "bearing.ball_count", "must be a whole number"),
+    "negative number": ("rotor.mass=-1", "rotor.mass", "must be at least 0"),
+    "negative length": ("bearing.ball_diameter=-0.01", "bearing.ball_diameter", "must be greater than 0"),
+    "NaN": ("load.axial=nan", "load.axial", "must be a finite number"),
+    "infinite": ("excitation.speed_rpm=inf", "excitation.speed_rpm", "must be a finite number"),
+    "NaN in a list": ("load.radial=[nan, 0.0]", "load.radial", "must be a finite number"),
+    "string for a number": ('load.axial="much"', "load.axial", "must be a number, not a string"),
+    "number for a string": ("title=3", "title", "must be a string"),
+    "true for a number": ("load.axial=true", "load.axial", "must be a number"),
+    "number for a switch": ("kinematics.ball_inertia=1", "kinematics.ball_inertia", "must be true or false"),
+    "number for a table": ("load=3", "load", "must be a table"),
+    "wrong length": ("load.radial=[1.0]", "load.radial", "list of 2 numbers"),
+    "conformity at its limit": ("bearing.conformity_inner=0.5", "bearing.conformity_inner", "greater than 0.5"),
+    "conformity below": ("bearing.conformity_outer=0.48", "bearing.conformity_outer", "greater than 0.5"),
+    "too many balls": ("bearing.ball_count=20", "bearing", "do not fit a pitch circle of 0.046 m: at most 15"),
+    "ball larger than the pitch circle": ("bearing.ball_diameter=0.05", "bearing", "must be smaller than `pitch_diameter`"),
+    "preset with a typo": ("bearing.preset=B7206G", "bearing.preset", "no such preset (did you mean"),
+    "preset in lower case": ("bearing.preset=b7206c", "bearing.preset", "did you mean 'B7206C'?"),
+    "force of zero": ("excitation.unbalance=0", "excitation", "leave the table out"),
+    "nodal on rigid bodies": ("contact.discretisation=nodal", "contact.discretisation", "supports 'resultant'"),
+    "--set without =": ("load.axial", "--set load.axial", "for instance load.axial=400"),
+    "--set through a value": ("title.part=3", "--set title.part", "is not a table"),
+}
+
+
+@pytest.mark.parametrize("case", SCENES)
+def test_a_mistake_in_a_scene(case):
+    change, path, words = SCENES[case]
+    found = invoke("check", ARTICLE, "--set", change)
+    assert found.exit_code == 2
+    assert found.stdout == ""
+    assert f"`{path}`" in found.stderr
+    assert words in found.stderr
+    errors = json.loads(invoke("check", ARTICLE, "--set", change, "--json").stdout)["errors"]
+    assert [set(error) for error in errors] == [{"path", "value", "message"}] * len(errors)
+    assert path in {error["path"] for error in errors}
+
+
+def test_clearance_and_angle_that_contradict_each_other():
+    found = invoke("check", ARTICLE, "--set", "bearing.radial_clearance=1e-4", "--set", "bearing.contact_angle_deg=15.0")
+    assert found.exit_code == 2
+    assert "contradict each other" in found.stderr
+    assert "Give one of them" in found.stderr
+
+
+def test_several_mistakes_are_told_together():
+    changes = [
+        "load.axial=nan",
+        "bearing.ball_count=12.7",
+        "contact.kind=hrtz",
+        "integrator.turnz=3",
+        "nothing",
+        "rotor.mass=-1",
+    ]
+    found = invoke("run", ARTICLE, *(word for change in changes for word in ("--set", change)), "--json")
+    assert found.exit_code == 2
+    paths = [error["path"] for error in json.loads(found.stdout)["errors"]]
+    expected = {"load.axial", "bearing.ball_count", "contact.kind", "--set nothing", "rotor.mass"}
+    assert expected <= set(paths)
+    assert len(paths) == len(set(paths)), "each mistake once"
+
+
+FILES = {
+    "missing": (None, "no such file"),
+    "empty": ("", "is empty"),
+    "blank": ("\n  \n", "is empty"),
+    "malformed": ("[bearing\npreset = 3", "is not valid TOML"),
+    "malformed value": ('[load]\naxial = 1 000\n[bearing]\npreset = "B7206C"', "at line 2"),
+    "not text": (b"\xff\xfe\x00\x01", "is not UTF-8 text"),
+    "no bearing": ("[load]\naxial = 3.0", "`bearing`: is required"),
+}
+
+
+@pytest.mark.parametrize("case", FILES)
+@pytest.mark.parametrize("command", ["check", "run", "plan"])
+def test_a_file_that_is_no_scene(case, command, tmp_path):
+    content, words = FILES[case]
+    path = tmp_path / "scene.toml"
+    if content is not None:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    found = invoke(command, path)
+    assert found.exit_code == 2
+    assert words in found.stderr
+    assert found.stderr.count("error: ") == 1
+
+
+def test_a_file_that_cannot_be_read(tmp_path, monkeypatch):
+    path = tmp_path / "scene.toml"
+    path.write_text("x = 1")
+    monkeypatch.setattr(
+        "pathlib.Path.read_bytes", lambda self: (_ for _ in ()).throw(PermissionError(13, "Permission denied"))
+    )
+    found = invoke("check", path)
+    assert found.exit_code == 2
+    assert "cannot be read: Permission denied" in found.stderr
+
+
+def test_a_folder_as_scene(tmp_path):
+    found = invoke("run", tmp_path)
+    assert found.exit_code == 2
+    assert "is a folder without a scene" in found.stderr
+    (tmp_path / "one.toml").write_text("")
+    assert "one.toml" in invoke("run", tmp_path).stderr
+
+
+def test_a_near_miss_of_a_file_is_offered(tmp_path):
+    (tmp_path / "scene.toml").write_text("")
+    assert "did you mean 'scene.toml'?" in invoke("check", tmp_path / "scnee.toml").stderr
+
+
+COMMANDS = {
+    "no scene": (["run"], "Missing argument 'SCENE'"),
+    "unknown command": (["rnu"], "did you mean 'run'?"),
+    "unknown option": (["run", ARTICLE, "--jsn"], "--json"),
+    "no axis": (["compare", ARTICLE], "--vary"),
+    "axis without a key": (["compare", ARTICLE, "--vary", "nothing"], "nothing"),
+    "unknown case": (["verify", "--only", "nobody"], "no such case"),
+}
+
+
+@pytest.mark.parametrize("case", COMMANDS)
+def test_a_slip_on_the_command_line(case):
+    words, message = COMMANDS[case]
+    found = invoke(*words)
+    assert found.exit_code == 2
+    assert message in found.stderr
+    content = json.loads(invoke(*words, "--json").stdout)
+    assert message in content["errors"][0]["message"] or message in str(content["errors"][0]["path"])
+
+
+def test_a_plug_in_that_fails_to_import(tmp_path):
+    install(tmp_path, "broken", "import nothing_of_that_name")
+    found = raceway("run", MINIMAL, "--out", tmp_path / "out", PYTHONPATH=tmp_path)
+    assert found.returncode == 0, found.stderr
+    assert "warning: plug-in `broken (broken)`: fails to import: ModuleNotFoundError" in found.stderr
+    listed = raceway("plugins", PYTHONPATH=tmp_path)
+    assert listed.returncode == 2
+    assert "nothing_of_that_name" in listed.stderr
+    assert "newmark" in listed.stdout
+    used = raceway("check", MINIMAL, "--set", "contact.kind=broken", PYTHONPATH=tmp_path)
+    assert used.returncode == 2
+    assert "Not loaded: plug-in `broken (broken)`" in used.stderr
+    assert "Traceback" not in found.stderr + listed.stderr + used.stderr
+
+
+def test_two_plug_ins_of_one_name(tmp_path):
+    install(tmp_path, "first", law("twin"), entry="same")
+    install(tmp_path, "second", law("twin"), entry="same")
+    used = raceway("check", MINIMAL, "--set", "contact.kind=twin", PYTHONPATH=tmp_path)
+    assert used.returncode == 2
+    for word in ("two plug-ins claim the name 'twin'", "of first", "of second", "RACEWAY_DISABLE"):
+        assert word in used.stderr
+    listed = raceway("plugins", "--json", PYTHONPATH=tmp_path)
+    assert listed.returncode == 2
+    content = json.loads(listed.stdout)
+    assert [p["distribution"] for p in content["plugins"] if p["name"] == "twin"] == ["first", "second"]
+    assert "claimed by two" in content["errors"][0]["message"]
+    one = raceway("check", MINIMAL, "--set", "contact.kind=twin", PYTHONPATH=tmp_path, RACEWAY_DISABLE="second")
+    assert one.returncode == 0, one.stderr
+
+
+KERNELS = {
+    "other signature": (
+        """
+        from raceway.core.jit import jit
+        from raceway.core.signatures import FORCE
+
+        @jit(FORCE)
+        def kernel(t, params, out):
+            out[0] = 1.0
+
+        return kernel
+        """,
+        "its kernel has none(float64, float64[::1], float64[::1])",
+    ),
+    "not compiled": ("return lambda gap, *others: None", "which is not compiled"),
+    "other arguments": (
+        """
+        from raceway.core.jit import jit
+        from raceway.core.signatures import LAW
+
+        @jit(LAW)
+        def kernel(gap, force):
+            force[:] = 0.0
+
+        return kernel
+        """,
+        "9 argument types given, but function takes 2",
+    ),
+    "raises": ("raise KeyError('stiffness')", "kernel() raises KeyError"),
+}
+
+
+@pytest.mark.parametrize("case", KERNELS)
+def test_a_kernel_with_a_wrong_signature(case, tmp_path):
+    code, words = KERNELS[case]
+    install(tmp_path, "odd", law("odd", code))
+    found = raceway("run", MINIMAL, "--set", "contact.kind=odd", "--out", tmp_path / "out", PYTHONPATH=tmp_path)
+    assert found.returncode == 2
+    assert "contact law 'odd'" in found.stderr
+    assert words in found.stderr
+    assert found.stderr.count("error: ") == 1
+    assert "Traceback" not in found.stderr
+
+
+def test_a_singular_equilibrium_names_the_free_motion(tmp_path):
+    """Two balls on the y axis leave a rotation about it, and one loaded ball leaves the motion across it."""
+    scene = ["--set", "load.axial=0", "--set", "load.radial=[100.0, 0.0]", "--set", "supports.tilt=free"]
+    found = invoke("run", MINIMAL, *scene, "--set", "bearing.ball_count=2", "--out", tmp_path)
+    assert found.exit_code == 1
+    assert "the equilibrium is singular: nothing holds the ring against" in found.stderr
+    assert "tilt" in found.stderr
+    assert (tmp_path / "failure.json").exists()
+
+
+def test_nothing_loads_the_bearing(tmp_path):
+    found = invoke("run", MINIMAL, "--set", "load.axial=0", "--out", tmp_path)
+    assert found.exit_code == 1
+    assert "Set `load.axial`" in found.stderr
+
+
+#: Stable at rest (0.29 ms), far above the limit once the force has pressed the balls (0.01 ms): grows within a turn.
+DIVERGING = (
+    "integrator.kind=central_difference", "integrator.start=static", "integrator.steps_per_turn=40",
+    "load.axial=50", "excitation.unbalance=5e-2", "kinematics.ball_inertia=false",
+)  # fmt: skip
+
+
+def test_a_run_that_diverges_says_when_and_why_and_keeps_the_last_good_state(tmp_path):
+    changes = [word for change in DIVERGING for word in ("--set", change)]
+    found = invoke("run", ARTICLE, *changes, "--out", tmp_path, "--json")
+    assert found.exit_code == 1
+    content = json.loads(found.stdout)
+    message = content["errors"][0]["message"]
+    assert "grew without bound after" in message
+    assert "stable limit of explicit steps there" in message
+    assert "`integrator.steps_per_turn`" in message
+    with np.load(content["last_good_state"]) as state:
+        assert {"t", "q", "v", "a", "ball"} <= set(state)
+        assert all(np.isfinite(state[name]).all() for name in state)
+        assert state["t"] > 0.0
+        assert np.abs(state["q"]).max() > 0.0
+    failure = json.loads((tmp_path / "failure.json").read_text())
+    assert failure["error"]["kind"] == "StabilityError"
+    assert not (tmp_path / "result.json").exists()
+
+
+def test_a_step_above_the_stable_limit_is_refused_with_a_number_that_works(tmp_path):
+    found = invoke(
+        "run",
+        ARTICLE,
+        "--set",
+        "integrator.kind=central_difference",
+        "--set",
+        "integrator.steps_per_turn=10",
+        "--out",
+        tmp_path,
+    )
+    assert found.exit_code == 1
+    assert "above the stable limit" in found.stderr
+    least = found.stderr.split("Take at least ")[1].split(",")[0]
+    again = invoke(
+        "run", ARTICLE, "--set", "integrator.kind=central_difference",
+        "--set", f"integrator.steps_per_turn={least}", "--out", tmp_path,
+    )  # fmt: skip
+    assert again.exit_code == 0, again.stderr
+
+
+def test_a_traceback_is_shown_only_when_asked_for():
+    assert "Traceback" not in raceway("check", "nowhere.toml").stderr
+    assert "Traceback" in raceway("check", "nowhere.toml", "--debug").stderr
+
+
+def test_a_fault_of_the_program_is_one_message(monkeypatch):
+    monkeypatch.setattr("raceway.plan.make_plan", lambda scene: 1 / 0)
+    found = invoke("check", ARTICLE)
+    assert found.exit_code == 1
+    assert "unexpected ZeroDivisionError" in found.stderr
+    assert "--debug" in found.stderr

@@ -1,0 +1,268 @@
+"""`raceway compare`: axes, kinds that are swapped, failed points, and words that say what the numbers say."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway.errors import ConvergenceError, SceneError
+from raceway.registry import default_registry
+from raceway.run import run
+from raceway.scene_file import scene_from_dict
+from raceway.studies import compare as study
+from raceway.studies.axes import MOST_POINTS, parse_axes, points
+from raceway.studies.compare import compare, tables_at
+from raceway.studies.comparison import Comparison, Row
+from raceway.studies.phrases import percent
+
+SCENE = {
+    "title": "test",
+    "bearing": {"preset": "B7206C"},
+    "rotor": {"mass": 2.0},
+    "load": {"axial": 1000.0},
+    "excitation": {
+        "kind": "bidirectional",
+        "speed_rpm": 12000.0,
+        "amplitude": "constant",
+        "force": 300.0,
+        "unbalance": 6.39e-4,
+        "load_share": 0.5,
+    },
+    "integrator": {"turns": 2, "steps_per_turn": 120},
+}
+
+
+def test_lists_and_ranges():
+    axes = parse_axes(
+        ["a.b=1,2.5,x,true", "load.radial=[0, 0],[1,2]", "s.rpm=10980:15000:5", "q.x=0.5:1:3", "t.w=3:9:1", 'k.n="1:2",z']
+    )
+    assert [axis.values for axis in axes] == [
+        (1, 2.5, "x", True),
+        ([0, 0], [1, 2]),
+        (10980, 11985, 12990, 13995, 15000),
+        (0.5, 0.75, 1.0),
+        (3,),
+        ("1:2", "z"),
+    ]
+    assert all(isinstance(v, int) for v in axes[2].values)
+    assert next(points(axes[:1])) == {"a.b": 1}
+    assert [list(p.values()) for p in points(parse_axes(["a.b=1,2", "a.c=3,4"]))] == [[1, 3], [1, 4], [2, 3], [2, 4]]
+
+
+@pytest.mark.parametrize(
+    ("vary", "word"),
+    [
+        (["load.axial="], "no values"),
+        (["load.axial"], "form"),
+        (["=1,2"], "form"),
+        (["load.axial=1,,2"], "empty place"),
+        (["load.axial=1,1.0"], "twice"),
+        (["load.axial=1:2:0"], "at least 1"),
+        (["load.axial=1:2:2.5"], "whole number"),
+        (["load.axial=1:x:3"], "finite number"),
+        (["load.axial=1:nan:3"], "finite number"),
+        (["load.axial=1:2"], "not a range"),
+        (["load.axial=1:2:3,4"], "mixes"),
+        (["load.axial=1,2", "load.axial=3,4"], "varied twice"),
+        (["bearing.preset=a,b", "bearing=c,d"], "overlaps"),
+        ([f"load.axial=1:2:{MOST_POINTS}", "rotor.mass=1,2"], "fewer values"),
+        ([], "nothing is varied"),
+    ],
+)
+def test_bad_axes_name_the_axis_and_the_rule(vary, word):
+    with pytest.raises(SceneError, match=word) as caught:
+        parse_axes(vary)
+    assert all(m.path for m in caught.value.mistakes)
+
+
+@pytest.mark.parametrize(
+    ("vary", "word"),
+    [
+        ("load.axail=1,2", "did you mean 'axial'"),
+        ("supports.tilt=locked,fre", "did you mean 'free'"),
+        ("excitation.kind=bidirectional,unidirectionel", "did you mean 'unidirectional'"),
+        ("kinematics.ball_inertia=false,no", "true or false"),
+    ],
+)
+def test_mistakes_in_the_scene_are_found_before_anything_runs(vary, word, monkeypatch):
+    monkeypatch.setattr(study, "run", lambda *_: pytest.fail("it ran"))
+    with pytest.raises(SceneError, match=word):
+        compare(SCENE, [vary])
+
+
+def test_swapping_a_kind_leaves_out_what_the_other_does_not_know():
+    tables = {**SCENE, "excitation": {**SCENE["excitation"], "whirl": "backward"}}
+    notes: list[str] = []
+    swapped = tables_at(tables, {"excitation.kind": "unidirectional"}, default_registry(), notes)
+    assert "whirl" not in swapped["excitation"] and tables["excitation"]["whirl"] == "backward"
+    assert {k: v for k, v in swapped["excitation"].items() if k != "kind"} == {
+        k: v for k, v in tables["excitation"].items() if k not in ("kind", "whirl")
+    }
+    assert len(notes) == 1 and "excitation.whirl = backward" in notes[0]
+    kept = tables_at(tables, {"excitation.kind": "bidirectional"}, default_registry())
+    assert kept["excitation"]["whirl"] == "backward"
+    typo = {**SCENE, "excitation": {**SCENE["excitation"], "wirl": "backward"}}
+    with pytest.raises(SceneError, match="wirl"):
+        compare(typo, ["excitation.kind=unidirectional,bidirectional"])
+
+
+def test_an_axis_that_one_kind_does_not_know_is_refused():
+    with pytest.raises(SceneError, match=r"excitation\.whirl"):
+        compare(SCENE, ["excitation.whirl=forward,backward", "excitation.kind=unidirectional,bidirectional"])
+
+
+@pytest.fixture(scope="module")
+def small() -> Comparison:
+    return compare(SCENE, ["excitation.kind=unidirectional,bidirectional", "supports.tilt=locked,free"])
+
+
+def test_rows_are_plain_runs_in_order_and_only_the_axes_differ(small):
+    found = [(row.point["excitation.kind"], row.point["supports.tilt"]) for row in small.rows]
+    assert found == [(k, t) for k in ("unidirectional", "bidirectional") for t in ("locked", "free")]
+    scenes = []
+    for row in small.rows:
+        scene = json.loads(json.dumps(row.result["scene"]))
+        assert scene["excitation"].pop("kind") == row.point["excitation.kind"]
+        assert scene["supports"].pop("tilt") == row.point["supports.tilt"]
+        scene["excitation"].pop("whirl", None)
+        scene["excitation"].pop("direction_deg", None)
+        scenes.append(scene)
+    assert all(scene == scenes[0] for scene in scenes)
+    alone = run(scene_from_dict(tables_at(SCENE, small.rows[3].point, default_registry())))
+    assert alone.identification.equivalent_stiffness == small.rows[3].value("equivalent_stiffness")
+
+
+def test_effects_and_words_say_what_the_rows_say(small):
+    k = np.array([row.value("equivalent_stiffness") for row in small.rows]).reshape(2, 2)
+    tilt = 0.5 * math.log(k[0, 1] * k[1, 1] / (k[0, 0] * k[1, 0]))
+    effect = next(e for e in small.effects if e["quantity"] == "equivalent_stiffness" and e["term"] == ("supports.tilt",))
+    assert effect["log_change"] == pytest.approx(tilt, rel=1e-12)  # rounding
+    assert effect["difference"] == pytest.approx(k[:, 1].mean() - k[:, 0].mean(), rel=1e-12)
+    text = "\n".join(small.words)
+    assert f"supports.tilt from locked to free changes it by {percent(tilt)}" in text
+    assert f"{k.min() / 1e6:.2f} and {k.max() / 1e6:.2f} N/um" in text
+    for end, level in enumerate(("locked", "free")):
+        change = percent(math.log(k[1, end] / k[0, end]))
+        assert ("with supports.tilt = locked" in text) and change in text, level
+    found = small.rows[0].result["identification"]
+    force = found["mass_used_kg"] * (2 * math.pi * found["frequency_hz"]) ** 2
+    assert f"m = {found['mass_used_kg']:.3f} kg: {force / 1e6:.2f} to" in text
+
+
+def test_json_table_and_picture(small, tmp_path):
+    answer = json.loads(json.dumps(small.as_dict(), allow_nan=False))
+    assert [axis["key"] for axis in answer["axes"]] == ["excitation.kind", "supports.tilt"]
+    assert len(answer["rows"]) == 4 and answer["rows"][0]["result"]["schema"] == 1
+    assert [list(row) for row in small.table()] == [["kind", "tilt", "K N/um", "|Z| N/um", "error %"]] * 4
+    (path,) = small.picture(tmp_path)
+    assert path.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_failed_point_is_kept_and_the_effects_hold_for_the_rest(monkeypatch):
+    def failing(scene, registry):
+        if scene.supports.tilt == "free" and scene.excitation.speed_rpm == 13000:
+            raise ConvergenceError("no luck")
+        return run(scene, registry)
+
+    monkeypatch.setattr(study, "run", failing)
+    found = compare(SCENE, ["supports.tilt=locked,free", "excitation.speed_rpm=12000,13000"])
+    assert found.rows[3].result == {"status": "failed", "reason": "no luck"}
+    assert len(found.rows) == 4 and found.held == {"excitation.speed_rpm": 12000}
+    assert [e["term"] for e in found.effects] == [("supports.tilt",)] * 2
+    assert any("no luck" in word for word in found.words)
+    assert found.table()[3]["note"] == "failed"
+    json.dumps(found.as_dict(), allow_nan=False)
+
+
+def test_a_refused_combination_is_kept_with_its_reason():
+    # 16 balls of 9.525 mm do not fit the pitch circle of 46 mm, 16 balls of 8 mm do.
+    found = compare(SCENE, ["bearing.ball_count=12,16", "bearing.ball_diameter=9.525e-3,8e-3"])
+    assert [row.result.get("status") for row in found.rows] == [None, None, "refused", None]
+    assert "do not fit" in found.rows[2].result["reason"]
+    assert found.held == {"bearing.ball_diameter": 8e-3}
+
+
+def test_interruption_keeps_the_finished_rows():
+    def stop(_what, done, _total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        compare(SCENE, ["excitation.speed_rpm=12000:13000:3"], on_progress=stop)
+    partial = caught.value.partial
+    assert len(partial.rows) == 2 and partial.table() and partial.words
+
+
+def test_a_static_scene_and_one_value_have_no_effects():
+    static = {name: table for name, table in SCENE.items() if name != "excitation"}
+    found = compare(static, ["load.axial=400,800"])
+    assert found.effects == [] and any("static" in word for word in found.words)
+    one = compare(SCENE, ["load.axial=400"])
+    assert one.effects == [] and any("one value" in word for word in one.words)
+
+
+def _synthetic(k_of) -> Comparison:
+    """Rows with a made-up K over speed, tilt and amplitude law."""
+    axes = parse_axes(
+        [
+            "excitation.kind=unidirectional,bidirectional",
+            "excitation.amplitude=constant,unbalance",
+            "excitation.speed_rpm=10000:14000:3",
+            "supports.tilt=locked,free",
+        ]
+    )
+    rows = []
+    for point in points(axes):
+        k = k_of(point)
+        frequency = point["excitation.speed_rpm"] / 60
+        z = k - 2.0 * (2 * math.pi * frequency) ** 2
+        found = {
+            "equivalent_stiffness": k,
+            "dynamic_stiffness": {"real": z, "imag": 0.0, "abs": abs(z)},
+            "mass_used_kg": 2.0,
+            "frequency_hz": frequency,
+            "equivalent_damping": 0.0,
+            "phase_lag_deg": 0.0,
+            "force_amplitude_n": 1.0,
+            "residual": 0.0,
+        }
+        rows.append(Row(point, {"identification": found, "error": {"total": 1e-6}}))
+    return Comparison("made up", axes, tuple(rows))
+
+
+def _k(point, tilt=1.0, law=1.0):
+    """Locked falls by 2 % over the speed; free rises by 1 %, by 20 % under the unbalance law; direction does nothing."""
+    s = (point["excitation.speed_rpm"] - 10000) / 4000
+    if point["supports.tilt"] == "locked" and tilt:
+        return 2e8 * 0.98**s
+    return 4e7 * (1.2 if point["excitation.amplitude"] == "unbalance" and law else 1.01) ** s
+
+
+def test_the_words_find_the_cause():
+    text = "\n".join(_synthetic(_k).words)
+    assert "whether K(w) rises or falls along excitation.speed_rpm is decided by the tilt boundary (supports.tilt)" in text
+    assert "with supports.tilt = free mostly by the amplitude law" in text
+    assert "with supports.tilt = locked by none of the other axes" in text
+    assert "K(w) hardly depends on excitation.kind (+0.00 %)" in text
+    assert "falls in 4 of 4 settings (-2.0 %)" in text and "rises in 4 of 4 settings (+1.0 % to +20.0 %)" in text
+    assert "with only the direction swapped by +1.0 %, with only the amplitude law swapped by +20.0 %" in text
+
+
+def test_the_words_are_not_fixed():
+    text = "\n".join(_synthetic(lambda point: 1e8 * (1.5 if point["excitation.kind"] == "bidirectional" else 1.0)).words)
+    assert "excitation.kind from unidirectional to bidirectional changes it by +50.0 %" in text
+    assert "the axes act independently" in text and "is decided by the tilt boundary" not in text
+
+
+def test_a_doubtful_row_between_the_ends_is_left_out_of_the_course():
+    made = _synthetic(_k)
+    rows = list(made.rows)
+    place = next(i for i, row in enumerate(rows) if row.point["excitation.speed_rpm"] == 12000)
+    rows[place] = attrs.evolve(rows[place], result={**rows[place].result, "error": {"total": 0.2}})
+    text = "\n".join(attrs.evolve(made, rows=tuple(rows)).words)
+    assert "doubtful runs between the ends left out: 1" in text and "1 of 24 runs" in text
+    assert all(t["trend"] != "not monotonic" for t in attrs.evolve(made, rows=tuple(rows)).trends)

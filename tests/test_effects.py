@@ -1,0 +1,91 @@
+"""The factorial analysis against functions whose effects are known."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+
+from raceway.studies.effects import Factorial, corners_from_effects, factorial_effects, trend, whole_part
+
+ROUNDING = 1e-13  # a few additions of numbers of order 1
+
+
+def test_known_effects_are_found():
+    a, b, ab, abc = 0.7, -0.2, 0.05, 0.013
+    y = np.zeros((2, 2, 2))
+    for i, j, k in product((0, 1), repeat=3):
+        s, t, u = 2 * i - 1, 2 * j - 1, 2 * k - 1
+        y[i, j, k] = 3.0 + 0.5 * (a * s + b * t + ab * s * t + abc * s * t * u)
+    found = factorial_effects(y)
+    expected = {(0, 0, 0): 3.0, (1, 0, 0): a, (0, 1, 0): b, (1, 1, 0): ab, (1, 1, 1): abc}
+    for place in product((0, 1), repeat=3):
+        assert found[place] == pytest.approx(expected.get(place, 0.0), abs=ROUNDING)
+
+
+@pytest.mark.parametrize("k", [1, 2, 5, 8])
+def test_effects_reproduce_every_corner(k):
+    y = np.random.default_rng(k).normal(size=(2,) * k)
+    assert np.abs(corners_from_effects(factorial_effects(y)) - y).max() < ROUNDING * 2**k
+
+
+def test_main_effect_is_the_difference_of_means_and_interaction_half_the_difference_of_effects():
+    y = np.array([[1.0, 4.0], [2.0, 11.0]])
+    found = factorial_effects(y)
+    assert found[1, 0] == pytest.approx((2 + 11) / 2 - (1 + 4) / 2)
+    assert found[1, 1] == pytest.approx(0.5 * ((11 - 4) - (2 - 1)))
+
+
+def test_causes_that_multiply_do_not_interact():
+    corners = 1e8 * np.multiply.outer([1.0, 0.8], [1.0, 1.5])
+    effects = {e.term: e for e in Factorial(("a", "b"), corners).effects}
+    assert effects["a",].percent == pytest.approx(-20.0)
+    assert effects["b",].percent == pytest.approx(50.0)
+    assert effects["a",].difference == pytest.approx(1e8 * (0.8 * 1.25 - 1.25))
+    assert effects["a", "b"].log_change == pytest.approx(0.0, abs=ROUNDING)
+    assert sum(e.share for e in effects.values()) == pytest.approx(1.0)
+
+
+def test_effects_are_sorted_and_the_change_at_a_level_adds_the_interaction():
+    factorial = Factorial(("a", "b"), np.exp(np.array([[1.0, 4.0], [2.0, 11.0]])))
+    sizes = [abs(e.log_change) for e in factorial.effects]
+    assert sizes == sorted(sizes, reverse=True)
+    by_term = {e.term: e.log_change for e in factorial.effects}
+    assert factorial.log_change("a", {"b": 1}) == pytest.approx(by_term["a",] + by_term["a", "b"])
+    assert factorial.log_change("a", {"b": 0}) == pytest.approx(by_term["a",] - by_term["a", "b"])
+    assert factorial.log_change("a") == pytest.approx(by_term["a",])
+
+
+def test_equal_corners_have_no_effect_and_no_share():
+    for effect in Factorial(("a", "b"), np.full((2, 2), 7.0)).effects:
+        assert effect.log_change == 0.0 and effect.share == 0.0 and math.isfinite(effect.percent)
+
+
+def test_the_largest_part_without_holes_holds_the_last_axes():
+    usable = np.ones((2, 2, 2), dtype=bool)
+    assert whole_part(usable) == (None, None, None)
+    usable[0, 1, 0] = False
+    assert whole_part(usable) == (None, None, 1)
+    usable[1, 1, 1] = False
+    assert whole_part(usable) == (None, 0, None)
+    usable[1, 0, 1] = usable[0, 0, 0] = False
+    part = whole_part(usable)
+    assert sum(end is not None for end in part) == 2
+    assert usable[tuple(slice(None) if end is None else end for end in part)].all()
+    assert whole_part(np.zeros((2, 2), dtype=bool)) is None
+
+
+@pytest.mark.parametrize(
+    ("values", "errors", "expected"),
+    [
+        ([1, 2, 3], [0, 0, 0], "rises"),
+        ([3, 2, 1], [0, 0, 0], "falls"),
+        ([1, 3, 2], [0, 0, 0], "not monotonic"),
+        ([1, 1.001, 1], [1e-3, 1e-3, 1e-3], "level"),
+        ([1, 1.001, 2], [1e-3, 1e-3, 1e-3], "rises"),
+    ],
+)
+def test_trend(values, errors, expected):
+    assert trend(values, errors) == expected

@@ -1,0 +1,141 @@
+"""Static equilibria against scipy's, over random and extreme scenes, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.evidence._scenes import imbalance, model_of, settled, static
+from benchmarks.evidence.equilibria import EXTREME_RESIDUAL, families, loose, random_scenes, solve
+from raceway.core.bodies.ring import CENTRIFUGAL, COSINE, SINE
+from raceway.errors import ConvergenceError
+from raceway.model import Model
+from raceway.statics import settle
+from tests.reference.ring import Ring
+from tests.reference.statics import equilibrium
+
+
+def twin(model: Model) -> Ring:
+    """The reference's bearing for a model's scene, from the scene's own numbers."""
+    b, scene = model.scene.bearing, model.scene
+    spin = scene.spin_speed if scene.kinematics.ball_inertia else 0.0
+    return Ring(
+        b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer,
+        spin_speed=spin, first_azimuth=np.radians(b.first_ball_azimuth_deg),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("tilt", ["locked", "free"])
+@pytest.mark.parametrize("inertia", [False, True])
+@pytest.mark.parametrize("axial", [400.0, 2000.0])
+def test_equals_scipy(tilt, inertia, axial):
+    model, now = settled(static(axial, tilt, 600.0, 15e3, inertia))
+    system, ring = model.system, twin(model)
+    wanted = equilibrium(ring, system.load, system.free, np.array([3e-5, 0.0, 0.0, 0.0, 0.0]))
+    scale = np.array([1.0, 1.0, 1.0, ring.arm, ring.arm])
+    # 1e-8 of the displacement: scipy stops at 1e-10 of the forces, the softest direction amplifies by some 10.
+    assert np.abs((now.displacement - wanted) * scale).max() <= 1e-8 * np.abs(wanted * scale).max()
+    force, tangent, load = ring(now.displacement)
+    assert load == pytest.approx(now.contact_force[:12], rel=1e-7, abs=1e-7)
+    assert force[system.free > 0] == pytest.approx(system.load[system.free > 0], abs=1e-6)
+    assert np.abs((tangent - now.stiffness) * scale / scale[:, None]).max() <= 1e-6 * np.abs(now.stiffness).max()
+
+
+def test_random_scenes_are_equilibria_of_the_reference():
+    """Independent forces balance at the program's displacement, for scenes over the whole range."""
+    worst, checked = 0.0, 0
+    for tables in random_scenes("hertz", 5, 40):
+        model, now = settled(tables)
+        ring, system = twin(model), model.system
+        weight = np.array([1.0, 1.0, 1.0, 1.0 / ring.arm, 1.0 / ring.arm])
+        force, _, load = ring(now.displacement)
+        rest = (force + system.stiffness @ now.displacement - system.load) * weight * system.free
+        worst = max(worst, np.abs(rest).max() / (load.sum() + np.abs(system.load * weight).sum()))
+        checked += 1
+    assert checked == 40
+    # 1e-7: the reference's load factors come from quadrature to 1e-11 and its balls from Newton to 1e-11 of F_c.
+    assert worst < 1e-7
+
+
+def test_one_ball_equals_scipy():
+    """Each ball's place between the races, with centrifugal force, against scipy's root finder."""
+    model, now = settled(static(400.0, "locked", 700.0, 15e3, True))
+    system, ring = model.system, twin(model)
+    assert ring.centrifugal == pytest.approx(system.table[0, CENTRIFUGAL], rel=1e-12)
+    for k, e in enumerate(ring.centres(now.displacement)):
+        assert system.table[k, [COSINE, SINE]] == pytest.approx([ring.J[k, 1, 1], ring.J[k, 1, 2]], abs=1e-12)
+        assert now.ball[k] == pytest.approx(ring.one_ball(e), abs=1e-11)
+
+
+@pytest.mark.parametrize("law", ["hertz", "penalty"])
+def test_random_scenes_are_all_solved(law):
+    tally = solve(random_scenes(law, 77, 60))
+    assert tally.unsolved == []
+    assert np.median(tally.seconds) < 5e-3
+
+
+@pytest.mark.parametrize("name", families("hertz"))
+def test_extreme_scenes(name):
+    """Every 11th of the report's scenes: solved, or refused with the free motion's name where the loaded balls leave one."""
+    scenes = [tables for number, tables in enumerate(families("hertz")[name]) if number % 11 == 0]
+    assert solve(iter(scenes), EXTREME_RESIDUAL).unsolved == []
+
+
+def test_guess_does_not_matter():
+    """The potential is convex: from anywhere the same minimum."""
+    model, now = settled(static(400.0, "free", 600.0, 15e3, True))
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        start = rng.normal(size=5) * np.array([2e-4, 2e-4, 2e-4, 5e-3, 5e-3])
+        q, ball, _ = model.system.settle(start)
+        assert q == pytest.approx(now.displacement, rel=1e-7, abs=1e-12)
+        assert imbalance(model, q, ball) < 1e-10
+
+
+def test_held_axial_displacement():
+    tables = static(1000.0, "locked", 500.0)
+    alone = settled(static(1000.0, "locked"))[1]
+    tables["supports"]["axial"] = "displacement"
+    model, now = settled(tables)
+    assert now.displacement[0] == pytest.approx(alone.displacement[0], rel=1e-9)
+    assert model.system.evaluate(now.displacement).force[1] == pytest.approx(500.0, rel=1e-9)
+
+
+def test_turning_the_bearing_turns_the_answer():
+    """Load and first ball turned by the same angle: the same displacement, turned."""
+    model, now = settled(static(400.0, "free", 600.0, 15e3, True))
+    tables = static(400.0, "free", 0.0, 15e3, True)
+    tables["bearing"]["first_ball_azimuth_deg"] = 40.0
+    c, s = np.cos(np.radians(40.0)), np.sin(np.radians(40.0))
+    tables["load"]["radial"] = [600.0 * c, 600.0 * s]
+    turned = settled(tables)[1].displacement
+    turn = np.array([[c, -s], [s, c]])
+    assert turned[1:3] == pytest.approx(turn @ now.displacement[1:3], rel=1e-8, abs=1e-15)
+    assert turned[3:] == pytest.approx(turn @ now.displacement[3:], rel=1e-8, abs=1e-13)
+
+
+def test_pure_radial_load_on_an_angular_contact_bearing():
+    """It stands at x = -B sin(alpha): the balls carry in the radial plane."""
+    model, now = settled(static(0.0, "free", 500.0))
+    assert now.displacement[0] == pytest.approx(-model.geometry.rest[0], rel=1e-6)
+
+
+def test_one_loaded_ball_leaves_a_motion_free():
+    tables = static(0.0, "locked", 10.0)
+    tables["bearing"]["ball_diameter"], tables["bearing"]["ball_count"] = 9.525e-3, 3
+    with pytest.raises(ConvergenceError, match="nothing holds the ring against z") as caught:
+        settled(tables)
+    assert loose(model_of(tables), caught.value.state["q"])
+
+
+def test_load_along_a_free_motion_is_named():
+    tables = static(1000.0, "locked")
+    tables["bearing"]["ball_count"] = 2
+    tables["load"]["radial"] = [0.0, 50.0]
+    with pytest.raises(ConvergenceError, match="nothing holds the ring against the load along z"):
+        settled(tables)
+
+
+def test_no_load_is_refused():
+    with pytest.raises(ConvergenceError, match="nothing loads the bearing"):
+        settle(model_of(static(0.0, "locked")))

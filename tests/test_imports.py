@@ -1,0 +1,47 @@
+"""What stays out of memory until it is needed."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.command_line import ARTICLE, python
+
+HEAVY = ("numba", "scipy", "meshio", "gmsh", "pyvista", "matplotlib")
+
+LOOK = """
+import json, sys
+try:
+    {code}
+except SystemExit as end:
+    assert not end.code, end.code
+sys.stderr.write(json.dumps(sorted({{name.partition(".")[0] for name in sys.modules}})))
+"""
+
+LIGHT = {
+    "import": "import raceway; raceway.load_scene; raceway.RacewayError",
+    "help": "from raceway.cli import main; main(['--help'])",
+    "help of a command": "from raceway.cli import main; main(['run', '--help'])",
+    "check": f"from raceway.cli import main; main(['check', {ARTICLE!r}])",
+    "plan": f"from raceway.cli import main; main(['plan', {ARTICLE!r}])",
+    "plugins": "from raceway.cli import main; main(['plugins'])",
+    "schema": "from raceway.cli import main; main(['schema'])",
+    "cache": "from raceway.cli import main; main(['cache'])",
+}
+
+
+@pytest.mark.parametrize("case", LIGHT)
+def test_heavy_packages_stay_out(case):
+    found = python("-c", LOOK.format(code=LIGHT[case]))
+    assert found.returncode == 0, found.stderr
+    loaded = set(json.loads(found.stderr))
+    assert "raceway" in loaded
+    assert not loaded & set(HEAVY)
+
+
+def test_a_run_without_pictures_loads_no_package_for_pictures_or_meshes(tmp_path):
+    code = f"from raceway.cli import main; main(['run', {ARTICLE!r}, '--out', {str(tmp_path)!r}])"
+    found = python("-c", LOOK.format(code=code))
+    assert found.returncode == 0, found.stderr
+    assert not set(json.loads(found.stderr)) & {"meshio", "gmsh", "pyvista", "matplotlib"}

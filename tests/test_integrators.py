@@ -1,0 +1,125 @@
+"""Order, agreement, restart and failure of the time integrators."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+import pytest
+
+from benchmarks.evidence import orders
+from benchmarks.evidence._scenes import model_of, rotating
+from raceway import scene_from_dict
+from raceway.core.record import Schedule
+from raceway.core.start import at_rest
+from raceway.errors import StabilityError
+from raceway.simulate import simulate
+from raceway.statics import settle
+
+INTEGRATORS = orders.INTEGRATORS
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("ratio", [0.0, 0.2])
+def test_order_on_a_linear_oscillator(integrator, ratio):
+    assert orders.order(*orders.linear_errors(integrator, ratio)) == pytest.approx(2.0, abs=orders.MARGIN)
+
+
+@pytest.mark.parametrize("inertia", [False, True])
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_order_on_damped_hertz_contacts(integrator, inertia):
+    found = orders.contact_errors(integrator, "locked", inertia, 500.0, None, 360)
+    assert orders.order(*found) == pytest.approx(2.0, abs=orders.MARGIN)
+
+
+def test_order_on_hertz_contacts_against_independent_code():
+    wanted = orders.independent("locked", 60)
+    for integrator in INTEGRATORS:
+        found = orders.contact_errors(integrator, "locked", False, 0.0, wanted, 360)
+        assert orders.order(*found) == pytest.approx(2.0, abs=orders.MARGIN)
+
+
+def test_generalized_alpha_without_dissipation_and_newmark_agree():
+    """rho = 1 halves the same average-acceleration idea: both are second order, undamped, and close for small steps."""
+    tables = rotating(1000.0, "locked", 12000.0, False, "generalized_alpha")
+    tables["integrator"] |= {"rho_infinity": 1.0, "steps_per_turn": 2880, "turns": 1, "start": "static"}
+    first = model_of(tables)
+    tables["integrator"] = {"kind": "newmark", "steps_per_turn": 2880, "turns": 1, "start": "static"}
+    second = model_of(tables)
+    one, two = (simulate(m, settle(m)).whole.displacement for m in (first, second))
+    assert np.abs(one - two).max() <= 2e-3 * np.abs(two[:, 1:]).max()  # each is off by about 1e-3 at this step
+
+
+def test_generalized_alpha_removes_what_is_too_fast_for_the_step():
+    """A stiff mode far above the step's reach dies out with rho = 0.5 and rings on with newmark."""
+    left = {}
+    for integrator in ("newmark", "generalized_alpha"):
+        system, w0, _ = orders.oscillator(0.0)
+        tables = rotating(1.0, "locked", 12000.0, False, integrator)
+        if integrator == "generalized_alpha":
+            tables["integrator"]["rho_infinity"] = 0.5
+        method = scene_from_dict(tables).integrator.method
+        system = attrs.evolve(system, force_params=system.force_params * 0.0)
+        held = np.array([-system.scalars[0], 1e-6, 0.0, 0.0, 0.0])
+        start = at_rest(system, held, system.evaluate(held).ball, False)
+        record = method.advance(system, start, Schedule(20.0 / w0, 200, 1))
+        left[integrator] = np.abs(record.displacement[-20:, 1]).max() / 1e-6
+    assert left["newmark"] == pytest.approx(1.0, abs=0.01)
+    assert left["generalized_alpha"] < 1e-6
+
+
+@pytest.mark.parametrize("integrator", [*INTEGRATORS, "quasi_static"])
+def test_restart_equals_going_on(integrator):
+    """Two halves joined by the first's final motion are the whole, but for the clock's rounding and the steps' tolerance."""
+    model = model_of(rotating(1000.0, "locked", 12000.0, True, integrator))
+    now = settle(model)
+    method, steps = model.scene.integrator.method, 360
+    period = model.excitation.period_s
+    start = at_rest(model.system, now.displacement, now.ball, False)
+    whole = method.advance(model.system, start, Schedule(period / steps, steps, 2))
+    half = method.advance(model.system, start, Schedule(period / steps, steps, 1))
+    rest = method.advance(model.system, half.final, Schedule(period / steps, steps, 1))
+    assert half.displacement == pytest.approx(whole.displacement[:steps], abs=1e-18)
+    # 1e-8: the tolerance of a step's iteration; quasi_static starts its second half without an extrapolation.
+    size = np.abs(whole.displacement[:, 1]).max()
+    assert np.abs(rest.displacement - whole.displacement[steps:])[:, :3].max() <= 1e-8 * size
+
+
+def test_same_answer_twice():
+    model = model_of(rotating(400.0, "free", 15000.0, True, "newmark"))
+    now = settle(model)
+    assert (simulate(model, now).whole.displacement == simulate(model, now).whole.displacement).all()
+
+
+def test_step_above_the_stable_limit_is_refused():
+    tables = rotating(1000.0, "locked", 12000.0, False, "central_difference")
+    tables["integrator"]["steps_per_turn"] = 12
+    model = model_of(tables)
+    with pytest.raises(StabilityError, match="above the stable limit"):
+        simulate(model, settle(model))
+
+
+def test_stable_limit_is_where_central_differences_blow_up():
+    """On the linear oscillator: bounded just below 2 / w0, without bound just above."""
+    system, w0, _ = orders.oscillator(0.0)
+    method = scene_from_dict(rotating(1.0, "locked", 12000.0, False, "central_difference")).integrator.method
+    held = np.array([-system.scalars[0], 1e-6, 0.0, 0.0, 0.0])
+    start = at_rest(system, held, system.evaluate(held).ball, True)
+    assert system.critical_time_step(np.zeros((5, 5))) == pytest.approx(2.0 / w0, rel=1e-12)
+    calm = method.advance(system, start, Schedule(1.98 / w0, 500, 1))
+    assert np.abs(calm.displacement[:, 1]).max() < 1e-3
+    with pytest.raises(StabilityError, match="grew without bound"):
+        method.advance(system, start, Schedule(2.02 / w0, 500, 1))
+
+
+def test_progress_and_stop():
+    model = model_of(rotating(1000.0, "locked", 12000.0, False, "newmark"))
+    seen = []
+
+    def stop(done: int, total: int) -> None:
+        seen.append((done, total))
+        raise KeyboardInterrupt
+
+    start = at_rest(model.system, settle(model).displacement, np.zeros((12, 2)), True)
+    with pytest.raises(KeyboardInterrupt):
+        model.scene.integrator.method.advance(model.system, start, Schedule(1e-6, 60_000, 1, 60), stop)
+    assert seen == [(20_000, 60_000)]

@@ -1,0 +1,59 @@
+"""The steady orbit by collocation against the periodic motion by shooting."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.evidence._scenes import model_of, rig_force, rotating
+from raceway.core.orbit import at_time, differentiation, steady_orbit
+from raceway.statics import settle
+from tests.reference.ring import Ring
+from tests.reference.shooting import periodic, swinging
+
+
+def test_differentiation_is_exact_for_harmonics():
+    times = np.arange(33) * 0.5 / 33
+    w = 2.0 * np.pi / 0.5
+    signal = np.cos(3.0 * w * times) + np.sin(16.0 * w * times)
+    wanted = -3.0 * w * np.sin(3.0 * w * times) + 16.0 * w * np.cos(16.0 * w * times)
+    assert differentiation(33, 0.5) @ signal == pytest.approx(wanted, abs=1e-10 * np.abs(wanted).max())
+
+
+def test_interpolation_reproduces_harmonics():
+    times = np.arange(9) * 0.1
+    signal = (2.0 + np.cos(2.0 * np.pi * times / 0.9))[:, None]
+    assert at_time(signal, 0.9, -0.123)[0] == pytest.approx(2.0 + np.cos(2.0 * np.pi * 0.123 / 0.9), rel=1e-13)
+
+
+@pytest.mark.parametrize("kind", ["bidirectional", "unidirectional"])
+def test_equals_shooting(kind):
+    """Weightless balls, 400 N under 505 N at 12 000 r/min: the same motion at all times."""
+    tables = rotating(400.0, "locked", 12000.0, False, "newmark")
+    tables["excitation"]["kind"] = kind
+    tables["contact"]["damping"] = 0.0
+    model = model_of(tables)
+    w, system = 12000.0 * np.pi / 30.0, model.system
+    orbit = steady_orbit(system, 2.0 * np.pi / w, settle(model).displacement)
+    ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522)
+    if kind == "unidirectional":
+        force = swinging(rig_force(12000.0), w)
+    else:
+        force = system.outer_force
+    _, motion, multipliers = periodic(
+        ring, system.mass, system.load, force, system.free, orbit.period,
+        orbit.displacement[0], orbit.velocity[0], samples=65,
+    )  # fmt: skip
+    size = np.ptp(motion[:, 1])
+    # 65 samples resolve the smooth part of the motion; where balls unload, the spectrum falls off algebraically.
+    assert np.abs(motion - orbit.displacement)[:, :3].max() <= 1e-4 * size
+    assert np.abs(multipliers) == pytest.approx(1.0, abs=1e-5)  # no damping: the flow keeps volumes
+
+
+def test_without_inertia_it_is_a_series_of_equilibria():
+    model = model_of(rotating(1000.0, "free", 12000.0, True, "newmark"))
+    system = model.system
+    orbit = steady_orbit(system, 5e-3, settle(model).displacement, samples=9, inertial=False)
+    for q, force in zip(orbit.displacement, orbit.force, strict=True):
+        rest = system.evaluate(q).force - system.load - force
+        assert np.abs(rest * [1, 1, 1, 1 / system.arm, 1 / system.arm]).max() < 1e-5  # N, of 1500 N
