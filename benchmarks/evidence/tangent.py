@@ -28,8 +28,8 @@ def cases() -> dict[str, dict[str, Any]]:
         return {"ball_inertia": True, "spin_speed_rpm": rpm}
 
     def scene(
-        bearing: dict[str, Any], tilt: Any, axial: float, radial: list[float], kinematics: dict[str, Any], **more: Any
-    ):
+        bearing: dict[str, Any], tilt: Any, axial: float, radial: list[float], spin: dict[str, Any], **more: Any
+    ) -> dict[str, Any]:
         load = {"axial": axial, "radial": radial, "moment": more.pop("moment", [0.0, 0.0])}
         return {
             "title": "tangent", "bearing": bearing, "supports": {"tilt": tilt}, "load": load, "kinematics": spin, **more
