@@ -6,6 +6,7 @@ Whatever is heavy is imported inside the command that needs it: ``--help``, ``ch
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,6 +41,9 @@ def main() -> None:
 
     Exit codes: 0 success, 1 a numerical failure, 2 a mistake in the scene or on the command line, 130 Ctrl-C.
     """
+    # Matrices of some hundred rows: threads of the linear algebra only wait for each other, and halve the speed of a run
+    # on busy cores.  Read when numpy is imported, which is later than this.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def _common(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -8,6 +8,7 @@ import os
 import platform
 import re
 import subprocess
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,8 @@ def machine() -> dict[str, Any]:
     import numba
 
     flags = ""
-    try:
+    with suppress(OSError):  # not Linux: the architecture says enough
         flags = Path("/proc/cpuinfo").read_text(encoding="utf-8")
-    except OSError:
-        pass  # not Linux: the architecture says enough
     vector = next((name for flag, name in (("avx512f", "AVX-512"), ("avx2", "AVX2")) if flag in flags), "")
     return {
         "cores": os.cpu_count(),

@@ -25,30 +25,32 @@ def cases() -> dict[str, dict[str, Any]]:
     }  # fmt: skip
     still: dict[str, Any] = {"ball_inertia": False}
 
-    def spin(rpm: float) -> dict[str, Any]:
+    def turning(rpm: float) -> dict[str, Any]:
         return {"ball_inertia": True, "spin_speed_rpm": rpm}
 
     def scene(
-        bearing: dict[str, Any], tilt: Any, axial: float, radial: list[float], kinematics: dict[str, Any], **more: Any
-    ):
+        bearing: dict[str, Any], tilt: Any, axial: float, radial: list[float], spin: dict[str, Any], **more: Any
+    ) -> dict[str, Any]:
         load = {"axial": axial, "radial": radial, "moment": more.pop("moment", [0.0, 0.0])}
         return {
-            "title": "tangent", "bearing": bearing, "supports": {"tilt": tilt}, "load": load, "kinematics": kinematics, **more
+            "title": "tangent", "bearing": bearing, "supports": {"tilt": tilt}, "load": load, "kinematics": spin, **more
         }  # fmt: skip
 
     penalty = {"contact": {"kind": "penalty"}}
     return {
         "axial load, tilt locked": scene(preset, "locked", 1000.0, [0.0, 0.0], still),
-        "axial load, tilt free, 15 000 r/min": scene(preset, "free", 1000.0, [0.0, 0.0], spin(15e3)),
+        "axial load, tilt free, 15 000 r/min": scene(preset, "free", 1000.0, [0.0, 0.0], turning(15e3)),
         "radial load, some balls unloaded": scene(preset, "locked", 400.0, [600.0, 250.0], still),
-        "radial load, some balls unloaded, 15 000 r/min": scene(preset, "locked", 400.0, [600.0, 250.0], spin(15e3)),
-        "radial load, tilt free, 15 000 r/min": scene(preset, "free", 400.0, [500.0, 100.0], spin(15e3)),
-        "moments against a shaft, 40 000 r/min": scene(preset, 1e5, 1000.0, [300.0, -200.0], spin(40e3), moment=[8.0, 5.0]),
+        "radial load, some balls unloaded, 15 000 r/min": scene(preset, "locked", 400.0, [600.0, 250.0], turning(15e3)),
+        "radial load, tilt free, 15 000 r/min": scene(preset, "free", 400.0, [500.0, 100.0], turning(15e3)),
+        "moments against a shaft, 40 000 r/min": scene(
+            preset, 1e5, 1000.0, [300.0, -200.0], turning(40e3), moment=[8.0, 5.0]
+        ),
         "clearance, radial load, tilt free": scene(groove, "free", 200.0, [2000.0, 900.0], still),
-        "clearance, radial load, 30 000 r/min": scene(groove, "locked", 500.0, [2000.0, 900.0], spin(30e3)),
-        "light load, 100 000 r/min": scene(preset, "locked", 20.0, [5.0, 3.0], spin(1e5)),
-        "penalty law, radial load, tilt free": scene(preset, "free", 400.0, [500.0, 100.0], spin(15e3), **penalty),
-        "tilt arm d_m / 2": scene({**preset, "tilt_arm": "pitch"}, "free", 400.0, [500.0, 100.0], spin(15e3)),
+        "clearance, radial load, 30 000 r/min": scene(groove, "locked", 500.0, [2000.0, 900.0], turning(30e3)),
+        "light load, 100 000 r/min": scene(preset, "locked", 20.0, [5.0, 3.0], turning(1e5)),
+        "penalty law, radial load, tilt free": scene(preset, "free", 400.0, [500.0, 100.0], turning(15e3), **penalty),
+        "tilt arm d_m / 2": scene({**preset, "tilt_arm": "pitch"}, "free", 400.0, [500.0, 100.0], turning(15e3)),
     }
 
 

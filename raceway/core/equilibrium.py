@@ -126,7 +126,7 @@ def settle(
                 H[i, i] = trace
         # The step: Newton where it stays inside the radius, else (H + shift) d = -g with |d| = radius.
         shift, low, high = 0.0, 0.0, 0.0
-        for attempt in range(60):
+        for _ in range(60):
             for i in range(5):
                 rhs[i] = -g[i]
                 for j in range(5):

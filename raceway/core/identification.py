@@ -135,7 +135,7 @@ def turns_of(time: np.ndarray, frequency_hz: float) -> float:
 
 
 def without_drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
-    """The signal (n, k) less its mean and the straight line through the means of its whole turns; fewer than two: the mean."""
+    """The signal (n, k) less mean and straight line through the means of its whole turns; of one turn the mean only."""
     turns = max(int(turns_of(time, frequency_hz) + 1e-6), 1)
     samples_per_turn = round(1.0 / (frequency_hz * (time[1] - time[0])))
     whole = min(turns * samples_per_turn, len(time))

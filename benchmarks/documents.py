@@ -1,0 +1,137 @@
+"""Documents made from the program itself: ``python -m benchmarks.documents`` writes docs/scene.md and README's screen.
+
+docs/scene.md holds every key of a scene with unit, default, rule and meaning, read from the declarations that the
+program checks scenes with.  README shows what ``raceway run examples/b7206.toml`` prints.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.registry import Registry
+from raceway.scene import TABLES
+from raceway.schema import keys
+
+ROOT = Path(__file__).resolve().parents[1]
+SCENE = ROOT / "docs" / "scene.md"
+README = ROOT / "README.md"
+_SCREEN = re.compile(r"(<!-- screen -->\n```\n)(.*?)(```\n<!-- /screen -->)", re.DOTALL)
+
+_HEAD = """# The scene file
+
+One TOML file. SI units; a key that is not SI base says so in its name (`_rpm`, `_deg`). A missing table or key takes its
+default; a key without default is required. A table with `kind` names a plug-in, and its other keys are that plug-in's own.
+Every mistake is reported at once, each with its path, the value, the rule and the nearest valid name.
+
+`raceway check SCENE` validates, `raceway schema` prints the same declarations as a JSON schema for editors, `--set
+table.key=value` changes one key for one run. Made by `python -m benchmarks.documents` from the declarations in
+`raceway/scene.py` and in the plug-ins; do not edit by hand.
+
+`title` is a string; by default the name of the file.
+"""
+
+#: Tables in the order in which people write them: with the kind of plug-in that each names.
+_ORDER = (
+    ("bearing", None),
+    ("supports", None),
+    ("rotor", None),
+    ("load", None),
+    ("excitation", "excitation"),
+    ("bodies", None),
+    ("contact", "contact_law"),
+    ("kinematics", None),
+    ("integrator", "integrator"),
+    ("identifier", "identifier"),
+)
+_NOTES = {
+    "bearing": "`preset` fills in a bearing of the catalogue; any other key overrides the preset's value. Without a preset the "
+    "required keys and one of `contact_angle_deg`, `radial_clearance` have to be given.",
+    "supports": "In this version `outer_seat` and `inner_seat` must be `rigid`.",
+    "excitation": "Without this table the scene is static and `identification` is null.",
+    "bodies": "This version has rigid rings and balls only: `rigid`.",
+    "kinematics": "In this version `orbiting`, `gyroscopic`, `radial_expansion` and `ring_growth` must keep their defaults.",
+    "contact": "In this version `friction` must be 0 and `discretisation` must be `resultant`.",
+}
+
+
+def scene_page() -> str:
+    """The text of docs/scene.md; third-party plug-ins of this installation are left out."""
+    registry = Registry(third_party=False)
+    parts = [_HEAD]
+    for name, kind in _ORDER:
+        parts.append(f"## [{name}]\n")
+        if name in _NOTES:
+            parts.append(_NOTES[name] + "\n")
+        if name in TABLES:
+            parts += _tables(TABLES[name], name)
+        if kind is None:
+            continue
+        for entry in (e for e in registry.all() if e.kind == kind):
+            sentence = (entry.plugin.__doc__ or "").strip().partition("\n\n")[0].replace("\n    ", " ")
+            parts.append(f'### {name}.kind = "{entry.name}"\n\n{sentence}\n')
+            parts += _tables(entry.plugin, name)
+    return "\n".join(parts)
+
+
+def _tables(cls: type, path: str) -> list[str]:
+    rows, inner = [], []
+    for field in keys(cls):
+        if attrs.has(field.type):
+            inner += [f"### [{path}.{field.name}]\n\n{field.metadata.get('help', '')}\n", *_tables(field.type, path)]
+            continue
+        cells = f"`{field.name}`", field.metadata.get("unit", ""), _default(field.default), field.metadata.get("rule", "")
+        rows.append("| " + " | ".join((*cells, field.metadata.get("help", ""))) + " |")
+    if not rows:
+        return ["No keys of its own.\n", *inner]
+    return ["\n".join(["| key | unit | default | rule | meaning |", "|---|---|---|---|---|", *rows]) + "\n", *inner]
+
+
+def _default(value: Any) -> str:
+    if value is attrs.NOTHING:
+        return "required"
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    if isinstance(value, tuple):
+        return f"`{list(value)}`"
+    return f'`"{value}"`' if isinstance(value, str) else f"`{value:g}`"
+
+
+def screen() -> str:
+    """What ``raceway run examples/b7206.toml`` prints with warm caches, without the name of the folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "raceway", "run", "examples/b7206.toml", "--out", folder]
+        environment = {**os.environ, "COLUMNS": "110", "NO_COLOR": "1"}
+        for _ in range(2):
+            done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT, env=environment)
+    lines = [line.rstrip() for line in done.stdout.splitlines() if not line.startswith("written:")]
+    return "\n".join(lines) + "\n"
+
+
+def with_screen(text: str, shown: str) -> str:
+    """The README with its screen replaced."""
+    return _SCREEN.sub(lambda match: match[1] + shown + match[3], text)
+
+
+def shown_screen(text: str) -> str:
+    """The screen that a README shows."""
+    found = _SCREEN.search(text)
+    return found[2] if found else ""
+
+
+def main() -> None:
+    SCENE.write_text(scene_page(), encoding="utf-8")
+    README.write_text(with_screen(README.read_text(encoding="utf-8"), screen()), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+"""The package as a user installs it: names, extras, data files, layers, speed of the loop that everything runs in."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+from importlib.metadata import distribution, requires
+from pathlib import Path
+
+import pytest
+
+import raceway
+from benchmarks.documents import README, SCENE, scene_page, screen, shown_screen
+from benchmarks.time_loop import SAME, loops
+
+ROOT = Path(__file__).resolve().parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def test_one_version_everywhere():
+    assert PROJECT["version"] == raceway.__version__ == distribution("raceway").version
+    assert f"## {raceway.__version__}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_all_holds_every_extra_but_ross():
+    extras = PROJECT["optional-dependencies"]
+    named = re.search(r"\[(.*)\]", extras["all"][0])
+    assert named is not None
+    assert set(named[1].split(",")) == set(extras) - {"all", "ross"}
+
+
+def test_the_base_installation_draws_and_meshes_nothing():
+    base = [line for line in requires("raceway") or [] if "extra ==" not in line]
+    heavy = {"matplotlib", "pyvista", "gmsh", "meshio", "xarray", "dask", "pyamg", "trame"}
+    assert not {re.split(r"[<>=!~ \[;]", line)[0].lower() for line in base} & heavy
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """Names of the files of a wheel built from this checkout."""
+    folder = tmp_path_factory.mktemp("wheel")
+    command = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", str(folder), str(ROOT)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return zipfile.ZipFile(next(folder.glob("*.whl"))).namelist()
+
+
+def test_the_wheel_holds_code_data_and_licence(wheel):
+    here = {
+        str(path.relative_to(ROOT)) for path in (ROOT / "raceway").rglob("*") if path.suffix in (".py", ".toml", ".json")
+    }
+    assert here <= set(wheel)
+    assert any(name.endswith("licenses/LICENSE") for name in wheel)
+    assert not [name for name in wheel if name.startswith(("tests/", "benchmarks/", "docs/"))]
+
+
+def test_the_composed_loop_computes_what_a_hand_fused_one_does():
+    for loop in loops(repeats=1):
+        assert loop.deviation < SAME, loop
+
+
+def test_the_scene_page_is_what_the_declarations_say():
+    assert SCENE.read_text(encoding="utf-8") == scene_page(), "run python -m benchmarks.documents"
+
+
+def test_the_readme_shows_the_real_screen():
+    # Down to the tangents: below stand rounding, times and memory of one machine.
+    def top(text: str) -> str:
+        return text.partition("Dynamic stiffness at")[0]
+
+    shown = shown_screen(README.read_text(encoding="utf-8"))
+    assert "tangent kyy" in top(shown)
+    assert top(shown) == top(screen()), "run python -m benchmarks.documents"
+
+
+def test_the_readme_scene_runs():
+    scene = tomllib.loads(README.read_text(encoding="utf-8").partition("```toml\n")[2].partition("```")[0])
+    assert scene == tomllib.loads((ROOT / "examples" / "minimal.toml").read_text(encoding="utf-8"))
+    raceway.scene_from_dict(scene)
