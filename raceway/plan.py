@@ -97,7 +97,10 @@ def make_plan(scene: Scene) -> Plan:
     wanted = scene.kinematics.gyroscopic != "none"
     why_not = "nothing turns: no spin speed" if wanted else "kinematics.gyroscopic is none"
     moments = decide(
-        wanted and scene.spin_speed > 0.0, "gyroscopic moments of the balls", "kinematics.gyroscopic names a hypothesis", why_not
+        wanted and scene.spin_speed > 0.0,
+        "gyroscopic moments of the balls",
+        "kinematics.gyroscopic names a hypothesis",
+        why_not,
     )
     orbiting = scene.kinematics.orbiting
     decide(orbiting, "orbiting balls", "kinematics.orbiting at cage speed", "kinematics.orbiting is false")
@@ -105,14 +108,21 @@ def make_plan(scene: Scene) -> Plan:
     decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
     decide(False, "elastic bodies and mesh", "", "bodies.kind is rigid: only contacts deform")
     rotor_moments = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
-    decide(rotor_moments, "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts", "no polar inertia on free tilts")
+    decide(
+        rotor_moments,
+        "gyroscopic moments of the rotor",
+        "rotor.polar_inertia on free tilts",
+        "no polar inertia on free tilts",
+    )
     uses_record = dynamic and "record" in scene.identifier.method.needs
     unused = "the scene is static" if not dynamic else f"identifier '{scene.identifier.kind}' needs the equilibrium only"
     decide(uses_record, f"time integration ({scene.integrator.kind})", "the identifier needs recorded motion", unused)
     turns = _turns(scene) if uses_record else 0
     repeats = scene.contact.law.state_size == 0 and not friction and not orbiting
     if uses_record and not scene.integrator.method.inertial and repeats and turns > 1:
-        left_out.append(Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn"))
+        left_out.append(
+            Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn")
+        )
         turns = 1
     steps_per_turn = _predicted_steps_per_turn(scene) if uses_record else 0
     steps = steps_per_turn * turns

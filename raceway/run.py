@@ -116,9 +116,7 @@ def _no_error(how: str) -> dict[str, Any]:
     return {**dict.fromkeys(names), "how": dict.fromkeys(names, how)}
 
 
-def _errors(
-    model: Model, equilibrium: Equilibrium, simulation: Simulation | None, found: Identification
-) -> dict[str, Any]:
+def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | None, found: Identification) -> dict[str, Any]:
     """The table ``error``: relative errors of Z, each with how it was estimated."""
     error = _no_error("")
     how: dict[str, str] = error["how"]
@@ -161,9 +159,9 @@ def _stability(model: Model, simulation: Simulation | None) -> dict[str, Any]:
     drift = None
     law = model.scene.contact.law
     potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
-    if simulation is not None and model.scene.integrator.method.inertial and potential:
-        if simulation.start != "ramp" and not model.scene.kinematics.orbiting:
-            drift = energy_balance(model.system, simulation.whole).drift
+    balanced = potential and model.scene.integrator.method.inertial and not model.scene.kinematics.orbiting
+    if simulation is not None and balanced and simulation.start != "ramp":
+        drift = energy_balance(model.system, simulation.whole).drift
     friction = None
     if simulation is not None and model.scene.contact.friction > 0.0:
         friction = float(friction_energy(model.system, simulation.whole).lost[-1])
@@ -182,7 +180,11 @@ def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
 
     from raceway import __version__
 
-    used = [("contact_law", scene.contact.kind), ("integrator", scene.integrator.kind), ("identifier", scene.identifier.kind)]
+    used = [
+        ("contact_law", scene.contact.kind),
+        ("integrator", scene.integrator.kind),
+        ("identifier", scene.identifier.kind),
+    ]
     if scene.excitation is not None:
         used.append(("excitation", scene.excitation.name))
     entries = [registry.find(kind, name) for kind, name in used]
@@ -191,8 +193,6 @@ def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
         "python": platform.python_version(),
         "numba": numba.__version__,
         "numpy": np.__version__,
-        "plugins": [
-            {"kind": e.kind, "name": e.name, "distribution": e.distribution, "version": e.version} for e in entries
-        ],
+        "plugins": [{"kind": e.kind, "name": e.name, "distribution": e.distribution, "version": e.version} for e in entries],
         "host": f"{platform.system()} {platform.machine()}",
     }

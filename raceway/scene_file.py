@@ -78,7 +78,9 @@ def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> d
     result = copy.deepcopy(dict(tables))
     for name, (kind, default) in _PLUGIN_TABLES.items():
         table = result.get(name)
-        word = table.get("kind", default) if isinstance(table, dict) else None
+        if not isinstance(table, dict):
+            continue
+        word = table.get("kind", default)
         if not isinstance(word, str) or word not in registry.names(kind) or (kind, word) in registry.shadowed():
             continue
         for field in attrs.fields(registry.find(kind, word).plugin):

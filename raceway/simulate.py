@@ -89,9 +89,7 @@ def simulate(
     return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings, orbit)
 
 
-def _chosen_start(
-    model: Model, equilibrium: Equilibrium, known: Orbit | None
-) -> tuple[str, Orbit | None, tuple[str, ...]]:
+def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -> tuple[str, Orbit | None, tuple[str, ...]]:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     scene, method = model.scene, model.scene.integrator.method
     start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start

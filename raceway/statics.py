@@ -51,14 +51,10 @@ def settle(model: Model) -> Equilibrium:
     _refuse_free_motion(model, now.stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
     warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(
-        q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings
-    )
+    return Equilibrium(q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
 
-def contact_angles(
-    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def contact_angles(model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
     z = model.system.ball_count
     axial, radial = model.system.centre_vectors(q)[0].T

@@ -107,9 +107,7 @@ def steady_orbit(
     return _solve(system, period, np.tile(start, (samples, 1)), samples, inertial, tolerance)
 
 
-def _solve(
-    system: System, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float
-) -> Orbit:
+def _solve(system: System, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float) -> Orbit:
     """Newton on all times at once from a first guess (samples, 5)."""
     z = system.ball_count
     times = np.arange(samples) * (period / samples)

@@ -32,4 +32,6 @@ class QuasiStatic:
         from raceway.core.advance import advance
         from raceway.core.integrators.quasi_static import quasi_static
 
-        return advance(quasi_static, system, start, schedule, np.array([self.tolerance, 0.0 if system.conservative else 1.0]), on_chunk)
+        return advance(
+            quasi_static, system, start, schedule, np.array([self.tolerance, 0.0 if system.conservative else 1.0]), on_chunk
+        )

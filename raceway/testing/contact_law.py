@@ -263,8 +263,8 @@ class ContactLawSuite(Suite):
         units = ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2")
         scaled = ContactPairs(
             *(
-                getattr(pairs, f.name) * scale_of(unit, length, force, time)
-                for f, unit in zip(attrs.fields(ContactPairs), units, strict=True)
+                getattr(pairs, f) * scale_of(unit, length, force, time)
+                for f, unit in zip((a.name for a in attrs.fields(ContactPairs)), units, strict=True)
             )
         )
         a = Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))

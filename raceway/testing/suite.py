@@ -233,8 +233,9 @@ def _frozen(plugin: Any) -> bool:
 
 def check_kernel(kernel: Any, signature: Any, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
-    compiled = getattr(kernel, "overloads", None)
+    compiled: dict[Any, Any] | None = getattr(kernel, "overloads", None)
     require(compiled is not None, f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
+    assert compiled is not None
     require(
         tuple(signature.args) in compiled and len(compiled) == 1,
         f"kernel() is compiled for {[str(s) for s in compiled] or 'nothing'}, not for {word} alone: decorate it with @jit({word})",

@@ -24,7 +24,9 @@ class OrderTracking:
 
     name: ClassVar[str] = "order_tracking"
     needs: ClassVar[frozenset[str]] = frozenset({"record", "phase"})
-    definition: ClassVar[str] = "secant: 1x force over 1x displacement in the direction of the force, order tracked over a changing speed"
+    definition: ClassVar[str] = (
+        "secant: 1x force over 1x displacement in the direction of the force, order tracked over a changing speed"
+    )
 
     window_turns: float = option(6.0, help="turns in a window", rule=between(2.0, 1000.0))
 
@@ -57,7 +59,9 @@ class OrderTracking:
             size = np.linalg.norm(line[6:8]) * np.sqrt(0.5 * len(chosen))
             last = (speed, line, float(np.linalg.norm(rest) / size) if size > 0.0 else None)
         if last is None:
-            raise ConvergenceError(f"the record holds less than {self.window_turns:g} turns: shorten identifier.window_turns")
+            raise ConvergenceError(
+                f"the record holds less than {self.window_turns:g} turns: shorten identifier.window_turns"
+            )
         speed, line, residual = last
         return identification(
             self.definition, speed / (2.0 * np.pi), line[:5], line[5:], model.mass_used,
