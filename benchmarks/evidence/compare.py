@@ -34,7 +34,9 @@ def rows() -> list[Row]:
     out.append(Row("axes held because a corner is in doubt", held, "none", not found.held, COMMAND, note))
     for effect in content["effects"]:
         if effect["quantity"] == "equivalent_stiffness" and len(effect["term"]) <= 2:
-            value = f"{effect['percent']:+.2f} % ({effect['difference'] / 1e6:+.2f} N/um)"
+            value = f"{effect['percent']:+.2f} %"
+            if effect["difference"] is not None:
+                value += f" ({effect['difference'] / 1e6:+.2f} N/um)"
             out.append(Row(f"effect on K: {' x '.join(effect['term'])}", value, "reported", True, COMMAND))
     out += [Row("in words", words, "reported", True, COMMAND) for words in found.words]
     found.picture(PICTURES)
