@@ -221,14 +221,10 @@ def settle(model: Model) -> Equilibrium:
     _refuse_free_motion(model, now.stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
     warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(
-        q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings
-    )
+    return Equilibrium(q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
 
-def contact_angles(
-    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def contact_angles(model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
     z, scalars = model.geometry.ball_count, model.system.scalars
     c, s = np.cos(model.azimuth), np.sin(model.azimuth)
@@ -284,6 +280,7 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
             assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
             found.append(
                 f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
-                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality"
+                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in "
+                "reality"
             )
     return tuple(found)

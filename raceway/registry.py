@@ -97,7 +97,9 @@ class Registry:
                 "RACEWAY_DISABLE."
             )
         names = self.names(kind)
-        message = f"no {kind.replace('_', ' ')} named '{name}'{nearest(name, names)}; installed: {', '.join(names) or 'none'}"
+        message = (
+            f"no {kind.replace('_', ' ')} named '{name}'{nearest(name, names)}; installed: {', '.join(names) or 'none'}"
+        )
         if self.faults:
             message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
         raise PluginError(message)
@@ -183,5 +185,3 @@ def _trace(text: str) -> None:
 def default_registry() -> Registry:
     """The plug-ins of this process: built-ins and whatever is installed."""
     return Registry()
-
-

@@ -95,9 +95,7 @@ def _no_error(how: str) -> dict[str, Any]:
     return {**dict.fromkeys(names), "how": dict.fromkeys(names, how)}
 
 
-def _errors(
-    model: Model, equilibrium: Equilibrium, simulation: Simulation | None, found: Identification
-) -> dict[str, Any]:
+def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | None, found: Identification) -> dict[str, Any]:
     """The table ``error``: relative errors of Z, each with how it was estimated."""
     error = _no_error("")
     how: dict[str, str] = error["how"]
@@ -135,9 +133,9 @@ def _cost(simulation: Simulation | None, wall: float, compile_s: float, build: f
 def _stability(model: Model, simulation: Simulation | None) -> dict[str, Any]:
     drift = None
     law = model.scene.contact.law
-    if simulation is not None and model.scene.integrator.method.inertial and law.state_size == 0 and not law.dissipative:
-        if simulation.start != "ramp":
-            drift = energy_balance(model.system, simulation.whole).drift
+    conservative = model.scene.integrator.method.inertial and law.state_size == 0 and not law.dissipative
+    if simulation is not None and conservative and simulation.start != "ramp":
+        drift = energy_balance(model.system, simulation.whole).drift
     return {
         "critical_time_step_s": simulation.critical_time_step if simulation else None,
         "energy_drift": drift,
@@ -152,7 +150,11 @@ def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
 
     from raceway import __version__
 
-    used = [("contact_law", scene.contact.kind), ("integrator", scene.integrator.kind), ("identifier", scene.identifier.kind)]
+    used = [
+        ("contact_law", scene.contact.kind),
+        ("integrator", scene.integrator.kind),
+        ("identifier", scene.identifier.kind),
+    ]
     if scene.excitation is not None:
         used.append(("excitation", scene.excitation.name))
     entries = [registry.find(kind, name) for kind, name in used]
@@ -161,8 +163,6 @@ def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
         "python": platform.python_version(),
         "numba": numba.__version__,
         "numpy": np.__version__,
-        "plugins": [
-            {"kind": e.kind, "name": e.name, "distribution": e.distribution, "version": e.version} for e in entries
-        ],
+        "plugins": [{"kind": e.kind, "name": e.name, "distribution": e.distribution, "version": e.version} for e in entries],
         "host": f"{platform.system()} {platform.machine()}",
     }

@@ -38,9 +38,7 @@ class Bearing:
     ball_count: int = option(help="Z", rule=at_least(1))
     conformity_inner: float = option(help="groove radius / ball diameter, inner", rule=inside(0.5, 1.0))
     conformity_outer: float = option(help="groove radius / ball diameter, outer", rule=inside(0.5, 1.0))
-    contact_angle_deg: float | None = option(
-        None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0))
-    )
+    contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0)))
     radial_clearance: float | None = option(
         None, unit="m", help="internal radial clearance as catalogues give it, on the diameter", rule=optional(at_least(0.0))
     )

@@ -31,7 +31,9 @@ def plugin_kernel(plugin: Any, kind: str, signature: Any, name: str) -> Any:
         raise PluginError(f"{label}: kernel() raises {type(why).__name__}: {why}") from why
     if not hasattr(kernel, "nopython_signatures"):
         raise PluginError(f"{label}: kernel() returns {type(kernel).__name__}, which is not compiled: {remedy}")
-    if not any(has.args == signature.args and has.return_type == signature.return_type for has in kernel.nopython_signatures):
+    if not any(
+        has.args == signature.args and has.return_type == signature.return_type for has in kernel.nopython_signatures
+    ):
         found = " or ".join(signature_words(has) for has in kernel.nopython_signatures) or "no signature"
         raise PluginError(f"{label}: its kernel has {found}, the rule is {signature_words(signature)}: {remedy}")
     return kernel

@@ -31,4 +31,3 @@ def static_orbit(system: System, q: np.ndarray, ball: np.ndarray, ramped: bool) 
     loaded = attrs.evolve(system, load=system.load + outer)
     q, ball, _ = loaded.settle(q, ball)
     return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
-

@@ -22,7 +22,6 @@ class CentralDifference:
     inertial: ClassVar[bool] = True
     dissipative: ClassVar[bool] = False
 
-
     def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
         import numpy as np
 

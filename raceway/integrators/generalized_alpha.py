@@ -24,7 +24,9 @@ class GeneralizedAlpha:
     inertial: ClassVar[bool] = True
     dissipative: ClassVar[bool] = True
 
-    rho_infinity: float = option(0.9, help="spectral radius at infinite frequency: 1 none, 0 all dissipated", rule=between(0.0, 1.0))
+    rho_infinity: float = option(
+        0.9, help="spectral radius at infinite frequency: 1 none, 0 all dissipated", rule=between(0.0, 1.0)
+    )
     tolerance: float = option(1e-9, help="residual of a step's iteration over the largest force", rule=inside(0.0, 1e-3))
 
     def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:

@@ -38,12 +38,12 @@ class Amplitude:
     def __attrs_post_init__(self) -> None:
         if self.amplitude == "unbalance" and self.unbalance is None:
             raise ValueError("`amplitude` = 'unbalance' needs the key `unbalance` (kg m)")
-        if self.amplitude == "constant" and self.force is None:
-            if self.unbalance is None or self.reference_speed_rpm is None:
-                raise ValueError(
-                    "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to "
-                    "compute it from"
-                )
+        computable = self.unbalance is not None and self.reference_speed_rpm is not None
+        if self.amplitude == "constant" and self.force is None and not computable:
+            raise ValueError(
+                "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to compute it "
+                "from"
+            )
 
     @property
     def whirl_speed(self) -> float:

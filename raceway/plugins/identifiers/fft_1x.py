@@ -17,7 +17,9 @@ class Fft1x:
 
     name: ClassVar[str] = "fft_1x"
     needs: ClassVar[frozenset[str]] = frozenset({"record"})
-    definition: ClassVar[str] = "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
+    definition: ClassVar[str] = (
+        "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
+    )
 
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np

@@ -19,7 +19,9 @@ class SineFit:
 
     name: ClassVar[str] = "sine_fit"
     needs: ClassVar[frozenset[str]] = frozenset({"record"})
-    definition: ClassVar[str] = "secant: 1x force over 1x displacement in the direction of the force, least squares with drift and harmonics"
+    definition: ClassVar[str] = (
+        "secant: 1x force over 1x displacement in the direction of the force, least squares with drift and harmonics"
+    )
 
     harmonics: int = option(5, help="multiples of the excitation's frequency in the fit", rule=between(1, 50))
 

@@ -17,7 +17,9 @@ class Tangent:
 
     name: ClassVar[str] = "tangent"
     needs: ClassVar[frozenset[str]] = frozenset({"equilibrium"})
-    definition: ClassVar[str] = "tangent: small harmonic force about the static equilibrium, tilts as supported, in the direction of the force"
+    definition: ClassVar[str] = (
+        "tangent: small harmonic force about the static equilibrium, tilts as supported, in the direction of the force"
+    )
 
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
