@@ -142,8 +142,8 @@ def _amplitude_and_direction(comparison: Comparison, leading: Axis) -> list[str]
         by_law += [grown - alone, both - turned]
         words.append(
             f"{where or 'Taken apart'}: the speed alone (unidirectional, constant amplitude) changes K(w) by "
-            f"{percent(alone)}; with only the direction swapped by {percent(turned)}, with only the amplitude law swapped by "
-            f"{percent(grown)}, with both by {percent(both)}."
+            f"{percent(alone)}; with only the direction swapped by {percent(turned)}, with only the amplitude law "
+            f"swapped by {percent(grown)}, with both by {percent(both)}."
         )
     words.append(
         f"A bidirectional instead of a unidirectional force multiplies the ratio of K(w) at {shown(leading.ends[1])} "
