@@ -52,8 +52,8 @@ _ORDER = (
     ("identifier", "identifier"),
 )
 _NOTES = {
-    "bearing": "`preset` fills in a bearing of the catalogue; any other key overrides the preset's value. Without a preset the "
-    "required keys and one of `contact_angle_deg`, `radial_clearance` have to be given.",
+    "bearing": "`preset` fills in a bearing of the catalogue; any other key overrides the preset's value. Without a preset "
+    "the required keys and one of `contact_angle_deg`, `radial_clearance` have to be given.",
     "supports": "In this version `outer_seat` and `inner_seat` must be `rigid`.",
     "excitation": "Without this table the scene is static and `identification` is null.",
     "bodies": "This version has rigid rings and balls only: `rigid`.",

@@ -27,7 +27,8 @@ def faults(registry: Registry) -> list[str]:
     for kind, name in registry.shadowed():
         owners = " and ".join(f"{e.plugin.__qualname__} of {e.distribution}" for e in registry.entries[kind, name])
         found.append(
-            f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}. Remove one, or name it in RACEWAY_DISABLE"
+            f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}. Remove one, or name it in "
+            "RACEWAY_DISABLE"
         )
     return found
 

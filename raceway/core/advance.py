@@ -93,7 +93,8 @@ def advance(
 def _failure(
     system: System, schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
 ) -> ConvergenceError:
-    when = f"after {done} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {done // schedule.steps_per_turn + 1})"
+    turn = done // schedule.steps_per_turn + 1
+    when = f"after {done} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
     state = {"t": done * schedule.dt, "q": motion[0].copy(), "v": motion[1].copy(), "a": motion[2].copy(), "ball": ball}
     if counters[REASON] == UNBOUNDED:
         limit = system.critical_time_step(system.evaluate(motion[0]).stiffness) if np.isfinite(motion).all() else None

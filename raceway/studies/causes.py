@@ -93,7 +93,7 @@ def _size(comparison: Comparison, leading: Axis, partner: Axis, others: list[str
 
 
 def sense_flips(factorial: Factorial, leading: Axis) -> tuple[np.ndarray, dict[str, int]]:
-    """Sense of the change along the leading axis (-1, 0 hardly any, 1) in every setting, and in how many pairs an axis turns it."""
+    """Sense of the change along the leading axis (-1, 0 hardly any, 1) in each setting; how often each axis turns it."""
     place = factorial.keys.index(leading.key)
     change = np.diff(np.log(factorial.corners), axis=place).take(0, axis=place)
     sense = np.where(np.abs(change) < HARDLY, 0, np.sign(change))
@@ -141,14 +141,14 @@ def _amplitude_and_direction(comparison: Comparison, leading: Axis) -> list[str]
         by_direction += [turned - alone, both - grown]
         by_law += [grown - alone, both - turned]
         words.append(
-            f"{where or 'Taken apart'}: the speed alone (unidirectional, constant amplitude) changes K(w) by {percent(alone)}; "
-            f"with only the direction swapped by {percent(turned)}, with only the amplitude law swapped by {percent(grown)}, "
-            f"with both by {percent(both)}."
+            f"{where or 'Taken apart'}: the speed alone (unidirectional, constant amplitude) changes K(w) by "
+            f"{percent(alone)}; with only the direction swapped by {percent(turned)}, with only the amplitude law "
+            f"swapped by {percent(grown)}, with both by {percent(both)}."
         )
     words.append(
-        f"A bidirectional instead of a unidirectional force multiplies the ratio of K(w) at {shown(leading.ends[1])} to that at "
-        f"{shown(leading.ends[0])} r/min by {_factors(by_direction)}; a force that grows as m e w^2 instead of a constant one by "
-        f"{_factors(by_law)}."
+        f"A bidirectional instead of a unidirectional force multiplies the ratio of K(w) at {shown(leading.ends[1])} "
+        f"to that at {shown(leading.ends[0])} r/min by {_factors(by_direction)}; a force that grows as m e w^2 instead of a "
+        f"constant one by {_factors(by_law)}."
     )
     return words
 

@@ -1,4 +1,4 @@
-"""Runs variations of one scene under otherwise identical settings; ``comparison`` and ``explain`` say what changes the stiffness.
+"""Variations of one scene under otherwise identical settings; ``comparison`` and ``explain`` say what changes what.
 
 Only ``raceway.run.run`` is called.  Swapping a plug-in's kind leaves out the options that only the other kind knows.
 """

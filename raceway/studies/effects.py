@@ -144,7 +144,7 @@ def whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
 
 
 def trend(values: Sequence[float], errors: Sequence[float]) -> str:
-    """ "rises", "falls", "level" or "not monotonic" of a series; steps within the relative errors of their ends are level."""
+    """ "rises", "falls", "level" or "not monotonic" of a series; steps within their ends' relative errors are level."""
     y, e = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
     steps = np.diff(y)
     allowed = np.abs(y[1:]) * e[1:] + np.abs(y[:-1]) * e[:-1]

@@ -25,10 +25,10 @@ def inertia(comparison: Comparison, leading: Axis | None) -> list[str]:
     z = [one["dynamic_stiffness"] for one in found]
     damping = max(1.0 - abs(one["real"]) / one["abs"] for one in z)
     masses = f"{min(mass):.3f}" if max(mass) - min(mass) < 5e-4 else f"{min(mass):.3f} to {max(mass):.3f}"
+    added = "less than 0.01" if damping < 1e-4 else f"up to {100 * damping:.2g}"
     less = (
         f"|Z| is K(w) less m w^2, with m = {masses} kg: {min(force) / 1e6:.2f} to {max(force) / 1e6:.2f} N/um, which is "
-        f"{min(share):.1f} to {max(share):.1f} % of K(w); damping adds {'less than 0.01' if damping < 1e-4 else f'up to {100 * damping:.2g}'} "
-        "% of |Z|."
+        f"{min(share):.1f} to {max(share):.1f} % of K(w); damping adds {added} % of |Z|."
     )
     return [less] if leading is None else [less, *_opposite(comparison, leading)]
 

@@ -1,7 +1,7 @@
 """Lubricants 2026, 14(3), 128, section 3.3: the rotating force of the test rig, 7.1 g at 90 mm.
 
-Frame: radial, as put out by the excitations' compiled kernels.  Normalisation: F0 = m e w^2 for the rotor, half of it for each
-of two bearings.  Tolerance 1e-5: six printed digits.
+Frame: radial, as put out by the excitations' compiled kernels.  Normalisation: F0 = m e w^2 for the rotor, half of it for
+each of two bearings.  Tolerance 1e-5: six printed digits.
 """
 
 from __future__ import annotations

@@ -27,8 +27,11 @@ from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
 
 _ITERATIONS = 200
-#: Rows of ``work`` beyond the law's, two quantities each, a half row long; 12 to 15 keep what belongs to settled balls.
+#: Rows of ``work`` beyond the law's, two quantities each, a half row long (index k, then z + k): inner groove centre and its
+#: velocity, last step and slope along it with a flag for settled balls, directions and lengths of the two contacts' lines.
+#: Rows 12 to 15 keep what belongs to settled balls.
 CENTRE, VELOCITY, STEP, SEARCH, INNER, OUTER, LENGTH = 5, 6, 7, 8, 9, 10, 11
+DONE = SEARCH
 #: Row of the azimuths.
 DIRECTION = 16
 #: Rows that the iteration has done with, used again for what goes to the ring.
@@ -46,7 +49,7 @@ def rigid_inertial(
     place(t, q, v, scalars, table, work, DIRECTION, CENTRE, VELOCITY)
     for k in range(z):
         work[SEARCH, k] = 0.0
-        work[SEARCH, z + k] = 0.0
+        work[DONE, z + k] = 0.0
         seat = lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
         if ball[k, 0] == 0.0 and ball[k, 1] == 0.0:
             length = np.sqrt(work[CENTRE, k] * work[CENTRE, k] + work[CENTRE, z + k] * work[CENTRE, z + k])
@@ -78,7 +81,7 @@ def rigid_inertial(
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
         for k in range(z):
-            if work[SEARCH, z + k] != 0.0:
+            if work[DONE, z + k] != 0.0:
                 continue
             fi, fo = force[k], force[z + k]
             ga = -fi * work[INNER, k] + fo * work[OUTER, k]
@@ -137,7 +140,7 @@ def rigid_inertial(
                 work[13, k], work[13, z + k] = d_gap[k], d_gap[z + k]
                 work[14, k], work[14, z + k] = d_rate[k], d_rate[z + k]
                 work[15, k], work[15, z + k] = work[INNER, k], work[INNER, z + k]
-                work[SEARCH, z + k] = 1.0
+                work[DONE, z + k] = 1.0
                 remaining -= 1
                 continue
             work[STEP, k], work[STEP, z + k] = sa, sr

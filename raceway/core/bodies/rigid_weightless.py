@@ -24,8 +24,11 @@ from raceway.core.jit import jit
 from raceway.core.signatures import SYSTEM
 
 _ITERATIONS = 60
-#: Rows of ``work`` beyond the law's, two quantities each, a half row long.
+#: Rows of ``work`` beyond the law's, two quantities each, a half row long (index k, then z + k): direction of the line of
+#: centres, bracket of the outer approach, speed along that line and approach of both races, its length and the outer
+#: race's approach, force on the ring, tangents, velocity of the inner groove centre, azimuth.
 NORMAL, BRACKET, SPEED, LENGTH, CARRIED, STIFF, VISCOUS, VELOCITY, DIRECTION = 5, 6, 7, 8, 9, 10, 12, 14, 15
+APPROACH, OUTER = SPEED, LENGTH
 
 
 @jit(SYSTEM)
@@ -43,17 +46,17 @@ def rigid_weightless(
         inverse = 1.0 / max(work[LENGTH, k], 1e-300)
         work[NORMAL, k], work[NORMAL, z + k] = a * inverse, r * inverse
         work[SPEED, k] = work[VELOCITY, k] * work[NORMAL, k] + work[VELOCITY, z + k] * work[NORMAL, z + k]
-        work[SPEED, z + k] = work[LENGTH, k] - li - lo
-        work[BRACKET, k], work[BRACKET, z + k] = 0.0, max(work[SPEED, z + k], 0.0)
-        share = table[k, OUTER_SHARE] if work[SPEED, z + k] > 0.0 else 0.5
-        work[LENGTH, z + k] = share * work[SPEED, z + k]
+        work[APPROACH, z + k] = work[LENGTH, k] - li - lo
+        work[BRACKET, k], work[BRACKET, z + k] = 0.0, max(work[APPROACH, z + k], 0.0)
+        share = table[k, OUTER_SHARE] if work[APPROACH, z + k] > 0.0 else 0.5
+        work[OUTER, z + k] = share * work[APPROACH, z + k]
     # All balls go through every iteration, settled ones too, so that each loop is free of branches.
     moving = 1
     for _ in range(_ITERATIONS):
         for k in range(z):
-            own = ball_gain * (lo + work[LENGTH, z + k]) + ball_known[k, 0]
-            gap[k] = work[LENGTH, z + k] - work[SPEED, z + k]
-            gap[z + k] = -work[LENGTH, z + k]
+            own = ball_gain * (lo + work[OUTER, z + k]) + ball_known[k, 0]
+            gap[k] = work[OUTER, z + k] - work[APPROACH, z + k]
+            gap[z + k] = -work[OUTER, z + k]
             rate[k] = own - work[SPEED, k]
             rate[z + k] = -own
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
@@ -63,38 +66,38 @@ def rigid_weightless(
             ki = -d_gap[k] - ball_gain * d_rate[k]
             ko = -d_gap[z + k] - ball_gain * d_rate[z + k]
             stiff = ki + ko
-            imbalance = force[k] - force[z + k] if work[SPEED, z + k] > 0.0 and stiff > 0.0 else 0.0
-            work[BRACKET, k] = work[LENGTH, z + k] if imbalance > 0.0 else work[BRACKET, k]
-            work[BRACKET, z + k] = work[LENGTH, z + k] if imbalance < 0.0 else work[BRACKET, z + k]
+            imbalance = force[k] - force[z + k] if work[APPROACH, z + k] > 0.0 and stiff > 0.0 else 0.0
+            work[BRACKET, k] = work[OUTER, z + k] if imbalance > 0.0 else work[BRACKET, k]
+            work[BRACKET, z + k] = work[OUTER, z + k] if imbalance < 0.0 else work[BRACKET, z + k]
             step = imbalance / max(stiff, 1e-300)
-            trial = work[LENGTH, z + k] + step
+            trial = work[OUTER, z + k] + step
             # A correction this small ends the iteration linearly: what it leaves is of second order.
-            last = abs(step) <= 1e-8 * work[SPEED, z + k]
+            last = abs(step) <= 1e-8 * work[APPROACH, z + k]
             middle = 0.5 * (work[BRACKET, k] + work[BRACKET, z + k])
             between = trial > work[BRACKET, k] and trial < work[BRACKET, z + k]
             trial = trial if last or between else middle
-            trial = trial if imbalance != 0.0 else work[LENGTH, z + k]
+            trial = trial if imbalance != 0.0 else work[OUTER, z + k]
             final = step if last else 0.0
             gap[k] += final
             gap[z + k] -= final
             force[k] -= ki * final
             force[z + k] += ko * final
-            moving += 1 if not last and imbalance != 0.0 and trial != work[LENGTH, z + k] else 0
-            work[LENGTH, z + k] = trial
+            moving += 1 if not last and imbalance != 0.0 and trial != work[OUTER, z + k] else 0
+            work[OUTER, z + k] = trial
         if moving == 0:
             break
     for k in range(z):
-        closed = 1.0 if work[SPEED, z + k] > 0.0 else 0.0
+        closed = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
         force[k] *= closed
         force[z + k] *= closed
-        ball[k, 0] = lo + work[LENGTH, z + k]
+        ball[k, 0] = lo + work[OUTER, z + k]
         work[CARRIED, k], work[CARRIED, z + k] = force[k] * work[NORMAL, k], force[k] * work[NORMAL, z + k]
     ring_force(table, arm, work, DIRECTION, CARRIED, f)
     if K.size > 0:
         for k in range(z):
             stiff = -d_gap[k] - d_gap[z + k] - ball_gain * (d_rate[k] + d_rate[z + k])
             na, nr = work[NORMAL, k], work[NORMAL, z + k]
-            closed = 1.0 if work[SPEED, z + k] > 0.0 and stiff > 0.0 else 0.0
+            closed = 1.0 if work[APPROACH, z + k] > 0.0 and stiff > 0.0 else 0.0
             share = closed * (-d_gap[z + k] - ball_gain * d_rate[z + k]) / max(stiff, 1e-300)
             across = closed * force[k] / max(work[LENGTH, k], 1e-300)
             along, dashpot = -d_gap[k] * share - across, -d_rate[k] * share

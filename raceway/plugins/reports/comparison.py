@@ -99,7 +99,7 @@ def _curves(
     styles: dict[str, list[str]],
     limits: tuple[float, float],
 ) -> None:
-    """One curve for each combination of the styled axes; runs in doubt as crosses, moved to the edge where they lie outside."""
+    """One curve for each combination of the styled axes; runs in doubt as crosses, at the edge where they lie outside."""
     for combination in product(*styles.values()):
         found = [row for row in rows if all(_text(row["point"][k]) == v for k, v in zip(styles, combination, strict=True))]
         found = sorted((row for row in found if value_of(row, quantity) is not None), key=lambda row: row["point"][along])
