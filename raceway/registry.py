@@ -168,7 +168,8 @@ class Registry:
         if kinds:
             raise PluginError(f"'{name}' is ambiguous; write {' or '.join(f'{k}:{name}' for k in kinds)}")
         known = sorted({n for _, n in self.entries})
-        message = f"no plug-in named '{name}'{nearest(name, known)}; installed: {', '.join(f'{k}:{n}' for k, n in sorted(self.entries))}"
+        installed = ", ".join(f"{k}:{n}" for k, n in sorted(self.entries))
+        message = f"no plug-in named '{name}'{nearest(name, known)}; installed: {installed}"
         if self.faults:
             message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
         raise PluginError(message)

@@ -239,3 +239,18 @@ def _three(site, monkeypatch):
     site.install("broken", "import a_module_that_nobody_has")
     site.install("blocked", LAW.format(name="blocked_law", cls="Blocked"))
     monkeypatch.setenv("RACEWAY_DISABLE", "blocked")
+
+
+def test_a_hook_that_raises_ends_the_run_with_the_plugins_name(tmp_path):
+    from raceway import scene_from_dict
+    from raceway.run import run
+
+    path = tmp_path / "watcher.py"
+    path.write_text(LIFE_CYCLE + "\n@hookimpl\ndef raceway_meshers(): return []\n")
+    registry = Registry(third_party=False)
+    registry.load_file(path)
+    scene = scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}, registry)
+    with pytest.raises(PluginError, match=r"watcher\.py.*ZeroDivisionError"):
+        run(scene, registry)
+    (watcher,) = [p for p in registry.manager.get_plugins() if hasattr(p, "calls")]
+    assert isinstance(watcher.calls[-1], PluginError), "raceway_run_failed is told"

@@ -183,7 +183,7 @@ class ContactLawSuite(Suite):
                 gone = lost.max()
                 require(
                     gone <= 1e-10,
-                    f"a cycle of {frequency:g} Hz loses {gone:.3g} of the energy that passes through: say dissipative = True",
+                    f"a cycle of {frequency:g} Hz loses {gone:.3g} of the energy that passes: say dissipative = True",
                 )
             largest = max(largest, float(lost.max()))
         return f"loses up to {100.0 * largest:.3g} % a cycle" if law.dissipative else ""

@@ -167,7 +167,7 @@ class IntegratorSuite(Suite):
                 return ""
             require(
                 False,
-                f"at 1.1 critical steps the motion reaches {np.abs(grown.displacement).max():.3g} m without a StabilityError",
+                f"at 1.1 critical steps it reaches {np.abs(grown.displacement).max():.3g} m without a StabilityError",
             )
         return ""
 

@@ -237,5 +237,6 @@ def check_kernel(kernel: Any, signature: Any, word: str) -> None:
     require(compiled is not None, f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
     require(
         tuple(signature.args) in compiled and len(compiled) == 1,
-        f"kernel() is compiled for {[str(s) for s in compiled] or 'nothing'}, not for {word} alone: decorate it with @jit({word})",
+        f"kernel() is compiled for {[str(s) for s in compiled] or 'nothing'}, not for {word} alone: "
+        f"decorate it with @jit({word})",
     )
