@@ -170,7 +170,10 @@ def test_equilibria_of_random_scenes(built):
             bearing={"preset": ["B7206C", "7206A-NSK"][rng.integers(2)], "ball_count": int(rng.integers(5, 13))},
             load={"axial": axial, "radial": [float(size * np.cos(angle)), float(size * np.sin(angle))]},
             supports={"tilt": ["locked", "free", 3e4][rng.integers(3)]},
-            kinematics={"gyroscopic": ["outer_race", "shared"][rng.integers(2)], "spin_speed_rpm": float(rng.uniform(1e3, 4e4))},
+            kinematics={
+                "gyroscopic": ["outer_race", "shared"][rng.integers(2)],
+                "spin_speed_rpm": float(rng.uniform(1e3, 4e4)),
+            },
         )
         system = model.system
         q, ball, _ = system.settle(model.guess)
@@ -196,5 +199,7 @@ def test_the_scalar_of_the_moment(built):
     model = fast(built)
     g, w = model.geometry, model.scene.spin_speed
     mass = 7810.0 * np.pi / 6.0 * g.ball_diameter**3
-    expected = mass * g.ball_diameter**2 / 10.0 * w * 0.5 * w * (1.0 - g.ball_diameter * np.cos(np.radians(15)) / g.pitch_diameter)
+    expected = (
+        mass * g.ball_diameter**2 / 10.0 * w * 0.5 * w * (1.0 - g.ball_diameter * np.cos(np.radians(15)) / g.pitch_diameter)
+    )
     assert model.system.scalars[ring.GYROSCOPIC] == pytest.approx(expected, rel=1e-12)
