@@ -168,7 +168,7 @@ def test_energy_of_friction_is_never_negative(built, friction, integrator):
 
 
 def test_energy_balances_with_friction(built):
-    """Kinetic + stored + lost - work stays: within 1e-3 at 360 steps a turn, halving with the step (losses are of first order)."""
+    """Kinetic + stored + lost - work stays within 1e-3 at 360 steps a turn; losses are of first order in the step."""
     drifts = []
     for steps in (180, 360, 720):
         model = model_of(built, rubbing(0.03, turns=2, integrator={"steps_per_turn": steps}))
@@ -182,7 +182,7 @@ def test_friction_makes_damping_and_is_reported():
     assert found["equivalent_damping"] > 1000.0
     assert stability["friction_energy_j"] > 0.0 and stability["energy_drift"] < 1e-3
     assert any("friction is on" in warning for warning in result["warnings"])
-    # In a steady orbit the force's work over a turn is what friction loses: pi F x sin(lag) a direction; 10 %: not yet steady.
+    # In a steady orbit friction loses the force's work, pi F x sin(lag) a turn and direction; 10 %: not yet steady.
     work = (
         2.0 * np.pi * found["force_amplitude_n"] * found["forward_amplitude_m"] * np.sin(np.radians(found["phase_lag_deg"]))
     )

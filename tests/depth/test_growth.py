@@ -13,7 +13,7 @@ from raceway.scene_file import scene_from_dict
 
 
 def test_growth_of_a_turning_disc(tables):
-    """Against the boundary-value problem of plane stress solved by collocation: r^2 u'' + r u' - u + (1 - nu^2) rho w^2 r^3 / E = 0."""
+    """Against plane stress by collocation: r^2 u'' + r u' - u + (1 - nu^2) rho w^2 r^3 / E = 0, free bore and land."""
     scene = scene_from_dict(tables(kinematics={"ring_growth": True, "spin_speed_rpm": 30000.0}))
     b, w = scene.bearing, scene.spin_speed
     young, nu, rho = b.rings.young, b.rings.poisson, b.rings.density

@@ -85,7 +85,7 @@ def test_amplitude_is_half_the_difference_over_half_a_ball_pitch(built):
 
 
 def test_inertia_amplifies_the_ball_pass_line_as_a_linear_oscillator_would(built):
-    """k / (k - m W^2) with the small-signal stiffness and W the ball-pass speed; 2 %: ball inertia and damping bend both a little."""
+    """k / (k - m W^2) with the small-signal stiffness, W the ball-pass speed; 2 %: the stiffness itself varies."""
     tables = scene(rotor={"mass": 4.0, "damping": 4000.0}, bearing={"ball_count": 7})
     tables["integrator"] = {"kind": "newmark", "turns": 12, "steps_per_turn": 360, "start": "static"}
     model = built(**{k: v for k, v in tables.items() if k != "title"})

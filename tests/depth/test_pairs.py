@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from raceway import SceneError
-from raceway.scene_file import scene_from_dict
 from raceway.core.system import System
+from raceway.scene_file import scene_from_dict
 from raceway.studies.verify import verify
 
 DISTANCE = 16e-3
@@ -51,7 +51,8 @@ def test_tilt_stiffness_by_hand(built, arrangement):
     Notes
     -----
     A row at X whose tangent about its own centre has k_r, k_t and the coupling c = k[y, tilt_z] (k[z, tilt_y] = -c) sees
-    y + X tilt_z, so about the middle k_tt = k_t + 2 X c + X^2 k_r.  The mirror image at -X has the coupling -c: it adds the same.
+    y + X tilt_z, so about the middle k_tt = k_t + 2 X c + X^2 k_r.  The mirror image at -X has the coupling -c and
+    adds the same.
     """
     _, one, _ = single_row(built, 290.0)
     _, two, _ = settled(pair(built, arrangement))
