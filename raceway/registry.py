@@ -84,8 +84,9 @@ class Registry:
     def hook(self) -> Any:
         return self.manager.hook
 
-    def add(self, plugin: Any, source: str = "one-off", distribution: str = "", version: str = "") -> None:
+    def add(self, plugin: Any, source: str = "", distribution: str = "", version: str = "") -> None:
         """Register a module or object with hook implementations; a fault is kept, not raised."""
+        source = source or str(getattr(plugin, "__name__", type(plugin).__qualname__))
         self._register(plugin, source, distribution or source, version)
 
     def load_file(self, path: str | Path) -> list[Entry]:

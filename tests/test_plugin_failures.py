@@ -178,6 +178,28 @@ def test_one_off_file_that_cannot_be_used(tmp_path, name, source, reason):
     assert registry.find("contact_law", "hertz").name == "hertz"
 
 
+def test_modules_are_added_under_their_own_names():
+    from types import SimpleNamespace
+
+    from raceway import hookimpl
+    from tests.broken_laws import OwnUnits, Thawed
+
+    @hookimpl
+    def raceway_contact_laws():
+        return [OwnUnits]
+
+    @hookimpl(specname="raceway_contact_laws")
+    def more():
+        return [Thawed]
+
+    registry = Registry(third_party=False)
+    registry.add(SimpleNamespace(__name__="first", raceway_contact_laws=raceway_contact_laws))
+    registry.add(SimpleNamespace(__name__="second", more=more))
+    assert not registry.faults
+    assert registry.find("contact_law", "own_units").source == "first"
+    assert registry.find("contact_law", "thawed").source == "second"
+
+
 def test_names_on_the_command_line():
     registry = Registry(third_party=False)
     assert registry.find_any("hertz").kind == "contact_law"

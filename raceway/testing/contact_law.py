@@ -13,6 +13,7 @@ from raceway.testing.units import scale_of
 
 #: Contacts of a small ball bearing: curvatures 1/m, contact modulus Pa, Hertz factor N/m^1.5, load N, area of a point m2.
 _CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA = 5.0, 130.0, 1.16e11, 1.3e10, 300.0, 1e-9
+_PAIR_FIELDS = tuple(attrs.fields_dict(ContactPairs))
 
 
 def example_pairs(n: int, seed: int = 1) -> ContactPairs:
@@ -204,7 +205,8 @@ class ContactLawSuite(Suite):
 
     @duty("the kernel allocates no memory")
     def test_no_allocation(self, law: Any) -> None:
-        from raceway.testing.compiled import counted, repeat_law
+        from raceway.testing.allocation import counted
+        from raceway.testing.compiled import repeat_law
 
         driven = drive(law, 256)
         gap, rate = np.linspace(-self.depth, 0.1 * self.depth, 256), np.zeros(256)
@@ -262,10 +264,7 @@ class ContactLawSuite(Suite):
         pairs = example_pairs(64)
         units = ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2")
         scaled = ContactPairs(
-            *(
-                getattr(pairs, f.name) * scale_of(unit, length, force, time)
-                for f, unit in zip(attrs.fields(ContactPairs), units, strict=True)
-            )
+            *(getattr(pairs, f) * scale_of(unit, length, force, time) for f, unit in zip(_PAIR_FIELDS, units, strict=True))
         )
         a = Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))
         b = Driven(other, other.kernel(), np.ascontiguousarray(other.build(scaled), dtype=float))

@@ -234,7 +234,8 @@ def _frozen(plugin: Any) -> bool:
 def check_kernel(kernel: Any, signature: Any, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
     compiled = getattr(kernel, "overloads", None)
-    require(compiled is not None, f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
+    if compiled is None:
+        raise ConformityError(f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
     require(
         tuple(signature.args) in compiled and len(compiled) == 1,
         f"kernel() is compiled for {[str(s) for s in compiled] or 'nothing'}, not for {word} alone: "
