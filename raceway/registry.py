@@ -84,8 +84,9 @@ class Registry:
     def hook(self) -> Any:
         return self.manager.hook
 
-    def add(self, plugin: Any, source: str = "one-off", distribution: str = "", version: str = "") -> None:
+    def add(self, plugin: Any, source: str = "", distribution: str = "", version: str = "") -> None:
         """Register a module or object with hook implementations; a fault is kept, not raised."""
+        source = source or str(getattr(plugin, "__name__", type(plugin).__qualname__))
         self._register(plugin, source, distribution or source, version)
 
     def load_file(self, path: str | Path) -> list[Entry]:
@@ -168,7 +169,8 @@ class Registry:
         if kinds:
             raise PluginError(f"'{name}' is ambiguous; write {' or '.join(f'{k}:{name}' for k in kinds)}")
         known = sorted({n for _, n in self.entries})
-        message = f"no plug-in named '{name}'{nearest(name, known)}; installed: {', '.join(f'{k}:{n}' for k, n in sorted(self.entries))}"
+        installed = ", ".join(f"{k}:{n}" for k, n in sorted(self.entries))
+        message = f"no plug-in named '{name}'{nearest(name, known)}; installed: {installed}"
         if self.faults:
             message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
         raise PluginError(message)

@@ -16,7 +16,7 @@ from raceway.core.friction import friction_energy
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds
 from raceway.core.lines import Line, lines
-from raceway.errors import ConvergenceError, RacewayError
+from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
 from raceway.registry import Registry, default_registry
@@ -45,18 +45,21 @@ def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress 
     try:
         return _run(scene, registry, on_progress, wall)
     except RacewayError as error:
-        registry.hook.raceway_run_failed(error=error)
+        try:
+            registry.notify("raceway_run_failed", error=error)
+        except PluginError as other:  # what the run failed with comes first
+            error.add_note(str(other))
         raise
 
 
 def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall: float) -> Result:
     plan = make_plan(scene)
-    registry.hook.raceway_plan_made(plan=plan)
+    registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
     built = time.perf_counter()
 
     def progress(what: str, done: int, total: int) -> None:
-        registry.hook.raceway_chunk_done(done=done, total=total)
+        registry.notify("raceway_chunk_done", done=done, total=total)
         if on_progress is not None:
             on_progress(what, done, total)
 
@@ -90,7 +93,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         lines=_lines(model, simulation),
         warnings=equilibrium.warnings + (simulation.warnings if simulation else ()),
     )
-    registry.hook.raceway_run_finished(result=result)
+    registry.notify("raceway_run_finished", result=result)
     return result
 
 

@@ -85,7 +85,8 @@ def _check_name(kind: str, name: str, registry: Registry) -> None:
         fitting = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_0123456789")[:40]
         hint = f"; for instance '{fitting}'" if _NAME.fullmatch(fitting) else ""
         raise PluginError(
-            f"'{name}' cannot be a plug-in's name: 2 to 40 lower-case letters, digits and single underscores, a letter first{hint}"
+            f"'{name}' cannot be a plug-in's name: 2 to 40 lower-case letters, digits and single underscores, "
+            f"a letter first{hint}"
         )
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
         raise PluginError(f"'{name}' cannot be a plug-in's name: it is a word of Python")

@@ -107,7 +107,7 @@ def falling(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rat
         d_rate[i] = 0.0
 
 
-@jit(LAW)
+@jit(LAW, allocates=True)
 def allocating(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     approach = np.maximum(-gap, 0.0)
     for i in range(gap.size):

@@ -178,6 +178,28 @@ def test_one_off_file_that_cannot_be_used(tmp_path, name, source, reason):
     assert registry.find("contact_law", "hertz").name == "hertz"
 
 
+def test_modules_are_added_under_their_own_names():
+    from types import SimpleNamespace
+
+    from raceway import hookimpl
+    from tests.broken_laws import OwnUnits, Thawed
+
+    @hookimpl
+    def raceway_contact_laws():
+        return [OwnUnits]
+
+    @hookimpl(specname="raceway_contact_laws")
+    def more():
+        return [Thawed]
+
+    registry = Registry(third_party=False)
+    registry.add(SimpleNamespace(__name__="first", raceway_contact_laws=raceway_contact_laws))
+    registry.add(SimpleNamespace(__name__="second", more=more))
+    assert not registry.faults
+    assert registry.find("contact_law", "own_units").source == "first"
+    assert registry.find("contact_law", "thawed").source == "second"
+
+
 def test_names_on_the_command_line():
     registry = Registry(third_party=False)
     assert registry.find_any("hertz").kind == "contact_law"
@@ -239,3 +261,18 @@ def _three(site, monkeypatch):
     site.install("broken", "import a_module_that_nobody_has")
     site.install("blocked", LAW.format(name="blocked_law", cls="Blocked"))
     monkeypatch.setenv("RACEWAY_DISABLE", "blocked")
+
+
+def test_a_hook_that_raises_ends_the_run_with_the_plugins_name(tmp_path):
+    from raceway import scene_from_dict
+    from raceway.run import run
+
+    path = tmp_path / "watcher.py"
+    path.write_text(LIFE_CYCLE + "\n@hookimpl\ndef raceway_meshers(): return []\n")
+    registry = Registry(third_party=False)
+    registry.load_file(path)
+    scene = scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}, registry)
+    with pytest.raises(PluginError, match=r"watcher\.py.*ZeroDivisionError"):
+        run(scene, registry)
+    (watcher,) = [p for p in registry.manager.get_plugins() if hasattr(p, "calls")]
+    assert isinstance(watcher.calls[-1], PluginError), "raceway_run_failed is told"

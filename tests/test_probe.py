@@ -95,7 +95,7 @@ def undefined(t, params, out):
     ("kernel", "found"),
     [
         (half, "leaves `out` as it was at t = 0 s"),
-        (diverging, "raises ZeroDivisionError"),
+        (diverging, "gives `out` = inf"),
         (undefined, "gives `out` = nan"),
         (broken_laws.sticky, "not for FORCE"),
     ],

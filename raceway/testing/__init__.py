@@ -3,7 +3,7 @@
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
 contact_law, excitation, integrator, identifier, mesher, format, report   one suite a file
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
-compiled       the few compiled loops that the suites need
+compiled       the few compiled loops that the suites need;  allocation: what they allocate
 
 Subclass a suite in a test file, and pytest collects its checks::
 

@@ -1,11 +1,13 @@
 """Compiled loops of the suites: kernels are called here the way that the time loops call them, as function pointers."""
 
-from typing import Self
+# Kernels: numba types them by their explicit signatures.
+# mypy: ignore-errors
 
+import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.signatures import FORCE_POINTER, LAW_POINTER, MATRIX, VECTOR
+from raceway.core.signatures import FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
 
 
 @jit(void(int64, LAW_POINTER, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, VECTOR, VECTOR))
@@ -36,27 +38,38 @@ def sample_force(repeats, force, params, times, out):
             force(times[i], params, out[i])
 
 
-def allocations() -> int:
-    """Blocks of memory that compiled code has allocated so far, counted while counting is switched on."""
-    from numba.core.runtime import _nrt_python
-
-    return int(_nrt_python.memsys_get_stats_alloc())
+#: Gap of contacts that stay open [m].
+_OPEN = 1.0
 
 
-class counted:
-    """Counts the blocks that compiled code allocates inside a ``with``; numba's own switch is put back."""
+@jit(SYSTEM)
+def one_contact(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
+    """See ``raceway.core.bodies``."""
+    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    for i in range(gap.size):
+        gap[i] = _OPEN
+        rate[i] = 0.0
+    gap[0] = scalars[scalars.size - 1] - q[0]
+    rate[0] = -v[0]
+    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
+    for i in range(5):
+        f[i] = 0.0
+        for j in range(5):
+            K[i, j] = 0.0
+            C[i, j] = 0.0
+    f[0] = force[0]
+    K[0, 0] = -d_gap[0]
+    C[0, 0] = -d_rate[0]
+    return 0
 
-    def __enter__(self) -> Self:
-        from numba.core.registry import cpu_target
-        from numba.core.runtime import _nrt_python, rtsys
 
-        rtsys.initialize(cpu_target.target_context)
-        self._runtime, self._was_on = _nrt_python, _nrt_python.memsys_stats_enabled()
-        _nrt_python.memsys_enable_stats()
-        self._before = allocations()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.blocks = allocations() - self._before
-        if not self._was_on:
-            self._runtime.memsys_disable_stats()
+@jit(LAW)
+def counting(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Hertz in the first contact; in the second, which is open, the "force" says how often its memory was committed."""
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        root = params[i, 0] * np.sqrt(approach)
+        state_new[i, 0] = state_old[i, 0] + 1.0
+        force[i] = root * approach if i == 0 else state_new[i, 0]
+        d_gap[i] = -1.5 * root
+        d_rate[i] = 0.0

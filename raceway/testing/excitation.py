@@ -86,7 +86,8 @@ class ExcitationSuite(Suite):
 
     @duty("the kernel allocates no memory")
     def test_no_allocation(self, excitation: Any) -> None:
-        from raceway.testing.compiled import counted, sample_force
+        from raceway.testing.allocation import counted
+        from raceway.testing.compiled import sample_force
 
         times, out = np.linspace(0.0, 1.0, 100), np.zeros((100, 5))
         params, kernel = np.ascontiguousarray(excitation.parameters(), dtype=float), excitation.kernel()

@@ -18,6 +18,7 @@ from raceway.testing.systems import (
     SPEED,
     contact_energy,
     contact_system,
+    counting_system,
     exact,
     linear_system,
     motion,
@@ -167,7 +168,7 @@ class IntegratorSuite(Suite):
                 return ""
             require(
                 False,
-                f"at 1.1 critical steps the motion reaches {np.abs(grown.displacement).max():.3g} m without a StabilityError",
+                f"at 1.1 critical steps it reaches {np.abs(grown.displacement).max():.3g} m without a StabilityError",
             )
         return ""
 
@@ -186,6 +187,18 @@ class IntegratorSuite(Suite):
                 # iteration that ends at 1e-9 of the forces may leave 1e-9 of the motion.
                 wrong = np.abs(a - b).max() / max(np.abs(a).max(), 1e-300)
                 require(wrong < 1e-8, f"`{word}` differs by {wrong:.2g} of the motion after a restart")
+
+    @duty("a law's memory is committed once with every accepted step, never with a trial")
+    def test_memory(self, method: Any) -> None:
+        system = counting_system()
+        start = _start(contact_system()) if method.inertial else _static_start(contact_system())
+        record = method.advance(system, start, Schedule(PERIOD / 60, 60, 2))
+        commits = record.contact_force[:, 1]
+        wrong = np.flatnonzero(commits != np.arange(1, 121))
+        require(
+            not len(wrong), f"in step {wrong[:1] + 1} the memory has been committed {commits[wrong[:1]] - 1} times before"
+        )
+        require(not system.law_state.any(), "the system's own memory was changed")
 
     @duty("on_chunk(done, total) is called up to the end, and what it raises passes through")
     def test_progress(self, method: Any) -> None:

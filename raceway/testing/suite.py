@@ -233,10 +233,11 @@ def _frozen(plugin: Any) -> bool:
 
 def check_kernel(kernel: Any, signature: Any, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
-    compiled: dict[Any, Any] | None = getattr(kernel, "overloads", None)
-    require(compiled is not None, f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
-    assert compiled is not None
+    compiled = getattr(kernel, "overloads", None)
+    if compiled is None:
+        raise ConformityError(f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
     require(
         tuple(signature.args) in compiled and len(compiled) == 1,
-        f"kernel() is compiled for {[str(s) for s in compiled] or 'nothing'}, not for {word} alone: decorate it with @jit({word})",
+        f"kernel() is compiled for {[str(s) for s in compiled] or 'nothing'}, not for {word} alone: "
+        f"decorate it with @jit({word})",
     )

@@ -18,10 +18,9 @@ from scipy.integrate import solve_ivp
 from raceway.core.bodies.ring import COLUMNS, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.contact_laws.power import three_halves
 from raceway.core.excitations.harmonic import harmonic, no_force
-from raceway.core.jit import jit
 from raceway.core.record import Motion
-from raceway.core.signatures import SYSTEM
 from raceway.core.system import System
+from raceway.testing.compiled import counting, one_contact
 
 #: The entry of ``scalars`` after those of the bearing's kernels: the gap at x = 0 [m].
 CLEARANCE = SCALARS
@@ -37,25 +36,9 @@ FACTOR, PRELOAD = 1e10, 300.0
 FORCE, SPEED = 200.0, 0.75 * NATURAL
 
 
-@jit(SYSTEM)
-def one_contact(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
-    """See ``raceway.core.bodies``."""
-    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
-    for i in range(gap.size):
-        gap[i] = _OPEN
-        rate[i] = 0.0
-    gap[0] = scalars[scalars.size - 1] - q[0]
-    rate[0] = -v[0]
-    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
-    for i in range(5):
-        f[i] = 0.0
-        for j in range(5):
-            K[i, j] = 0.0
-            C[i, j] = 0.0
-    f[0] = force[0]
-    K[0, 0] = -d_gap[0]
-    C[0, 0] = -d_rate[0]
-    return 0
+def counting_system() -> System:
+    """``contact_system`` with the law ``counting``."""
+    return attrs.evolve(contact_system(), law=counting, law_state=np.zeros((2, 1)))
 
 
 def _system(free: list[float], **parts: Any) -> System:

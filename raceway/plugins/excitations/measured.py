@@ -15,6 +15,8 @@ from raceway.options import option, positive
 if TYPE_CHECKING:
     import numpy as np
 
+#: Longest interval that is bridged, over the usual one.
+_GAP = 5.0
 _COLUMNS = ("Fx", "Fy", "Fz", "My", "Mz")
 
 
@@ -136,6 +138,8 @@ def _parse(path: str, _time: int, _size: int) -> tuple[tuple[float, ...], dict[s
         raise ValueError(f"`file` = '{path}': the first line must name t and some of {', '.join(_COLUMNS)}, not {header}")
     if unknown := [word for word in header if word not in (*_COLUMNS, "t")]:
         raise ValueError(f"`file` = '{path}': unknown columns {', '.join(unknown)}; known: t, {', '.join(_COLUMNS)}")
+    if twice := sorted({word for word in header if header.count(word) > 1}):
+        raise ValueError(f"`file` = '{path}': columns {', '.join(twice)} stand there twice")
     table: list[list[float]] = []
     for number, row in enumerate(rows[1:], start=2):
         if not row:
@@ -151,7 +155,11 @@ def _parse(path: str, _time: int, _size: int) -> tuple[tuple[float, ...], dict[s
         raise ValueError(f"`file` = '{path}': {len(table)} samples; at least 8 are needed")
     columns = dict(zip(header, (tuple(c) for c in zip(*table, strict=True)), strict=True))
     time = columns.pop("t")
+    usual = sorted(b - a for a, b in zip(time, time[1:], strict=False))[len(time) // 2]
     for number, (before, after) in enumerate(zip(time, time[1:], strict=False), start=3):
         if after <= before:
             raise ValueError(f"`file` = '{path}', line {number}: time must grow, {after:g} s follows {before:g} s")
+        if after - before > _GAP * usual:
+            where = f"`file` = '{path}', line {number}: a gap of {after - before:g} s"
+            raise ValueError(f"{where} where samples are usually {usual:g} s apart: cut the record there")
     return time, columns

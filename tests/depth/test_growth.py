@@ -1,0 +1,78 @@
+"""Growth of the inner raceway: closed form of the turning disc, and what it does to the balls."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from raceway import SceneError, make_plan
+from raceway.core.bodies.ring import REST_RADIAL
+from raceway.ring import radial_growth, shoulder_height
+from raceway.scene_file import scene_from_dict
+
+
+def test_growth_of_a_turning_disc(tables):
+    """Against plane stress by collocation: r^2 u'' + r u' - u + (1 - nu^2) rho w^2 r^3 / E = 0, free bore and land."""
+    scene = scene_from_dict(tables(kinematics={"ring_growth": True, "spin_speed_rpm": 30000.0}))
+    b, w = scene.bearing, scene.spin_speed
+    young, nu, rho = b.rings.young, b.rings.poisson, b.rings.density
+    inner = b.bore / 2.0
+    outer = (b.pitch_diameter - b.ball_diameter) / 2.0 + shoulder_height(scene)
+    scale = rho * w**2 * outer**3 / young
+
+    def slope(s, y):
+        return np.vstack([y[1], y[0] / s**2 - y[1] / s - (1 - nu**2) * s])
+
+    def ends(a, c):
+        return np.array([a[1] + nu * a[0] / (inner / outer), c[1] + nu * c[0]])
+
+    s = np.linspace(inner / outer, 1.0, 50)
+    found = solve_bvp(slope, ends, s, np.ones((2, 50)), tol=1e-9)
+    assert radial_growth(scene) == pytest.approx(found.sol(1.0)[0] * scale, rel=1e-6)
+    assert 1e-7 < radial_growth(scene) < 1e-5
+
+
+def test_growth_is_added_to_expansion_and_goes_with_the_square_of_the_speed(tables):
+    def growth(**kinematics):
+        return radial_growth(scene_from_dict(tables(kinematics=kinematics)))
+
+    still = growth(ring_growth=True)
+    assert still == 0.0 and growth(spin_speed_rpm=9000.0) == 0.0
+    slow, fast = (growth(ring_growth=True, spin_speed_rpm=rpm) for rpm in (9000.0, 18000.0))
+    assert fast == pytest.approx(4.0 * slow, rel=1e-12)
+    both = growth(ring_growth=True, spin_speed_rpm=9000.0, radial_expansion=3e-6)
+    assert both == pytest.approx(slow + 3e-6, rel=1e-12)
+
+
+def test_expansion_shifts_the_radial_rest_distance(built):
+    plain, grown = built(), built(kinematics={"radial_expansion": 2e-6})
+    shift = grown.system.scalars - plain.system.scalars
+    assert shift[REST_RADIAL] == pytest.approx(2e-6, rel=1e-9)
+    assert np.count_nonzero(shift) == 1
+
+
+def test_an_expanded_ring_loads_its_balls(built):
+    """Held axially: loads rise.  Under a given force: the ring sits less deep, at a smaller contact angle, loads rise."""
+
+    def state(**tables):
+        model = built(**tables)
+        q, _, _ = model.system.settle(model.guess)
+        axial, radial = model.system.centre_vectors(q)[0][0]
+        return q, model.system.evaluate(q).contact_force[0], np.arctan2(axial, radial)
+
+    (q, load, angle), (q_g, load_g, angle_g) = state(), state(kinematics={"radial_expansion": 3e-6})
+    assert q_g[0] < q[0] and angle_g < angle and load_g > load
+    # The axial balance: Z Q sin(angle) = F.
+    assert 12 * load_g * np.sin(angle_g) == pytest.approx(1000.0, rel=1e-9)
+    model = built()
+    held = q.copy()
+    grown = built(kinematics={"radial_expansion": 3e-6})
+    assert grown.system.evaluate(held).contact_force.min() > model.system.evaluate(held).contact_force.max()
+
+
+def test_growth_needs_the_bore(tables):
+    given = {k: v for k, v in scene_from_dict(tables()).as_dict()["bearing"].items() if k not in ("bore", "preset")}
+    scene = scene_from_dict({"bearing": given, "load": {"axial": 100.0}, "kinematics": {"ring_growth": True}})
+    with pytest.raises(SceneError, match=r"kinematics\.ring_growth.*needs the bearing's `bore`"):
+        make_plan(scene)
