@@ -264,14 +264,7 @@ class ContactLawSuite(Suite):
         pairs = example_pairs(64)
         units = ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2")
         scaled = ContactPairs(
-<<<<<<< HEAD
-            *(
-                getattr(pairs, f) * scale_of(unit, length, force, time)
-                for f, unit in zip((a.name for a in attrs.fields(ContactPairs)), units, strict=True)
-            )
-=======
             *(getattr(pairs, f) * scale_of(unit, length, force, time) for f, unit in zip(_PAIR_FIELDS, units, strict=True))
->>>>>>> depth
         )
         a = Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))
         b = Driven(other, other.kernel(), np.ascontiguousarray(other.build(scaled), dtype=float))
