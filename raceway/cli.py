@@ -7,17 +7,17 @@ Whatever is heavy is imported inside the command that needs it: ``--help``, ``ch
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from raceway import __version__
-from raceway.command_inputs import changed_tables, faults, load, require_matplotlib, slug, tell_faults, writable
-from raceway.console import Commands, described, print_json
+from raceway.command_frame import attempt, common, plugin_files, registry_with, show, show_progress
+from raceway.command_inputs import changed_tables, load, require_matplotlib, slug, tell_faults, writable
+from raceway.console import Commands, print_json
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.registry import default_registry
+from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 
 if TYPE_CHECKING:
     from raceway.scene import Scene
@@ -46,12 +46,6 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
-def _common(command: Callable[..., Any]) -> Callable[..., Any]:
-    """--json and --debug, which every command takes; ``console`` reads both from the command line, too."""
-    command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
-    return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
-
-
 _scene = click.argument("scene", type=click.Path(path_type=Path, readable=False))
 _set = click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
 _out = click.option(
@@ -67,8 +61,16 @@ _out = click.option(
 @_set
 @_out
 @click.option("--pictures", is_flag=True, help="Also write orbit, spectrum and ball loads as PNG.")
-@_common
-def run(scene: Path, changes: tuple[str, ...], out: Path | None, pictures: bool, as_json: bool) -> int:
+@plugin_files
+@common
+def run(
+    scene: Path,
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
     """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
 
     Writes DIR/result.json, or DIR/failure.json and DIR/last-good-state.npz when the numbers fail (exit code 1).
@@ -77,13 +79,13 @@ def run(scene: Path, changes: tuple[str, ...], out: Path | None, pictures: bool,
     Example:
       raceway run examples/b7206.toml --set excitation.speed_rpm=15000 --set supports.tilt=free --pictures
     """
-    registry = default_registry()
+    registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     folder = writable(out or _RESULTS / slug(loaded.title))
     if pictures:
         require_matplotlib("leave out --pictures")
     tell_faults(registry)
-    with _progress() as progress:
+    with show_progress() as progress:
         from raceway.run import run as compute
 
         try:
@@ -93,19 +95,25 @@ def run(scene: Path, changes: tuple[str, ...], out: Path | None, pictures: bool,
             raise
     content = result.as_dict()
     files: list[str] = []
-    failed = _attempt(lambda: [result.save(folder)], files)
+    failed = attempt(lambda: [result.save(folder)], files)
     if pictures and failed is None:
         report = registry.find("report", "pictures").plugin()
-        failed = _attempt(lambda: report.write(result, folder), files)
-    _show(content, as_json, failed, lambda screen: screen.run_screen(content, files))
+        failed = attempt(lambda: report.write(result, folder), files)
+    show(content, as_json, failed, lambda screen: screen.run_screen(content, files))
     return 0
 
 
 @main.command(short_help="Say what would be built and what not.")
 @_scene
 @_set
-@_common
-def plan(scene: Path, changes: tuple[str, ...], as_json: bool) -> int:
+@plugin_files
+@common
+def plan(
+    scene: Path,
+    changes: tuple[str, ...],
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
     """Say what a scene needs, what is left out and why, and the predicted size, time step and cost.  Builds nothing.
 
     \b
@@ -114,19 +122,25 @@ def plan(scene: Path, changes: tuple[str, ...], as_json: bool) -> int:
     """
     from raceway.plan import make_plan
 
-    registry = default_registry()
+    registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     content = make_plan(loaded).as_dict()
     tell_faults(registry)
-    _show({"title": loaded.title, **content}, as_json, None, lambda screen: screen.plan_screen(loaded.title, content))
+    show({"title": loaded.title, **content}, as_json, None, lambda screen: screen.plan_screen(loaded.title, content))
     return 0
 
 
 @main.command(short_help="Validate a scene; compute nothing.")
 @_scene
 @_set
-@_common
-def check(scene: Path, changes: tuple[str, ...], as_json: bool) -> int:
+@plugin_files
+@common
+def check(
+    scene: Path,
+    changes: tuple[str, ...],
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
     """Validate a scene and list every mistake, each with its path, value, rule and the nearest valid choice.
 
     \b
@@ -135,7 +149,7 @@ def check(scene: Path, changes: tuple[str, ...], as_json: bool) -> int:
     """
     from raceway.plan import make_plan
 
-    registry = default_registry()
+    registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     make_plan(loaded)
     tell_faults(registry)
@@ -152,9 +166,16 @@ def check(scene: Path, changes: tuple[str, ...], as_json: bool) -> int:
 @_set
 @_out
 @click.option("--pictures/--no-pictures", default=True, help="Write the curves as PNG (default).")
-@_common
+@plugin_files
+@common
 def compare(
-    scene: Path, vary: tuple[str, ...], changes: tuple[str, ...], out: Path | None, pictures: bool, as_json: bool
+    scene: Path,
+    vary: tuple[str, ...],
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
 ) -> int:
     """Vary some keys of a scene and say which of them causes what: main effects and interactions.
 
@@ -163,8 +184,8 @@ def compare(
       raceway compare examples/b7206.toml --vary excitation.kind=unidirectional,bidirectional \\
           --vary excitation.speed_rpm=10980:15000:5
     """
-    registry = default_registry()
-    tables, mistakes = changed_tables(scene, changes)
+    registry = registry_with(plugins)
+    tables, mistakes = changed_tables(scene, changes, registry)
     if mistakes:
         raise SceneError(mistakes)
     title = str(tables["title"])
@@ -172,24 +193,24 @@ def compare(
     if pictures:
         require_matplotlib("add --no-pictures")
     tell_faults(registry)
-    with _progress() as progress:
+    with show_progress() as progress:
         from raceway.result import write_json
         from raceway.studies.compare import compare as study
 
         comparison = study(tables, list(vary), registry, progress)
     content = comparison.as_dict()
     files: list[str] = []
-    failed = _attempt(lambda: [write_json(content, folder / "compare.json")], files)
+    failed = attempt(lambda: [write_json(content, folder / "compare.json")], files)
     if pictures and failed is None:
-        failed = _attempt(lambda: comparison.picture(folder), files)
-    _show(content, as_json, failed, lambda screen: screen.compare_screen(title, comparison.table(), comparison.words, files))
+        failed = attempt(lambda: comparison.picture(folder), files)
+    show(content, as_json, failed, lambda screen: screen.compare_screen(title, comparison.table(), comparison.words, files))
     return 0
 
 
 @main.command(short_help="Compute the published reference cases.")
 @click.option("--only", metavar="CASE", help="One case instead of all.")
 @click.option("--all", "every", is_flag=True, help="Show every number, not only the worst of each case.")
-@_common
+@common
 def verify(only: str | None, every: bool, as_json: bool) -> int:
     """Compute published reference cases; exit code 1 when a number misses its tolerance.
 
@@ -197,59 +218,18 @@ def verify(only: str | None, every: bool, as_json: bool) -> int:
     Example:
       raceway verify --only harris-table-6.1 --all
     """
-    with _progress() as progress:
+    with show_progress() as progress:
         from raceway.studies.verify import verify as study
 
         verification = study(only, progress)
     content = verification.as_dict()
-    _show(content, as_json, None, lambda screen: screen.verify_screen(content, verification.passed, every))
+    show(content, as_json, None, lambda screen: screen.verify_screen(content, verification.passed, every))
     return 0 if verification.passed else 1
-
-
-@main.command(short_help="List what is installed, with options.")
-@_common
-def plugins(as_json: bool) -> int:
-    """List every plug-in with its options; broken or shadowed ones are named (exit code 2).
-
-    RACEWAY_DISABLE=NAME,... leaves plug-ins out; RACEWAY_PLUGINS=NAME,... loads exactly these.
-
-    \b
-    Example:
-      raceway plugins --json
-    """
-    from raceway.screen import plugin_rows
-
-    registry = default_registry()
-    rows = plugin_rows(registry.all())
-    broken = faults(registry)
-    if as_json:
-        print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in broken]})
-        return 2 if broken else 0
-    _show(rows, False, None, lambda screen: screen.plugins_screen(rows))
-    if broken:
-        raise RacewayError("\n  ".join(broken))
-    return 0
-
-
-@main.command(short_help="JSON schema of a scene.")
-@_common
-def schema(as_json: bool) -> int:
-    """Print the JSON schema (draft 2020-12) of a scene, for editors, with the options of every installed plug-in.
-
-    \b
-    Example:
-      raceway schema > scene.schema.json
-    """
-    from raceway.schema import scene_schema
-
-    del as_json  # it is JSON either way
-    print_json(scene_schema(default_registry()))
-    return 0
 
 
 @main.command(short_help="See or clear the compiled kernels.")
 @click.option("--clear", is_flag=True, help="Remove all compiled kernels; the next run compiles again.")
-@_common
+@common
 def cache(clear: bool, as_json: bool) -> int:
     """Say where compiled kernels are kept (RACEWAY_CACHE_DIR overrides it), how many and how large, and clear them.
 
@@ -272,26 +252,8 @@ def cache(clear: bool, as_json: bool) -> int:
         "bytes": sum(f["bytes"] for f in folders),
         "cleared": clear,
     }
-    _show(content, as_json, None, lambda screen: screen.cache_screen(content))
+    show(content, as_json, None, lambda screen: screen.cache_screen(content))
     return 0
-
-
-def _progress() -> Any:
-    from raceway.cache_folder import current_folder
-    from raceway.progress import ProgressBar
-
-    folder = current_folder()
-    warm = folder.is_dir() and any(folder.iterdir())
-    return ProgressBar("starting" if warm else "compiling kernels (first run only)")
-
-
-def _attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:
-    """Write files; hand a failure back, so that what was computed is shown before it is reported."""
-    try:
-        files += [str(path) for path in write()]
-    except RacewayError as error:
-        return error
-    return None
 
 
 def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
@@ -308,17 +270,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-def _show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[Any], Any]) -> None:
-    """JSON or tables on standard output; then the failure of writing them, if there was one."""
-    if as_json:
-        print_json(content if failed is None else {**content, "errors": described(failed)[1]})
-        if failed is not None:
-            raise click.exceptions.Exit(failed.exit_code)
-        return
-    from rich.console import Console
-
-    from raceway import screen as tables
-
-    Console(highlight=False).print(screen(tables), crop=False)
-    if failed is not None:
-        raise failed
+for _command in (plugins, check_plugin, new_plugin, schema):
+    main.add_command(_command)

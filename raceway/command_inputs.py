@@ -39,9 +39,9 @@ def tell_faults(registry: Registry) -> None:
         warn(f"{text} (not used here)")
 
 
-def changed_tables(scene: Path, changes: tuple[str, ...]) -> tuple[dict[str, Any], list[Mistake]]:
-    """The scene's tables with the changes, and the changes that cannot be made."""
-    from raceway.scene_file import parse_change, read_toml, with_value
+def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[dict[str, Any], list[Mistake]]:
+    """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
+    from raceway.scene_file import parse_change, read_toml, with_paths, with_value
 
     if scene.is_dir():
         inside = sorted(str(p) for p in scene.glob("*.toml"))
@@ -55,7 +55,7 @@ def changed_tables(scene: Path, changes: tuple[str, ...]) -> tuple[dict[str, Any
         except SceneError as error:
             mistakes += [Mistake(f"--set {m.path}", m.value, m.message) for m in error.mistakes]
     tables.setdefault("title", scene.stem)
-    return tables, mistakes
+    return with_paths(tables, scene.parent, registry), mistakes
 
 
 def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
@@ -68,7 +68,7 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
     """
     from raceway.scene_file import scene_from_dict
 
-    tables, mistakes = changed_tables(scene, changes)
+    tables, mistakes = changed_tables(scene, changes, registry)
     try:
         loaded = scene_from_dict(tables, registry)
     except SceneError as error:

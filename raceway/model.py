@@ -18,6 +18,7 @@ from raceway.core.system import System
 from raceway.errors import PluginError
 from raceway.estimate import axial_approach
 from raceway.plan import Plan
+from raceway.probe import probe_excitation, probe_law
 from raceway.ring import radial_growth, ring_inertia
 from raceway.scene import Scene
 
@@ -84,6 +85,9 @@ def build_model(scene: Scene, plan: Plan) -> Model:
         load=np.array([scene.load.axial, *scene.load.radial, *scene.load.moment]),
         **_excitation(scene),
     )
+    probe_law(scene.contact.law, system.law, system.law_params, system.law_state)
+    if scene.excitation is not None:
+        probe_excitation(scene.excitation, system.force, system.force_params)
     guess = _first_guess(scene, geometry, x)
     if b.preload > 0.0:
         system.table[:, ring.SHIFT] = _preload_shift(scene, system, geometry)

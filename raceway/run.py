@@ -18,6 +18,7 @@ from raceway.core.jit import take_compile_seconds
 from raceway.core.lines import Line, lines
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.model import Model, build_model
+from raceway.options import unused_options
 from raceway.plan import make_plan
 from raceway.registry import Registry, default_registry
 from raceway.result import Result
@@ -91,7 +92,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         stability=_stability(model, simulation),
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
-        warnings=equilibrium.warnings + (simulation.warnings if simulation else ()),
+        warnings=_unused(scene) + equilibrium.warnings + (simulation.warnings if simulation else ()),
     )
     registry.notify("raceway_run_finished", result=result)
     return result
@@ -107,6 +108,21 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
         wanted |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, wanted)
+
+
+def _unused(scene: Scene) -> tuple[str, ...]:
+    """A sentence for each option that is given and changes nothing."""
+    tables = {
+        "contact": scene.contact.law,
+        "integrator": scene.integrator.method,
+        "identifier": scene.identifier.method,
+        "excitation": scene.excitation,
+    }
+    return tuple(
+        f"`{table}.{option}` has no effect: {why}"
+        for table, plugin in tables.items()
+        for option, why in unused_options(plugin).items()
+    )
 
 
 def _refuse_no_number(found: Identification) -> None:

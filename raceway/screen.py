@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from raceway.registry import Entry
+    pass
 
 _LEFT_OUT_SHOWN = 3
 #: Columns of numbers in the table of ``verify`` and their significant digits.
@@ -270,49 +270,6 @@ def _worst(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
     closest = {case: max((r for r in rows if r["case"] == case), key=strain) for case in {r["case"] for r in rows}}
     return [row for row in rows if not row["ok"] or closest[row["case"]] is row]
-
-
-def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:
-    """``[{kind, name, distribution, version, options[{name, unit, default, help}]}]``."""
-    from raceway.schema import key_schema, keys
-
-    rows = []
-    for entry in entries:
-        options = []
-        for field in keys(entry.plugin):
-            facts = key_schema(field)
-            meta = field.metadata
-            options.append(
-                {
-                    "name": field.name,
-                    "unit": meta.get("unit", ""),
-                    "default": facts.get("default"),
-                    "rule": meta.get("rule", ""),
-                    "help": meta.get("help", ""),
-                }
-            )
-        head = {"kind": entry.kind, "name": entry.name, "distribution": entry.distribution, "version": entry.version}
-        rows.append({**head, "options": options})
-    return rows
-
-
-def plugins_screen(rows: Sequence[Mapping[str, Any]]) -> RenderableType:
-    parts: list[RenderableType] = []
-    for kind in dict.fromkeys(row["kind"] for row in rows):
-        parts.append(Text(kind.replace("_", " ") + "s", style="bold"))
-        for row in (r for r in rows if r["kind"] == kind):
-            table = Table.grid(padding=(0, 2))
-            table.add_column(min_width=20, no_wrap=True)
-            table.add_column(min_width=12)
-            table.add_column(style="dim", overflow="fold")
-            for option in row["options"]:
-                default = "" if option["default"] is None else str(option["default"])
-                unit = f" [{option['unit']}]" if option["unit"] else ""
-                table.add_row(escape(option["name"]), escape(default), escape(option["help"] + unit))
-            parts.append(Text.assemble("  ", (row["name"], "cyan"), f"  {row['distribution']} {row['version']}"))
-            if row["options"]:
-                parts.append(Padding(table, (0, 0, 0, 6)))
-    return Group(*parts)
 
 
 def cache_screen(found: Mapping[str, Any]) -> RenderableType:

@@ -19,7 +19,7 @@ from raceway.plugins.excitations.unidirectional import Unidirectional
         ({"unbalance": 1e-4}, set()),
         ({"unbalance": 1e-4, "load_share": 0.5}, set()),
         ({"unbalance": 1e-4, "force": 300.0}, {"force"}),
-        ({"unbalance": 1e-4, "reference_speed_rpm": 9000.0}, {"reference_speed_rpm"}),
+        ({"unbalance": 1e-4, "reference_speed_rpm": 9000.0}, set()),
         ({"amplitude": "constant", "force": 300.0}, set()),
         ({"amplitude": "constant", "unbalance": 1e-4, "reference_speed_rpm": 9000.0, "load_share": 0.5}, set()),
         ({"amplitude": "constant", "force": 300.0, "load_share": 0.5}, {"load_share"}),

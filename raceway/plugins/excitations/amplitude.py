@@ -62,10 +62,9 @@ class Amplitude:
         """Options that are given and change nothing, each with the reason."""
         unused = {}
         if self.amplitude == "unbalance":
+            # reference_speed_rpm may stand ready for the other amplitude law: comparisons swap that one word.
             if self.force is not None:
                 unused["force"] = "amplitude = 'unbalance' computes the force from unbalance and speed"
-            if self.reference_speed_rpm is not None:
-                unused["reference_speed_rpm"] = "amplitude = 'unbalance' takes the force at speed_rpm"
         elif self.force is not None:
             why = "the force is given"
             unused |= {name: why for name in ("unbalance", "reference_speed_rpm") if getattr(self, name) is not None}

@@ -1,0 +1,81 @@
+"""What a person sees of plug-ins: what is installed, whether it conforms, what was written.  Prints nothing by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from raceway.registry import Entry
+    from raceway.testing.suite import Conformity
+
+
+def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:
+    """``[{kind, name, distribution, version, options[{name, unit, default, help}]}]``."""
+    from raceway.schema import key_schema, keys
+
+    rows = []
+    for entry in entries:
+        options = []
+        for field in keys(entry.plugin):
+            facts = key_schema(field)
+            meta = field.metadata
+            options.append(
+                {
+                    "name": field.name,
+                    "unit": meta.get("unit", ""),
+                    "default": facts.get("default"),
+                    "rule": meta.get("rule", ""),
+                    "help": meta.get("help", ""),
+                }
+            )
+        head = {"kind": entry.kind, "name": entry.name, "distribution": entry.distribution, "version": entry.version}
+        rows.append({**head, "options": options})
+    return rows
+
+
+def plugins_screen(rows: Sequence[Mapping[str, Any]]) -> RenderableType:
+    parts: list[RenderableType] = []
+    for kind in dict.fromkeys(row["kind"] for row in rows):
+        parts.append(Text(kind.replace("_", " ") + "s", style="bold"))
+        for row in (r for r in rows if r["kind"] == kind):
+            table = Table.grid(padding=(0, 2))
+            table.add_column(min_width=20, no_wrap=True)
+            table.add_column(min_width=12)
+            table.add_column(style="dim", overflow="fold")
+            for option in row["options"]:
+                default = "" if option["default"] is None else str(option["default"])
+                unit = f" [{option['unit']}]" if option["unit"] else ""
+                table.add_row(escape(option["name"]), escape(default), escape(option["help"] + unit))
+            parts.append(Text.assemble("  ", (row["name"], "cyan"), f"  {row['distribution']} {row['version']}"))
+            if row["options"]:
+                parts.append(Padding(table, (0, 0, 0, 6)))
+    return Group(*parts)
+
+
+def conformity_screen(found: Conformity) -> RenderableType:
+    """One line a check, with the duty and what was found."""
+    table = Table.grid(padding=(0, 2))
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(style="dim", overflow="fold")
+    for row in found.rows:
+        status = Text(row.status, style="green" if row.good else "bold red")
+        table.add_row(escape(row.name), status, escape(f"{row.duty}: {row.message}" if row.message else row.duty))
+    good = sum(row.good for row in found.rows)
+    verdict = "conforms" if found.conforms else "does not conform"
+    title = f"{found.kind.replace('_', ' ')} '{found.name}' {verdict}: {good} of {len(found.rows)} checks"
+    return Group(Text(title, style="bold"), Padding(table, (0, 0, 0, 2)))
+
+
+def new_plugin_screen(folder: Path, files: Sequence[str]) -> RenderableType:
+    listed = "\n".join(f"  {file}" for file in files)
+    steps = f"pip install -e {folder} && python -m pytest {folder}"
+    return Text(f"written: {folder}\n{listed}\nnext: {steps}")
