@@ -24,7 +24,7 @@ class Unidirectional(Amplitude):
 
     @classmethod
     def examples(cls, **options: Any) -> list[Any]:
-        first, second = (super(Unidirectional, cls).examples(direction_deg=direction_deg, **options) for direction_deg in (0.0, 130.0))
+        first, second = (super(Unidirectional, cls).examples(direction_deg=angle, **options) for angle in (0.0, 130.0))
         return first + second
 
     @property
