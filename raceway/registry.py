@@ -225,8 +225,12 @@ class Registry:
     def _register(self, plugin: Any, source: str, distribution: str, version: str) -> None:
         label = source if source == distribution else f"{source} ({distribution})"
         try:
+            hash(plugin)  # pluggy keeps plug-ins in sets
             self.manager.register(plugin, name=label)
             self.manager.check_pending()
+        except TypeError as why:
+            self.faults.append(Fault(label, f"cannot be registered: {why}; name a module, or an object that can be hashed"))
+            return
         except (pluggy.PluginValidationError, ValueError) as why:
             if self.manager.get_plugin(label) is plugin:
                 self.manager.unregister(name=label)

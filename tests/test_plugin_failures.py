@@ -179,7 +179,7 @@ def test_one_off_file_that_cannot_be_used(tmp_path, name, source, reason):
 
 
 def test_modules_are_added_under_their_own_names():
-    from types import SimpleNamespace
+    from types import ModuleType
 
     from raceway import hookimpl
     from tests.broken_laws import OwnUnits, Thawed
@@ -193,11 +193,24 @@ def test_modules_are_added_under_their_own_names():
         return [Thawed]
 
     registry = Registry(third_party=False)
-    registry.add(SimpleNamespace(__name__="first", raceway_contact_laws=raceway_contact_laws))
-    registry.add(SimpleNamespace(__name__="second", more=more))
+    for name, function in (("first", raceway_contact_laws), ("second", more)):
+        module = ModuleType(name)
+        setattr(module, function.__name__, function)
+        registry.add(module)
     assert not registry.faults
     assert registry.find("contact_law", "own_units").source == "first"
     assert registry.find("contact_law", "thawed").source == "second"
+
+
+def test_an_object_that_cannot_be_hashed_is_a_fault_of_its_own(site):
+    site.install("listed", "plugins = []", entry="listed")
+    (info,) = site.folder.glob("listed-*.dist-info")
+    text = (info / "entry_points.txt").read_text().strip()
+    (info / "entry_points.txt").write_text(f"{text}:plugins\n")
+    registry = Registry()
+    (fault,) = [str(f) for f in registry.faults if f.source.startswith("listed")]
+    assert "cannot be registered: unhashable type: 'list'" in fault
+    assert registry.find("contact_law", "hertz").name == "hertz"
 
 
 def test_names_on_the_command_line():

@@ -22,9 +22,9 @@ class TwoFrequency:
 
     Notes
     -----
-    F_y = F1 cos(W t - lag1) + F2 cos(r W t - lag2), F_z = s1 F1 sin(W t - lag1) + s2 F2 sin(r W t - lag2) with r = multiple /
-    divisor and the senses s.  The whole repeats itself after ``divisor`` turns (r in lowest terms).  A misaligned coupling
-    gives r = 2, a loose seat r = 1/2.
+    F_y = F1 cos(W t - lag1) + F2 cos(r W t - lag2), F_z = s1 F1 sin(W t - lag1) + s2 F2 sin(r W t - lag2), with
+    r = multiple / divisor and the senses s.  The whole repeats itself after ``divisor`` turns (r in lowest terms).
+    A misaligned coupling gives r = 2, a loose seat r = 1/2.
     """
 
     name: ClassVar[str] = "two_frequency"

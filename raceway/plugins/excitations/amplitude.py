@@ -45,7 +45,8 @@ class Amplitude:
         computable = self.unbalance is not None and self.reference_speed_rpm is not None
         if self.amplitude == "constant" and self.force is None and not computable:
             raise ValueError(
-                "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to compute it from"
+                "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to "
+                "compute it from"
             )
 
     @classmethod
