@@ -71,6 +71,7 @@ def advance(
             on_chunk(done, schedule.steps)
     kept = int(counters[ROWS])
     rows, probes = rows[:kept], probes[:kept]
+    places = [part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
     return Record(
         time=rows[:, 0],
         displacement=rows[:, 1:6],
@@ -78,7 +79,7 @@ def advance(
         force=rows[:, 11:16],
         gap=probes[:, 0],
         contact_force=probes[:, 1],
-        ball=np.concatenate([part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)], axis=2),
+        ball=places[0] if len(places) == 1 else np.concatenate(places, axis=2),
         final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy()),
         schedule=schedule,
         counts={
