@@ -62,7 +62,7 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
     """Run the conformance suite of a plug-in's kind: exit code 0 conforms, 1 does not, 2 unknown or ambiguous.
 
     \b
-    Examples:
+    Example:
       raceway check-plugin hertz
       raceway check-plugin contact_law:hunt_crossley
       raceway check-plugin my_law --plugin my_law.py

@@ -55,6 +55,8 @@ def advance(
     motion[0], motion[1], motion[2] = start.q, start.v, start.a
     motion[3] = -system.mass @ start.a if start.rest is None else start.rest
     ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
+    if start.memory is not None:
+        memory[:] = start.memory
     done = 0
     while done < schedule.steps:
         count = min(_CHUNK, schedule.steps - done)
@@ -80,7 +82,7 @@ def advance(
         gap=probes[:, 0],
         contact_force=probes[:, 1],
         ball=places[0] if len(places) == 1 else np.concatenate(places, axis=2),
-        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy()),
+        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy(), memory),
         schedule=schedule,
         counts={
             "steps": schedule.steps,

@@ -16,6 +16,7 @@ class Motion:
     ----------
     q, v, a : (5,) displacement, velocity, acceleration (of generalised-alpha: its own a)
     ball, ball_before : (Z, 2 or 4) positions (and slips) of the balls now and one step earlier [m]
+    memory : (2 Z, m) of the contact law; None for a law that remembers nothing yet
     rest : (5,) internal less outer forces [N, N m]; None where it is -M a: of generalised-alpha it is not, and a run that
         goes on from another's final motion needs it
     """
@@ -26,6 +27,7 @@ class Motion:
     ball: np.ndarray
     ball_before: np.ndarray
     rest: np.ndarray | None = None
+    memory: np.ndarray | None = None
 
 
 @attrs.frozen(eq=False)

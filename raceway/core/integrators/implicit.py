@@ -23,6 +23,8 @@ from raceway.core.jit import jit
 from raceway.core.signatures import LOOP
 
 _NEWTON_LIMIT = 40
+#: A force that is none [N]: a motion that has died out is not resolved further.
+_NOTHING = 1e-30
 
 
 @jit(LOOP, allocates=True)
@@ -96,7 +98,7 @@ def implicit(
             if not np.isfinite(norm):
                 counters[1] = 3.0
                 return step
-            if norm <= tolerance * scale:
+            if norm <= tolerance * scale + _NOTHING:
                 found = True
                 break
             if norm > 2.0 * norm_before and halvings < 8:
