@@ -57,8 +57,7 @@ _NOTES = {
     "supports": "In this version `outer_seat` and `inner_seat` must be `rigid`.",
     "excitation": "Without this table the scene is static and `identification` is null.",
     "bodies": "This version has rigid rings and balls only: `rigid`.",
-    "kinematics": "In this version `orbiting`, `gyroscopic`, `radial_expansion` and `ring_growth` must keep their defaults.",
-    "contact": "In this version `friction` must be 0 and `discretisation` must be `resultant`.",
+    "contact": "In this version `discretisation` must be `resultant`.",
 }
 
 
