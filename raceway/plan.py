@@ -19,6 +19,10 @@ from raceway.scene import Scene
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
 _START_S = 0.6
+#: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
+STEPS_PER_TURN = 360
+#: Records above this are refused [bytes].
+_MEMORY_LIMIT = 4 * 2**30
 
 
 @attrs.frozen
@@ -128,6 +132,7 @@ def make_plan(scene: Scene) -> Plan:
     steps = steps_per_turn * turns
     balls = "tangential" if friction or moments else "inertial" if inertia else "weightless"
     count = scene.bearing.ball_count * len(scene.bearing.rows)
+    _refuse_memory(scene, turns, steps_per_turn, count)
     each = _STEP_S[balls] * count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
     period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
     return Plan(
@@ -208,12 +213,32 @@ def _turns(scene: Scene) -> int:
     return max(int(duration * scene.excitation.frequency_hz + 0.5), 1)
 
 
+def samples_per_turn(turns: int) -> int:
+    """Samples a turn that are recorded: 360, fewer in runs of more than 200 turns, never below 24."""
+    return max(24, min(STEPS_PER_TURN, 72_000 // max(turns, 1)))
+
+
+def _refuse_memory(scene: Scene, turns: int, steps_per_turn: int, count: int) -> None:
+    """Records that will not fit are refused before anything is computed."""
+    samples = min(steps_per_turn, samples_per_turn(turns))
+    if steps_per_turn % samples:
+        samples = steps_per_turn
+    needed = 8 * turns * samples * (16 + 8 * count)
+    if needed > _MEMORY_LIMIT:
+        raise SceneError.at(
+            "integrator.turns",
+            scene.integrator.turns,
+            f"the record of {turns} turns would take {needed / 2**30:.1f} GiB, above {_MEMORY_LIMIT / 2**30:.0f} GiB: take "
+            "fewer turns, or steps_per_turn = 360 or a multiple of it",
+        )
+
+
 def _predicted_steps_per_turn(scene: Scene) -> int:
     """The scene's number; for 'auto' 360, or what a rough stiffness asks of an explicit method."""
     given = scene.integrator.steps_per_turn
     if isinstance(given, int):
         return given
     if scene.integrator.method.implicit:
-        return 360
+        return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-    return max(360, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)
+    return max(STEPS_PER_TURN, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)

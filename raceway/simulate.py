@@ -13,11 +13,10 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.model import Model, build_model
-from raceway.plan import make_plan
+from raceway.plan import STEPS_PER_TURN, make_plan, samples_per_turn
 from raceway.statics import Equilibrium, settle
 
 OnProgress = Callable[[str, int, int], None]
-_SAMPLES_PER_TURN = 360
 _SAFETY = 0.8
 
 
@@ -77,7 +76,7 @@ def simulate(
     ramp_turns = _ramp_turns(model) if start == "ramp" else 0.0
     ramp_turns = min(ramp_turns, float(model.plan.turns))
     schedule = Schedule(
-        dt, steps_per_turn, model.plan.turns, max(_stride(steps_per_turn * coarsen) // coarsen, 1), ramp_turns * period
+        dt, steps_per_turn, model.plan.turns, max(_stride(steps_per_turn * coarsen, model.plan.turns) // coarsen, 1), ramp_turns * period
     )
     motion = _motion(model, equilibrium, start, orbit, dt)
     label = f"{scene.integrator.kind}, {schedule.steps} steps"
@@ -134,16 +133,15 @@ def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
     if isinstance(given, int):
         return given
     if model.scene.integrator.method.implicit or critical is None:
-        return _SAMPLES_PER_TURN
+        return STEPS_PER_TURN
     needed = ceil(period / (_SAFETY * critical))
-    return _SAMPLES_PER_TURN * max(1, ceil(needed / _SAMPLES_PER_TURN))
+    return STEPS_PER_TURN * max(1, ceil(needed / STEPS_PER_TURN))
 
 
-def _stride(steps_per_turn: int) -> int:
-    """Every how many steps are recorded: a divisor that leaves 360 samples a turn, or all when there is none."""
-    if steps_per_turn <= _SAMPLES_PER_TURN:
-        return 1
-    for samples in range(_SAMPLES_PER_TURN, 2 * _SAMPLES_PER_TURN + 1):
+def _stride(steps_per_turn: int, turns: int) -> int:
+    """Every how many steps are recorded: a divisor that leaves the plan's samples a turn, or all when there is none."""
+    wanted = samples_per_turn(turns)
+    for samples in range(wanted, min(2 * wanted, steps_per_turn) + 1):
         if steps_per_turn % samples == 0:
             return steps_per_turn // samples
     return 1
