@@ -19,7 +19,7 @@ from raceway.scene import TABLES, Scene
 from raceway.structure import structure
 
 #: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the default kind (None: the table may be absent).
-_PLUGIN_TABLES = {
+PLUGIN_TABLES = {
     "excitation": ("excitation", None),
     "mesh": ("mesher", None),
     "contact": ("contact_law", "hertz"),
@@ -76,7 +76,7 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
 def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> dict[str, Any]:
     """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
     result = copy.deepcopy(dict(tables))
-    for name, (kind, default) in _PLUGIN_TABLES.items():
+    for name, (kind, default) in PLUGIN_TABLES.items():
         table = result.get(name)
         if not isinstance(table, dict):
             continue
@@ -148,10 +148,10 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
         mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
     parts: dict[str, Any] = {}
     for name, cls in TABLES.items():
-        if name in _PLUGIN_TABLES or (name == "bearing" and name not in plain):
+        if name in PLUGIN_TABLES or (name == "bearing" and name not in plain):
             continue
         parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
-    for name, (kind, default) in _PLUGIN_TABLES.items():
+    for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
         if name in plain or default is not None:
             parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)

@@ -14,7 +14,7 @@ import attrs
 from raceway.catalogue import catalogue
 from raceway.registry import Registry, default_registry
 from raceway.scene import TABLES
-from raceway.scene_file import _PLUGIN_TABLES as PLUGIN_TABLES
+from raceway.scene_file import PLUGIN_TABLES as PLUGIN_TABLES
 
 _TYPES = {float: "number", int: "integer", str: "string", bool: "boolean"}
 _LIMITS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")

@@ -76,7 +76,11 @@ def simulate(
     ramp_turns = _ramp_turns(model) if start == "ramp" else 0.0
     ramp_turns = min(ramp_turns, float(model.plan.turns))
     schedule = Schedule(
-        dt, steps_per_turn, model.plan.turns, max(_stride(steps_per_turn * coarsen, model.plan.turns) // coarsen, 1), ramp_turns * period
+        dt,
+        steps_per_turn,
+        model.plan.turns,
+        max(_stride(steps_per_turn * coarsen, model.plan.turns) // coarsen, 1),
+        ramp_turns * period,
     )
     motion = _motion(model, equilibrium, start, orbit, dt)
     label = f"{scene.integrator.kind}, {schedule.steps} steps"

@@ -16,7 +16,8 @@ from raceway.scene_file import scene_from_dict
 from raceway.studies import compare as study
 from raceway.studies.axes import MOST_POINTS, parse_axes, points
 from raceway.studies.compare import compare, tables_at
-from raceway.studies.comparison import Comparison, Row
+from raceway.studies.comparison import Comparison
+from raceway.studies.findings import Row
 from raceway.studies.phrases import percent
 
 SCENE = {

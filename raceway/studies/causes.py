@@ -12,10 +12,10 @@ from raceway.studies.effects import Factorial
 from raceway.studies.phrases import HARDLY, listed, named, percent, span, step
 
 if TYPE_CHECKING:
-    from raceway.studies.comparison import Comparison
+    from raceway.studies.findings import Findings
 
 
-def leading_axis(comparison: Comparison) -> Axis | None:
+def leading_axis(comparison: Findings) -> Axis | None:
     """The axis of numbers with most values among those with effects; the first of equals."""
     keys = next(iter(comparison.factorials.values())).keys if comparison.factorials else ()
     numeric = [axis for axis in comparison.axes if axis.key in keys and axis.numeric]
@@ -31,7 +31,7 @@ def partners(factorial: Factorial, key: str) -> list[str]:
     return sorted((other for other in factorial.keys if other != key), key=lambda other: -strength(other))
 
 
-def causes(comparison: Comparison, leading: Axis) -> list[str]:
+def causes(comparison: Findings, leading: Axis) -> list[str]:
     """Course, what decides its size, what turns its sense, and direction and amplitude law taken apart."""
     factorial = comparison.factorials["equivalent_stiffness"]
     others = partners(factorial, leading.key)
@@ -47,7 +47,7 @@ def causes(comparison: Comparison, leading: Axis) -> list[str]:
     ]
 
 
-def _course(comparison: Comparison, leading: Axis, partner: Axis) -> list[str]:
+def _course(comparison: Findings, leading: Axis, partner: Axis) -> list[str]:
     """How K runs along the leading axis at each value of its strongest partner."""
     trends = [t for t in comparison.trends if t["axis"] == leading.key and t["quantity"] == "equivalent_stiffness"]
     words = []
@@ -71,7 +71,7 @@ def _course(comparison: Comparison, leading: Axis, partner: Axis) -> list[str]:
     return words
 
 
-def _size(comparison: Comparison, leading: Axis, partner: Axis, others: list[str]) -> list[str]:
+def _size(comparison: Findings, leading: Axis, partner: Axis, others: list[str]) -> list[str]:
     """What decides the size of the change, at each end of the strongest partner."""
     factorial = comparison.factorials["equivalent_stiffness"]
     words = []
@@ -121,7 +121,7 @@ def _turns(factorial: Factorial, leading: Axis) -> list[str]:
     return [text]
 
 
-def _amplitude_and_direction(comparison: Comparison, leading: Axis) -> list[str]:
+def _amplitude_and_direction(comparison: Findings, leading: Axis) -> list[str]:
     """Speed, amplitude law and direction taken apart, where a study varies the latter two along the speed."""
     factorial = comparison.factorials["equivalent_stiffness"]
     kind, law = "excitation.kind", "excitation.amplitude"
@@ -158,7 +158,7 @@ def _factors(log_changes: list[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _in_short(comparison: Comparison, leading: Axis, partner: Axis, others: list[str]) -> str:
+def _in_short(comparison: Findings, leading: Axis, partner: Axis, others: list[str]) -> str:
     """What decides the sense and the size of the change, in one sentence."""
     factorial = comparison.factorials["equivalent_stiffness"]
     flips = sense_flips(factorial, leading)[1]

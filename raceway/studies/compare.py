@@ -15,10 +15,11 @@ from raceway.errors import PluginError, RacewayError, SceneError
 from raceway.registry import Registry, default_registry
 from raceway.run import run
 from raceway.scene import TABLES
-from raceway.scene_file import _PLUGIN_TABLES, scene_from_dict, with_value
+from raceway.scene_file import PLUGIN_TABLES, scene_from_dict, with_value
 from raceway.simulate import OnProgress
 from raceway.studies.axes import Axis, parse_axes, points, shown
-from raceway.studies.comparison import Comparison, Row
+from raceway.studies.comparison import Comparison
+from raceway.studies.findings import Row
 
 
 def compare(
@@ -71,7 +72,7 @@ def tables_at(
     # Kinds first: what another axis sets must not be taken for an option of the old kind.
     for key, value in sorted(point.items(), key=lambda item: not item[0].endswith(".kind")):
         name, _, last = key.rpartition(".")
-        if last == "kind" and name in _PLUGIN_TABLES and isinstance(value, str):
+        if last == "kind" and name in PLUGIN_TABLES and isinstance(value, str):
             for option in _strange_options(changed, name, value, registry):
                 given = changed[name][option]
                 changed[name] = {k: v for k, v in changed[name].items() if k != option}
@@ -85,7 +86,7 @@ def tables_at(
 def _strange_options(tables: Mapping[str, Any], name: str, kind: Any, registry: Registry) -> list[str]:
     """Options in a table that its present kind knows and the new kind does not; typing mistakes are not among them."""
     table = tables.get(name)
-    role, default = _PLUGIN_TABLES[name]
+    role, default = PLUGIN_TABLES[name]
     if not isinstance(table, dict):
         return []
     words = (str(table.get("kind", default)), kind)

@@ -15,12 +15,12 @@ from raceway.studies.inertia import inertia
 from raceway.studies.phrases import HARDLY, LABELS, listed, percent, settings, step
 
 if TYPE_CHECKING:
-    from raceway.studies.comparison import Comparison
+    from raceway.studies.findings import Findings
 
 _MOST_INTERACTIONS = 5
 
 
-def explain(comparison: Comparison) -> list[str]:
+def explain(comparison: Findings) -> list[str]:
     """The sentences, in the order in which a person asks."""
     words = [_what_was_run(comparison), *_doubts(comparison), *(f"Note: {note}." for note in comparison.notes)]
     if not comparison.factorials:
@@ -32,7 +32,7 @@ def explain(comparison: Comparison) -> list[str]:
     return words + (causes(comparison, leading) if leading else []) + inertia(comparison, leading)
 
 
-def _what_was_run(comparison: Comparison) -> str:
+def _what_was_run(comparison: Findings) -> str:
     axes = [f"{axis.key} ({', '.join(shown(v) for v in _few(axis))})" for axis in comparison.axes]
     text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {listed(axes)}."
     if not comparison.factorials:
@@ -48,7 +48,7 @@ def _few(axis: Axis) -> Sequence[Any]:
     return axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1])
 
 
-def _doubts(comparison: Comparison) -> list[str]:
+def _doubts(comparison: Findings) -> list[str]:
     reasons: dict[str, list[str]] = {}
     for row in comparison.rows:
         if row.doubt is not None:
@@ -65,13 +65,13 @@ def _doubts(comparison: Comparison) -> list[str]:
     return words
 
 
-def _why_no_effects(comparison: Comparison) -> str:
+def _why_no_effects(comparison: Findings) -> str:
     if not comparison.varied:
         return "No effects: every axis has one value."
     return "No effects: too many of the runs at the ends of the axes cannot be used."
 
 
-def _main_effects(comparison: Comparison, quantity: str) -> list[str]:
+def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     factorial, label = comparison.factorials[quantity], LABELS[quantity]
     low, high = factorial.corners.min() / 1e6, factorial.corners.max() / 1e6
     parts, weak, inert = [], [], []
@@ -108,7 +108,7 @@ def _mixed(factorial: Factorial, key: str) -> bool:
     )
 
 
-def _interactions(comparison: Comparison, quantity: str) -> list[str]:
+def _interactions(comparison: Findings, quantity: str) -> list[str]:
     factorial, label = comparison.factorials[quantity], LABELS[quantity]
     large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= HARDLY]
     words = []
@@ -128,7 +128,7 @@ def _interactions(comparison: Comparison, quantity: str) -> list[str]:
     return words
 
 
-def _ordered(comparison: Comparison, factorial: Factorial, effect: Effect) -> tuple[Axis, Axis]:
+def _ordered(comparison: Findings, factorial: Factorial, effect: Effect) -> tuple[Axis, Axis]:
     """(the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two."""
     own = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
     a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -own[axis.key]))

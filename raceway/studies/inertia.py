@@ -11,10 +11,10 @@ from raceway.studies.axes import Axis
 from raceway.studies.phrases import LABELS, percent, step
 
 if TYPE_CHECKING:
-    from raceway.studies.comparison import Comparison
+    from raceway.studies.findings import Findings
 
 
-def inertia(comparison: Comparison, leading: Axis | None) -> list[str]:
+def inertia(comparison: Findings, leading: Axis | None) -> list[str]:
     """The mass that was used, the size of m w^2, and where |Z| and K(w) go different ways."""
     found = [row.result["identification"] for row in comparison.rows if row.doubt is None]
     mass = [one["mass_used_kg"] for one in found]
@@ -33,7 +33,7 @@ def inertia(comparison: Comparison, leading: Axis | None) -> list[str]:
     return [less] if leading is None else [less, *_opposite(comparison, leading)]
 
 
-def _opposite(comparison: Comparison, leading: Axis) -> list[str]:
+def _opposite(comparison: Findings, leading: Axis) -> list[str]:
     """Where |Z| falls although K rises, and by how much each changes."""
     k, z = (comparison.factorials[name] for name in LABELS)
     place = k.keys.index(leading.key)
