@@ -11,7 +11,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.studies.axes import Axis
+from raceway.studies.axes import Axis, shown
 from raceway.studies.effects import Factorial, trend, whole_part
 
 #: What is explained: name in the answer, label for people, path in ``identification``.
