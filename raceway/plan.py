@@ -111,6 +111,8 @@ def make_plan(scene: Scene) -> Plan:
     decide(uses_record, f"time integration ({scene.integrator.kind})", "the identifier needs recorded motion", unused)
     turns = _turns(scene) if uses_record else 0
     repeats = scene.contact.law.state_size == 0 and not friction and not orbiting
+    # Only what turns alike every turn needs one turn; a window over several turns needs them.
+    repeats = repeats and uses_record and scene.excitation.period_s is not None and "phase" not in scene.identifier.method.needs
     if uses_record and not scene.integrator.method.inertial and repeats and turns > 1:
         left_out.append(Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn"))
         turns = 1
@@ -187,7 +189,16 @@ def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], Non
     why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
     refuse("phase" in needs and not hasattr(excitation, "phase"), "identifier.kind", kind, why)
     why = f"runs several speeds, but excitation '{name}' has no key `speed_rpm` or changes its speed"
-    refuse("speeds" in needs and (changing or not hasattr(excitation, "speed_rpm")), "identifier.kind", kind, why)
+    several = "speeds" in needs
+    unable = changing or not hasattr(excitation, "speed_rpm")
+    refuse(several and unable, "identifier.kind", kind, why)
+    if several and not unable:
+        for rpm in scene.identifier.method.speeds_rpm:
+            why = f"runs several speeds, but excitation '{name}' does not repeat every turn at {rpm:g} r/min"
+            bad = attrs.evolve(excitation, speed_rpm=float(rpm)).period_s is None
+            refuse(bad, "identifier.kind", kind, why)
+            if bad:
+                break
 
 
 def _turns(scene: Scene) -> int:

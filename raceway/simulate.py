@@ -89,9 +89,7 @@ def simulate(
     return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings, orbit)
 
 
-def _chosen_start(
-    model: Model, equilibrium: Equilibrium, known: Orbit | None
-) -> tuple[str, Orbit | None, tuple[str, ...]]:
+def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -> tuple[str, Orbit | None, tuple[str, ...]]:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     scene, method = model.scene, model.scene.integrator.method
     start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
@@ -151,13 +149,13 @@ def _stride(steps_per_turn: int) -> int:
     return 1
 
 
-def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[Simulation]:
-    """A simulation for each of the identifier's ``speeds_rpm``, everything else the same."""
+def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[tuple[Model, Simulation]]:
+    """Model and simulation for each of the identifier's ``speeds_rpm``, everything else the same."""
     found = []
     for rpm in model.scene.identifier.method.speeds_rpm:
         scene = attrs.evolve(model.scene, excitation=attrs.evolve(model.scene.excitation, speed_rpm=float(rpm)))
         one = build_model(scene, make_plan(scene))
-        found.append(simulate(one, settle(one), on_progress))
+        found.append((one, simulate(one, settle(one), on_progress)))
     return found
 
 
