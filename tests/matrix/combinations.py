@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from functools import cache
 from itertools import product
@@ -11,7 +12,6 @@ import attrs
 
 from raceway.errors import RacewayError, SceneError
 from raceway.registry import default_registry
-from raceway.result import Result
 from raceway.run import run
 from raceway.scene import Bodies
 from raceway.scene_file import scene_from_dict
@@ -93,22 +93,49 @@ def tables(cell: Combination) -> dict[str, Any]:
     }
 
 
+@attrs.frozen
+class Outcome:
+    """What a run is judged by (its record would take gigabytes over the whole matrix).
+
+    Attributes
+    ----------
+    text : its result.json;  drift : of its energy;  stiffness : K [N/m];  dynamic : Z [N/m];  speed : w [rad/s]
+    mass : carried by the bearing [kg]
+    """
+
+    text: str
+    drift: float | None
+    stiffness: float
+    dynamic: complex
+    speed: float
+    mass: float
+
+
 @cache
-def result_of(cell: Combination) -> Result | SceneError:
+def outcome(cell: Combination) -> Outcome | SceneError:
     """The run, or its refusal."""
     try:
-        return run(scene_from_dict(tables(cell)))
+        result = run(scene_from_dict(tables(cell)))
     except SceneError as refused:
         return refused
     except RacewayError as failed:
         raise AssertionError(f"{cell} failed: {failed}") from failed
+    found = result.identification
+    return Outcome(
+        json.dumps(result.as_dict(), allow_nan=False),
+        result.stability["energy_drift"],
+        found.equivalent_stiffness,
+        found.dynamic_stiffness,
+        found.speed,
+        float(result.model.system.mass[1, 1]),
+    )
 
 
 @cache
 def reference(excitation: str, tilt: str | float) -> complex | None:
     """Z of the same physics by Hertz, Newmark and the first identifier that takes this excitation."""
     for identifier in ("fft_1x", "order_tracking", "sine_fit"):
-        found = result_of(Combination(excitation, "hertz", "resultant", "newmark", identifier, tilt, "rigid"))
-        if isinstance(found, Result) and found.identification is not None:
-            return found.identification.dynamic_stiffness
+        found = outcome(Combination(excitation, "hertz", "resultant", "newmark", identifier, tilt, "rigid"))
+        if isinstance(found, Outcome):
+            return found.dynamic
     return None
