@@ -100,7 +100,7 @@ def _friction() -> list[Row]:
                 drift,
                 5e-3,
                 RUBBING,
-                "losses are of first order in the step",
+                "360 steps a turn; second order in the step while contacts stick, first in what slides",
             )
         )
     return out
