@@ -63,7 +63,8 @@ def cost() -> list[dict[str, Any]]:
         return force, 2.0 * factor * approach, damping
 
     fused_loop.hertz = penalty
-    plain = time_loop._fused
+    loop: Any = time_loop
+    plain = loop._fused
 
     def fused(model: Any, *words: Any) -> Any:
         params, z = model.system.law_params, model.geometry.ball_count
@@ -71,7 +72,7 @@ def cost() -> list[dict[str, Any]]:
         parts = {"system": model.system, "geometry": model.geometry, "scene": model.scene}
         return plain(SimpleNamespace(inner=inner, outer=outer, **parts), *words)
 
-    time_loop._fused = fused
+    loop._fused = fused
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "penalty.toml"
         text = time_loop.EXAMPLE.read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from raceway.registry import Registry, default_registry
-from raceway.scene_file import scene_from_dict
+from raceway.scene_file import load_scene
 from raceway.schema import scene_schema
 from tests.command_line import EXAMPLES
 from tests.conftest import b7206c
@@ -25,7 +25,7 @@ def test_it_is_a_valid_schema():
 def test_examples_fit(path):
     tables = tomllib.loads(path.read_text(encoding="utf-8"))
     assert [error.message for error in CHECK.iter_errors(tables)] == []
-    assert [error.message for error in CHECK.iter_errors(scene_from_dict(tables).as_dict())] == []
+    assert [error.message for error in CHECK.iter_errors(load_scene(path).as_dict())] == []
 
 
 def test_every_installed_plug_in_has_a_branch_with_its_options():
