@@ -123,6 +123,10 @@ def make_plan(scene: Scene) -> Plan:
     decide(uses_record, f"time integration ({scene.integrator.kind})", "the identifier needs recorded motion", unused)
     turns = _turns(scene) if uses_record else 0
     repeats = scene.contact.law.state_size == 0 and not friction and not orbiting
+    # Only what turns alike every turn needs one turn; a window over several turns needs them.
+    repeats = (
+        repeats and uses_record and scene.excitation.period_s is not None and "phase" not in scene.identifier.method.needs
+    )
     if uses_record and not scene.integrator.method.inertial and repeats and turns > 1:
         left_out.append(
             Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn")
@@ -132,7 +136,8 @@ def make_plan(scene: Scene) -> Plan:
     steps = steps_per_turn * turns
     balls = "tangential" if friction or moments else "inertial" if inertia else "weightless"
     count = scene.bearing.ball_count * len(scene.bearing.rows)
-    _refuse_memory(scene, turns, steps_per_turn, count)
+    if uses_record:
+        _refuse_memory(scene, turns, steps_per_turn, count)
     each = _STEP_S[balls] * count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
     period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
     return Plan(
@@ -202,7 +207,16 @@ def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], Non
     why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
     refuse("phase" in needs and not hasattr(excitation, "phase"), "identifier.kind", kind, why)
     why = f"runs several speeds, but excitation '{name}' has no key `speed_rpm` or changes its speed"
-    refuse("speeds" in needs and (changing or not hasattr(excitation, "speed_rpm")), "identifier.kind", kind, why)
+    several = "speeds" in needs
+    unable = changing or not hasattr(excitation, "speed_rpm")
+    refuse(several and unable, "identifier.kind", kind, why)
+    if several and not unable:
+        for rpm in scene.identifier.method.speeds_rpm:
+            why = f"runs several speeds, but excitation '{name}' does not repeat every turn at {rpm:g} r/min"
+            bad = attrs.evolve(excitation, speed_rpm=float(rpm)).period_s is None
+            refuse(bad, "identifier.kind", kind, why)
+            if bad:
+                break
 
 
 def _turns(scene: Scene) -> int:

@@ -67,16 +67,17 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     equilibrium = settle(model)
     simulation: Simulation | None = None
     identification: Identification | None = None
+    motions: list[tuple[Model, Simulation]] = []
     error = _no_error("the scene is static: nothing is identified")
     if scene.excitation is not None:
         method = scene.identifier.method
         records = []
         if "speeds" in method.needs:
-            simulations = simulate_speeds(model, progress)
-            simulation, records = simulations[-1], [one.record for one in simulations]
+            motions = simulate_speeds(model, progress)
+            simulation, records = motions[-1][1], [one.record for _, one in motions]
         elif "record" in method.needs:
             simulation = simulate(model, equilibrium, progress)
-            records = [simulation.record]
+            motions, records = [(model, simulation)], [simulation.record]
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
         error = _errors(model, equilibrium, simulation, identification)
@@ -88,11 +89,13 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         identification=identification,
         simulation=simulation,
         error=error,
-        cost=_cost(simulation, done - wall, compile_s, built - wall, done - built),
-        stability=_stability(model, simulation),
+        cost=_cost([one for _, one in motions], done - wall, compile_s, built - wall, done - built),
+        stability=_stability(motions),
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
-        warnings=_unused(scene) + equilibrium.warnings + (simulation.warnings if simulation else ()),
+        warnings=tuple(
+            dict.fromkeys([*_unused(scene), *equilibrium.warnings, *(w for _, one in motions for w in one.warnings)])
+        ),
     )
     registry.notify("raceway_run_finished", result=result)
     return result
@@ -159,39 +162,43 @@ def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | Non
     return error
 
 
-def _cost(simulation: Simulation | None, wall: float, compile_s: float, build: float, solve: float) -> dict[str, Any]:
-    counts = simulation.whole.counts if simulation else {"steps": 0, "evaluations": 0}
+def _cost(simulations: list[Simulation], wall: float, compile_s: float, build: float, solve: float) -> dict[str, Any]:
     scale = 1 if sys.platform == "darwin" else 1024
     return {
         "wall_s": wall,
         "compile_s": compile_s,
         "build_s": max(build, 0.0),
         "solve_s": solve,
-        "steps": counts["steps"],
-        "newton_iterations": counts["evaluations"],
+        "steps": sum(one.whole.counts["steps"] for one in simulations),
+        "newton_iterations": sum(one.whole.counts["evaluations"] for one in simulations),
         "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,
         "threads": 1,
     }
 
 
-def _stability(model: Model, simulation: Simulation | None) -> dict[str, Any]:
-    drift = None
-    law = model.scene.contact.law
-    potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
-    balanced = potential and model.scene.integrator.method.inertial and not model.scene.kinematics.orbiting
-    if simulation is not None and balanced and simulation.start != "ramp":
-        drift = energy_balance(model.system, simulation.whole).drift
-    friction = None
-    if simulation is not None and model.scene.contact.friction > 0.0:
-        friction = float(friction_energy(model.system, simulation.whole).lost[-1])
+def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
+    """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
+    drifts = [drift for drift in (_drift(*motion) for motion in motions) if drift is not None]
+    rubbing = [friction_energy(m.system, s.whole).lost[-1] for m, s in motions if m.scene.contact.friction > 0.0]
+    limits = [s.critical_time_step for _, s in motions if s.critical_time_step is not None]
     return {
-        "friction_energy_j": friction,
-        "critical_time_step_s": simulation.critical_time_step if simulation else None,
-        "energy_drift": drift,
+        "friction_energy_j": float(sum(rubbing)) if rubbing else None,
+        "critical_time_step_s": min(limits, default=None),
+        "energy_drift": max(drifts, default=None),
         "hourglass_energy_ratio": None,
-        "max_penetration_m": simulation.whole.counts["max_penetration_m"] if simulation else None,
+        "max_penetration_m": max((s.whole.counts["max_penetration_m"] for _, s in motions), default=None),
         "status": "completed",
     }
+
+
+def _drift(model: Model, simulation: Simulation) -> float | None:
+    """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
+    law = model.scene.contact.law
+    potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
+    steady = simulation.start != "ramp" and not model.scene.kinematics.orbiting
+    if not (potential and steady and model.scene.integrator.method.inertial):
+        return None
+    return energy_balance(model.system, simulation.whole).drift
 
 
 def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:

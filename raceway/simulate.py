@@ -151,13 +151,13 @@ def _stride(steps_per_turn: int, turns: int) -> int:
     return 1
 
 
-def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[Simulation]:
-    """A simulation for each of the identifier's ``speeds_rpm``, everything else the same."""
+def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[tuple[Model, Simulation]]:
+    """Model and simulation for each of the identifier's ``speeds_rpm``, everything else the same."""
     found = []
     for rpm in model.scene.identifier.method.speeds_rpm:
         scene = attrs.evolve(model.scene, excitation=attrs.evolve(model.scene.excitation, speed_rpm=float(rpm)))
         one = build_model(scene, make_plan(scene))
-        found.append(simulate(one, settle(one), on_progress))
+        found.append((one, simulate(one, settle(one), on_progress)))
     return found
 
 

@@ -42,7 +42,9 @@ class OrderTracking:
         width = 2.0 * np.pi * self.window_turns
         series, last = [], None
         first = phase[0]
-        while first + width <= phase[-1] + 1e-9:
+        # A sample stands for the step that ends with it: n turns are n turns less one step from first to last sample.
+        end = phase[-1] + 1.01 * (phase[-1] - phase[-2])
+        while first + width <= end:
             chosen = np.flatnonzero((phase >= first) & (phase < first + width))
             first += 0.5 * width
             if len(chosen) < 24:

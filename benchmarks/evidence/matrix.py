@@ -1,0 +1,39 @@
+"""The matrix of all combinations: how many ran, how many were refused, how long it took."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import time
+
+from benchmarks.evidence import Row, below
+from benchmarks.evidence._files import ROOT
+
+TITLE = "Every registered combination"
+COMMAND = "python -m pytest tests/matrix"
+#: Asked for: three minutes on two cores.
+SECONDS = 180.0
+
+
+def rows() -> list[Row]:
+    # One thread a linear solver: small matrices gain nothing by more, and the time is that of one core.
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "pytest", "-q", "tests/matrix"]
+    begin = time.perf_counter()
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    seconds = time.perf_counter() - begin
+    counted = {
+        word: int(number) for number, word in re.findall(r"(\d+) (combinations|run|refused|need options)", done.stdout)
+    }
+    bad = int(found[1]) if (found := re.search(r"(\d+) failed", done.stdout)) else 0
+    every = counted.get("combinations", 0)
+    ran, refused = counted.get("run", 0), counted.get("refused", 0)
+    return [
+        Row("combinations", every, "every one of the registry's", every > 0, COMMAND),
+        Row("combinations that run, finite and in agreement", ran, "more than 0", ran > 0 and done.returncode == 0, COMMAND),
+        Row("combinations refused with a reason", refused, "the rest", ran + refused == every, COMMAND),
+        below("combinations that fail", bad, 0, COMMAND),
+        below("wall time, s", seconds, SECONDS, COMMAND),
+    ]

@@ -1,0 +1,87 @@
+"""Every combination runs, is finite, keeps its energy and agrees with its class of answers, or is refused with a reason.
+
+Tolerances on Z against Hertz, Newmark and a record's 1x line at the same excitation and tilt boundary:
+
+same law, any inertial integrator, any 1x line of a record: 0.5 %.  The methods are of second order at 120 steps a turn
+    (1e-5), a run-up's window moves with its samples (1e-3).
+``quasi_static``: its K against K, 3 % (tilt locked) and 10 % (free or held by a shaft): the contacts carry F0, not
+    F0 + m w^2 r (physics.md, section 6).
+``tangent``: 10 % and 30 %: small signals against some 500 N on 2000 N axial.
+``impedance_fit``: 10 % and 30 %: one K for several speeds, at which the unbalance's force and the balls' inertia differ.
+another law: a factor 1.6 more, up or down: a law calibrated at the load has Hertz's force there, and a slope that is
+    4/3 of Hertz's for the penalty's square.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from raceway.registry import default_registry
+from tests.matrix.combinations import Combination, NeedsOptions, Outcome, combinations, options, outcome, reference
+from tests.matrix.conftest import KEY
+
+
+def wide(cell: Combination) -> float:
+    """Relative tolerance on K for one law."""
+    locked = cell.tilt == "locked"
+    needs = default_registry().find("identifier", cell.identifier).plugin.needs
+    if "record" not in needs or "speeds" in needs:
+        return 0.10 if locked else 0.30
+    if not default_registry().find("integrator", cell.integrator).plugin.inertial:
+        return 0.03 if locked else 0.10
+    return 0.005
+
+
+@pytest.mark.parametrize("cell", list(combinations()), ids=str)
+def test_combination(cell, record_property):
+    try:
+        for kind, name in (("excitation", cell.excitation), ("contact_law", cell.law), ("integrator", cell.integrator)):
+            options(kind, name)
+        options("identifier", cell.identifier)
+    except NeedsOptions:
+        record_property(KEY, "need options")
+        return
+    found = outcome(cell)
+    if not isinstance(found, Outcome):
+        record_property(KEY, "refused with a reason")
+        assert all(m.path.split(".")[0] in ("bodies", "contact", "identifier", "mesh") for m in found.mistakes), str(found)
+        assert all(len(m.message) > 20 for m in found.mistakes)
+        return
+    record_property(KEY, "run")
+    assert "NaN" not in found.text
+    assert found.stiffness > 0.0
+    # Newmark and its kin leave 1e-4 of the largest energy at 120 steps a turn; central differences less.
+    assert found.drift is None or found.drift < 5e-3
+    expected = reference(cell.excitation, cell.tilt)
+    if expected is None:
+        return
+    k = expected.real + found.mass * found.speed**2
+    factor = 1.0 if cell.law == "hertz" else 1.6
+    assert k / factor * (1.0 - wide(cell)) < found.stiffness < k * factor * (1.0 + wide(cell))
+
+
+def test_the_built_in_combinations_run():
+    """Nothing that could run hides among the refusals."""
+    periodic = ("bidirectional", "unidirectional", "measured")
+    for cell in combinations():
+        plain = cell.bodies == "rigid" and cell.discretisation == "resultant" and cell.law in ("hertz", "penalty")
+        known = cell.integrator in ("newmark", "generalized_alpha", "central_difference", "quasi_static")
+        fits = (cell.excitation in periodic and cell.identifier in ("fft_1x", "sine_fit", "order_tracking", "tangent")) or (
+            cell.excitation == "run_up" and cell.identifier == "order_tracking"
+        )
+        if plain and known and fits:
+            assert isinstance(outcome(cell), Outcome), str(cell)
+
+
+def test_refusals_name_the_way_out():
+    def reason(**changes):
+        cell = Combination("bidirectional", "hertz", "resultant", "newmark", "fft_1x", "locked", "rigid")
+        from attrs import evolve
+
+        return str(outcome(evolve(cell, **changes)))
+
+    assert "supports 'resultant'" in reason(discretisation="nodal")
+    assert "use 'rigid'" in reason(bodies="elastic")
+    assert "use 'order_tracking'" in reason(excitation="run_up")
+    assert "several speeds" in reason(excitation="run_up", identifier="impedance_fit")
+    assert "does not repeat every turn at 7200 r/min" in reason(excitation="measured", identifier="impedance_fit")
