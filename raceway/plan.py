@@ -19,6 +19,8 @@ from raceway.scene import Scene
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
 _START_S = 0.6
+#: Kinds of bodies that this version can compute.
+BODIES = ("rigid",)
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
 #: Records above this are refused [bytes].
@@ -164,7 +166,8 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake(path, value, why))
 
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
-    refuse(scene.bodies.kind != "rigid", "bodies.kind", scene.bodies.kind, "is not available yet: use 'rigid'")
+    listed = " or ".join(f"'{kind}'" for kind in BODIES)
+    refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
     refuse(scene.mesh is not None, "mesh", None, "rigid bodies have no mesh: leave the table out")
     law = contact.law
     if contact.discretisation not in law.discretisations:

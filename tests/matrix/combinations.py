@@ -11,9 +11,9 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError, SceneError
+from raceway.plan import BODIES
 from raceway.registry import default_registry
 from raceway.run import run
-from raceway.scene import Bodies
 from raceway.scene_file import scene_from_dict
 
 DISCRETISATIONS = ("resultant", "nodal")
@@ -37,16 +37,10 @@ class Combination:
         return "-".join(str(value) for value in attrs.astuple(self))
 
 
-def bodies_kinds() -> list[str]:
-    """Kinds of bodies that a scene may name."""
-    rule: Any = attrs.fields(Bodies).kind.validator
-    return list(rule.facts["enum"])
-
-
 def combinations() -> Iterator[Combination]:
     """Every registered excitation x law x discretisation x integrator x identifier x tilt boundary x bodies kind."""
     excitations, laws, integrators, identifiers = (default_registry().names(kind) for kind in KINDS)
-    for cell in product(excitations, laws, DISCRETISATIONS, integrators, identifiers, TILTS, bodies_kinds()):
+    for cell in product(excitations, laws, DISCRETISATIONS, integrators, identifiers, TILTS, BODIES):
         yield Combination(*cell)
 
 
