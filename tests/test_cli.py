@@ -332,7 +332,9 @@ def test_ctrl_c_ends_with_130_and_one_line(tmp_path):
         time.sleep(2.5)  # past the imports, inside the 360 million steps
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=30)
-    assert process.returncode == 130
+    # While a compiled module is being imported (a busy machine gets no further in that time) Python ends by the signal
+    # itself after the same message; a shell reports both as 130.
+    assert process.returncode in (130, -signal.SIGINT)
     assert out == ""
     assert err.strip() == "stopped by Ctrl-C; no file is left half-written"
     assert not (tmp_path / "out").exists()
