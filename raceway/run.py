@@ -5,7 +5,6 @@ from __future__ import annotations
 import platform
 import resource
 import sys
-import time
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from raceway.core.bodies.ring import GYROSCOPIC
 from raceway.core.energy import energy_balance
 from raceway.core.friction import friction_energy
 from raceway.core.identification import Identification
-from raceway.core.jit import take_compile_seconds
+from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.lines import Line, lines
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.model import Model, build_model
@@ -42,7 +41,7 @@ def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress 
         No solution; ``error.state`` holds the last good arrays.
     """
     registry = registry or default_registry()
-    wall = time.perf_counter()
+    wall = working_clock()
     try:
         return _run(scene, registry, on_progress, wall)
     except RacewayError as error:
@@ -57,7 +56,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     plan = make_plan(scene)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
-    built = time.perf_counter()
+    built = working_clock()
 
     def progress(what: str, done: int, total: int) -> None:
         registry.notify("raceway_chunk_done", done=done, total=total)
@@ -81,7 +80,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
         error = _errors(model, equilibrium, simulation, identification)
-    done = time.perf_counter()
+    done = working_clock()
     compile_s = take_compile_seconds()
     result = Result(
         model=model,

@@ -26,6 +26,11 @@ from raceway.errors import PluginError
 clock: dict[str, float] = {"compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0}
 
 
+def working_clock() -> float:
+    """Seconds of a clock that stands still while kernels compile; it jumps when compile seconds are taken."""
+    return time.perf_counter() - clock["compile_s"]
+
+
 def take_compile_seconds() -> float:
     """Seconds of compiling since the last call: each is billed to one run."""
     seconds, clock["compile_s"] = clock["compile_s"], 0.0
