@@ -78,10 +78,5 @@ def preset(name: Any) -> dict[str, Any]:
     """
     known = catalogue()
     if not isinstance(name, str) or name not in known:
-        lower = {n.lower(): n for n in known}
-        if isinstance(name, str) and name.lower() in lower:
-            hint = f" (did you mean '{lower[name.lower()]}'?)"
-        else:
-            hint = nearest(str(name), lower)
-        raise SceneError.at("bearing.preset", name, f"no such preset{hint}; known: {', '.join(known)}")
+        raise SceneError.at("bearing.preset", name, f"no such preset{nearest(str(name), known)}; known: {', '.join(known)}")
     return {**known[name].table, "preset": name}

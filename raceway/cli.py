@@ -14,7 +14,7 @@ import click
 
 from raceway import __version__
 from raceway.command_frame import attempt, common, plugin_files, registry_with, show, show_progress
-from raceway.command_inputs import changed_tables, load, require_matplotlib, slug, tell_faults, writable
+from raceway.command_inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
 from raceway.console import Commands, print_json
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
@@ -190,8 +190,7 @@ def compare(
         raise SceneError(mistakes)
     title = str(tables["title"])
     folder = writable(out or _RESULTS / f"{slug(title)}-compare")
-    if pictures:
-        require_matplotlib("add --no-pictures")
+    pictures = pictures and has_matplotlib()
     tell_faults(registry)
     with show_progress() as progress:
         from raceway.result import write_json

@@ -89,9 +89,26 @@ def writable(folder: Path) -> Path:
         )
     if not os.access(place, os.W_OK | os.X_OK):
         raise RacewayError(f"`{folder}` cannot be written: no permission in `{place}`. Choose another folder with --out.")
+    if not folder.exists():
+        # A folder that cannot be made is refused now; an empty one is taken away again.
+        try:
+            folder.mkdir(parents=True)
+            folder.rmdir()
+        except OSError as why:
+            raise RacewayError(
+                f"`{folder}` cannot be made: {why.strerror or why}. Choose another folder with --out."
+            ) from None
     return folder
 
 
 def require_matplotlib(otherwise: str) -> None:
     if find_spec("matplotlib") is None:
         raise RacewayError(f'pictures need matplotlib: pip install "raceway[pictures]", or {otherwise}.')
+
+
+def has_matplotlib() -> bool:
+    """Whether pictures can be drawn; says what is missing where they are no more than the default."""
+    there = find_spec("matplotlib") is not None
+    if not there:
+        warn('no picture: it needs matplotlib, pip install "raceway[pictures]"')
+    return there

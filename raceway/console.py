@@ -70,8 +70,15 @@ def report(error: Exception, as_json: bool) -> int:
     """Say what went wrong, on standard error or as JSON on standard output; return the exit code."""
     code, items = described(error)
     if as_json:
-        print_json({"errors": items, **getattr(error, "files", {})})
-        return code
+        try:
+            print_json({"errors": items, **getattr(error, "files", {})})
+            return code
+        except BrokenPipeError:
+            raise
+        except OSError as why:  # standard output is full: what is left to say goes to standard error
+            _silence_stdout()
+            full = {"path": None, "value": None, "message": _os_message(why)}
+            items += [full] if full not in items else []
     head = click.style("error: ", fg="red", bold=True)
     if len(items) > 1:
         head += f"{len(items)} mistakes\n  "

@@ -37,8 +37,9 @@ def option(
 
 def nearest(word: str, choices: Iterable[str]) -> str:
     """`` (did you mean 'x'?)`` or nothing."""
-    close = difflib.get_close_matches(str(word).lower(), list(choices), n=1, cutoff=0.55)
-    return f" (did you mean '{close[0]}'?)" if close else ""
+    by_lower = {choice.lower(): choice for choice in choices}
+    close = difflib.get_close_matches(str(word).lower(), list(by_lower), n=1, cutoff=0.55)
+    return f" (did you mean '{by_lower[close[0]]}'?)" if close else ""
 
 
 def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:

@@ -68,7 +68,7 @@ class Result:
         found = self.identification
         if found is None:
             return None
-        z = found.dynamic_stiffness
+        z, wrong = found.dynamic_stiffness, self.error["total"]
         return {
             "definition": found.definition,
             "speed_rpm": found.frequency_hz * 60.0,
@@ -77,9 +77,11 @@ class Result:
             "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
             "equivalent_stiffness": found.equivalent_stiffness,
             "equivalent_damping": found.equivalent_damping,
+            "equivalent_damping_error": None if wrong is None else wrong * abs(z) / found.speed,
             "mass_used_kg": found.mass_used,
             "tilt": self.model.scene.supports.tilt,
             "phase_lag_deg": found.phase_lag_deg,
+            "phase_lag_error_deg": None if wrong is None else math.degrees(wrong),
             "forward_amplitude_m": found.forward_amplitude,
             "backward_amplitude_m": found.backward_amplitude,
             "orbit": {"major_m": found.orbit_major, "minor_m": found.orbit_minor},

@@ -15,10 +15,12 @@ from raceway.core.friction import friction_energy
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.lines import Line, lines
+from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.model import Model, build_model
 from raceway.options import unused_options
 from raceway.plan import make_plan
+from raceway.plausibility import motion_warnings, refuse_impossible
 from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
@@ -77,6 +79,8 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         elif "record" in method.needs:
             simulation = simulate(model, equilibrium, progress)
             motions, records = [(model, simulation)], [simulation.record]
+        for one, motion in motions:
+            refuse_impossible(one, equilibrium, motion.whole)
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
         error = _errors(model, equilibrium, simulation, identification)
@@ -92,9 +96,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         stability=_stability(motions),
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
-        warnings=tuple(
-            dict.fromkeys([*_unused(scene), *equilibrium.warnings, *(w for _, one in motions for w in one.warnings)])
-        ),
+        warnings=tuple(dict.fromkeys([*_unused(scene), *equilibrium.warnings, *_motion_warnings(motions)])),
     )
     registry.notify("raceway_run_finished", result=result)
     return result
@@ -110,6 +112,10 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
         wanted |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, wanted)
+
+
+def _motion_warnings(motions: list[tuple[Model, Simulation]]) -> list[str]:
+    return [w for model, one in motions for w in (*one.warnings, *motion_warnings(model, one.record))]
 
 
 def _unused(scene: Scene) -> tuple[str, ...]:
@@ -144,13 +150,17 @@ def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | Non
     how["mesh"] = "rigid bodies have no mesh"
     how["contact"] = "the law is taken as exact: its own model error is not estimated"
     if simulation is None:
-        for name in ("time_step", "transient", "identification"):
-            error[name], how[name] = 0.0, "closed form: no motion is recorded"
+        how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
+        error["time_step"], how["time_step"] = TOLERANCE, "no time step; residual that the equilibrium is solved to"
     else:
         error["time_step"], how["time_step"] = step_error(model, equilibrium, simulation, found.dynamic_stiffness)
         alone = not model.scene.integrator.method.inertial and model.plan.turns == 1
         error["transient"] = 0.0 if alone else found.spread
-        how["transient"] = "largest deviation of a single turn from all turns that are used"
+        how["transient"] = (
+            "one turn of equilibria: nothing dies out"
+            if alone
+            else "largest deviation of a single turn from all turns that are used"
+        )
         error["identification"], how["identification"] = found.window, "Fourier line against least squares"
         for name, value in (("transient", found.spread), ("identification", found.window)):
             if value is None and error[name] is None:

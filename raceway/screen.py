@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from math import acos, degrees, pi
 from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
@@ -31,7 +32,7 @@ def sections(rows: Iterable[Row]) -> RenderableType:
             parts.append(Text.assemble((quantity, "bold"), (f"  {remark}" if remark else "", "dim")))
             table = Table.grid(padding=(0, 2))
             table.add_column(width=24)
-            table.add_column(justify="right", width=16, no_wrap=True)
+            table.add_column(justify="right", min_width=16, no_wrap=True)
             table.add_column(style="dim", overflow="fold")
             parts.append(Padding(table, (0, 0, 0, 2)))
         else:
@@ -82,14 +83,22 @@ def written(files: Sequence[str]) -> list[RenderableType]:
 
 def _bearing(scene: Mapping[str, Any]) -> str:
     b, load = scene["bearing"], scene["load"]
-    angle = f"{b['contact_angle_deg']:g} deg" if b.get("contact_angle_deg") else "from the clearance"
+    angle = f"{b['contact_angle_deg']:g} deg" if b.get("contact_angle_deg") else _angle_of_clearance(b)
     balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
     words = [
         f"{b.get('preset', 'own geometry')}: {balls}, contact angle {angle}",
         f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}",
         f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",
     ]
+    if any(load["moment"]):
+        words[-1] += f", moment {load['moment'][0]:g}, {load['moment'][1]:g} N m"
     return "\n".join(words)
+
+
+def _angle_of_clearance(b: Mapping[str, Any]) -> str:
+    distance = (b["conformity_inner"] + b["conformity_outer"] - 1.0) * b["ball_diameter"]
+    clearance = b.get("radial_clearance") or 0.0
+    return f"{degrees(acos(1.0 - clearance / (2.0 * distance))):.2f} deg, from the clearance" if clearance else "0 deg"
 
 
 def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
@@ -143,13 +152,32 @@ def _identification(result: Mapping[str, Any]) -> list[Row]:
         (f"  {found['definition']}", "", ""),
         ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
         ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
-        ("Z imaginary", number(1e-6 * z["imag"], "N/µm"), ""),
+        _resolved("Z imaginary", 1e-6 * z["imag"], _times(found, z), "N/µm", "w C"),
         ("|Z|", number(1e-6 * z["abs"], "N/µm"), ""),
         ("equivalent stiffness K", number(1e-6 * found["equivalent_stiffness"], "N/µm"), f"Re Z + m w^2, m = {mass:.4g} kg"),
-        ("equivalent damping C", number(found["equivalent_damping"], "N s/m"), "Im Z / w"),
-        ("phase lag", number(found["phase_lag_deg"], "deg", 3), "of the displacement behind the force"),
+        _resolved(
+            "equivalent damping C", found["equivalent_damping"], found["equivalent_damping_error"], "N s/m", "Im Z / w"
+        ),
+        _resolved(
+            "phase lag", found["phase_lag_deg"], found["phase_lag_error_deg"], "deg", "of the displacement behind the force"
+        ),
         ("orbit, semi-axes", f"{1e6 * orbit['major_m']:.4g} x {1e6 * orbit['minor_m']:.4g} µm", "of the 1x line"),
     ]
+
+
+def _times(found: Mapping[str, Any], z: Mapping[str, float]) -> float | None:
+    """Absolute error of Z [N/um]."""
+    error = found["phase_lag_error_deg"]
+    return None if error is None else 1e-6 * z["abs"] * error * pi / 180.0
+
+
+def _resolved(name: str, value: float, error: float | None, unit: str, remark: str) -> Row:
+    """A small part of Z beside its absolute error; what is smaller than its error is not shown as a number."""
+    if error is None:
+        return name, number(value, unit, 3), remark
+    if abs(value) < error:
+        return name, "not resolved", f"below its error of {number(error, unit, 2)}; {remark}"
+    return name, number(value, unit, 3), f"+- {number(error, unit, 2)}; {remark}"
 
 
 def _error(error: Mapping[str, Any]) -> list[Row]:

@@ -52,7 +52,7 @@ def simulate(
 
     Parameters
     ----------
-    coarsen : divides the steps per turn; the recorded samples stay where they were
+    coarsen : divides the steps per turn
     orbit : the steady orbit, where it is known already
 
     Raises
@@ -79,7 +79,7 @@ def simulate(
         dt,
         steps_per_turn,
         model.plan.turns,
-        max(_stride(steps_per_turn * coarsen, model.plan.turns) // coarsen, 1),
+        _stride(steps_per_turn, model.plan.turns),
         ramp_turns * period,
     )
     motion = _motion(model, equilibrium, start, orbit, dt)
@@ -165,7 +165,7 @@ def step_error(model: Model, equilibrium: Equilibrium, simulation: Simulation, v
     """Relative error of Z by the time step, from a run with half as many steps, and how it was found."""
     method, schedule = model.scene.integrator.method, simulation.whole.schedule
     if not method.inertial:
-        return 0.0, "no time step: each sample is an equilibrium"
+        return getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to"
     if schedule.steps_per_turn % 2 or schedule.steps_per_turn < 16:
         return None, "steps_per_turn is odd or below 16: no run with half as many"
     if not method.implicit and 2.0 * schedule.dt >= (simulation.critical_time_step or np.inf):

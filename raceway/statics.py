@@ -54,10 +54,12 @@ def settle(model: Model) -> Equilibrium:
     return Equilibrium(q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
 
-def contact_angles(model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def contact_angles(
+    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
     z = model.system.ball_count
-    axial, radial = model.system.centre_vectors(q)[0].T
+    axial, radial = model.system.centre_vectors(q, t)[0].T
     if model.plan.balls == "weightless":
         inner = outer = np.arctan2(axial, radial)
     else:
@@ -98,11 +100,19 @@ def _braced(model: Model) -> bool:
 
 def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
     found = []
-    z, d = model.system.ball_count, model.geometry.ball_diameter
     if model.geometry.contact_angle > 0.0 and _braced(model) and np.nanmin(inner, initial=np.inf) <= 0.0:
         found.append("the bearing unseats: the contact angle of a loaded ball is zero or negative")
+    if any(model.scene.load.moment) and model.scene.supports.tilt == "locked":
+        found.append("`load.moment` has no effect: supports.tilt is locked")
     if model.scene.contact.friction > 0.0:
         found.append("friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have")
+    return (*found, *beyond_the_groove(model, inner, outer, force))
+
+
+def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+    """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
+    z, d = model.system.ball_count, model.geometry.ball_diameter
+    found = []
     depth = shoulder_height(model.scene)
     edge = np.arccos(1.0 - depth / (0.5 * d))
     for race, ellipse, angle, load in (
@@ -117,4 +127,4 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
                 f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
                 f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality"
             )
-    return tuple(found)
+    return found
