@@ -43,11 +43,12 @@ $(VENV)/.all: $(VENV)/.python pyproject.toml
 	$(BIN)/python -m pip install -q -e '.[all]'
 	touch $@ $(VENV)/.base
 
-# Loads both libraries and draws without a display; prints the one line that a bare Debian needs when that fails.
+# Prints the one line that a bare Debian needs; loads both libraries and draws without a display.
 system-libraries: $(VENV)/.all
+	@echo "what a bare Debian needs for gmsh and pyvista, as root: $(APT_LINE)"
 	@$(BIN)/python -c 'import gmsh, pyvista; pyvista.Plotter(off_screen=True).show(auto_close=True)' >/dev/null 2>$(VENV)/.libraries.log \
 	  && echo "gmsh and pyvista: system libraries present" \
-	  || { cat $(VENV)/.libraries.log; echo "gmsh or pyvista lacks system libraries. As root: $(APT_LINE)"; exit 1; }
+	  || { cat $(VENV)/.libraries.log; echo "gmsh or pyvista lacks system libraries: run the line above"; exit 1; }
 
 apt-line:
 	@echo $(APT_LINE)
