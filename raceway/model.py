@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi, radians
 from typing import Any
 
@@ -15,7 +16,7 @@ from raceway.core.hertz import Ellipse, contact_modulus
 from raceway.core.plugin_kernel import plugin_kernel
 from raceway.core.signatures import FORCE, LAW
 from raceway.core.system import System
-from raceway.errors import PluginError
+from raceway.errors import PluginError, RacewayError
 from raceway.estimate import axial_approach
 from raceway.plan import Plan
 from raceway.probe import probe_excitation, probe_law
@@ -85,7 +86,10 @@ def build_model(scene: Scene, plan: Plan) -> Model:
         load=np.array([scene.load.axial, *scene.load.radial, *scene.load.moment]),
         **_excitation(scene),
     )
-    probe_law(scene.contact.law, system.law, system.law_params, system.law_state)
+    # As deep as the scene's own load presses, and well beyond: loads of single balls are many times the mean.
+    approach = float(inner.approach(reference + 5.0 * max(np.abs(system.load[:3]).max(), 1.0) / len(azimuth)))
+    depths = [factor * approach for factor in (0.3, 1.0, 3.0, 10.0)]
+    probe_law(scene.contact.law, system.law, system.law_params, system.law_state, depths=depths)
     if scene.excitation is not None:
         probe_excitation(scene.excitation, system.force, system.force_params)
     guess = _first_guess(scene, geometry, x)
@@ -162,6 +166,16 @@ def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) 
     return 2.0 * (1.0 - nu) / (2.0 - nu) * 0.5 * sum(normal)
 
 
+def _made_by(who: str, duty: str, make: Callable[[], Any]) -> np.ndarray:
+    """An array from a plug-in's own code, whose failures are put to its name."""
+    try:
+        return np.ascontiguousarray(make(), dtype=float)
+    except RacewayError:
+        raise
+    except Exception as why:  # a third party's own code
+        raise PluginError(f"{who}: {duty} raises {type(why).__name__}: {why}") from why
+
+
 def _law_params(scene: Scene, inner: Ellipse, outer: Ellipse, modulus: float, ball_load: float) -> np.ndarray:
     z = scene.bearing.ball_count * len(scene.bearing.rows)
 
@@ -175,7 +189,7 @@ def _law_params(scene: Scene, inner: Ellipse, outer: Ellipse, modulus: float, ba
         hertz_factor=both(inner.factor, outer.factor),
         reference_load=both(ball_load, ball_load),
     )
-    params = np.ascontiguousarray(scene.contact.law.build(pairs), dtype=float)
+    params = _made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
     if params.ndim != 2 or len(params) != 2 * z:
         raise PluginError(
             f"contact law '{scene.contact.kind}': build() returned parameters of shape {params.shape}; "
@@ -223,7 +237,7 @@ def _excitation(scene: Scene) -> dict[str, Any]:
         from raceway.core.excitations.harmonic import no_force
 
         return {"force": no_force, "force_params": np.zeros(1)}
-    parameters = np.ascontiguousarray(scene.excitation.parameters(), dtype=float)
+    parameters = _made_by(f"excitation '{scene.excitation.name}'", "parameters()", scene.excitation.parameters)
     if parameters.ndim != 1:
         raise PluginError(
             f"excitation '{scene.excitation.name}': parameters() returned shape {parameters.shape}; it must be (k,)"

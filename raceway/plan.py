@@ -98,7 +98,11 @@ def make_plan(scene: Scene) -> Plan:
         rpm = scene.spin_speed * 30.0 / pi
         why_not = f"balls, ring and rotor keep what belongs to {rpm:.6g} r/min (kinematics.spin_speed_rpm) at every speed"
         left_out.append(Part("change of centrifugal forces with the speed", why_not))
-    decide(scene.contact.damping > 0.0, "contact damping", "contact.damping is set", "contact.damping is 0")
+    rates = dynamic and (scene.integrator.method.inertial or "record" not in scene.identifier.method.needs)
+    why_not = (
+        "contact.damping is 0" if scene.contact.damping == 0.0 else "nothing moves, or no rates: a series of equilibria"
+    )
+    decide(scene.contact.damping > 0.0 and rates, "contact damping", "contact.damping is set", why_not)
     friction = decide(scene.contact.friction > 0.0, "friction", "contact.friction is set", "contact.friction is 0")
     wanted = scene.kinematics.gyroscopic != "none"
     why_not = "nothing turns: no spin speed" if wanted else "kinematics.gyroscopic is none"

@@ -5,6 +5,7 @@ This takes less than a millisecond.  It finds what would corrupt a run; ``racewa
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,9 @@ _RATES = (0.0, -0.02, 0.02)
 _MARK = -7.25e-301
 
 
-def probe_law(law: Any, kernel: Any, params: Any, state: Any, distribution: str | None = None) -> None:
+def probe_law(
+    law: Any, kernel: Any, params: Any, state: Any, distribution: str | None = None, depths: Iterable[float] = ()
+) -> None:
     """Refuse a contact law that breaks its contract on a few gaps and rates.
 
     Parameters
@@ -26,6 +29,7 @@ def probe_law(law: Any, kernel: Any, params: Any, state: Any, distribution: str 
     law : the plug-in, for its name;  kernel : what its ``kernel()`` returned
     params : what its ``build()`` returned, (n, k);  state : (n, m), a row for each contact; not changed
     distribution : whose it is; looked up in the registry when left out
+    depths : approaches [m] of the scene at hand, tried besides the fixed ones
 
     Raises
     ------
@@ -39,7 +43,7 @@ def probe_law(law: Any, kernel: Any, params: Any, state: Any, distribution: str 
     _check_array(params, who, "build()", f"({n}, k): a row for each contact", (n, None))
     _check_signature(kernel, LAW, "LAW", who)
     state = np.ascontiguousarray(state, dtype=float)
-    for gap in _GAPS:
+    for gap in (*_GAPS, *(-float(depth) for depth in depths)):
         for rate in _RATES:
             where = f"at gap {gap:g} m, rate {rate:g} m/s"
             force, d_gap, d_rate, new = _call_law(kernel, params, state, gap, rate, who, where)
@@ -50,6 +54,7 @@ def probe_law(law: Any, kernel: Any, params: Any, state: Any, distribution: str 
                 raise PluginError(f"{who}: force {worst:.4g} {where}, outside contact; the contract says zero for gap >= 0")
             if (force < 0.0).any():
                 raise PluginError(f"{who}: force {force.min():.4g} {where}; the contract says never negative")
+    _probe_alone(kernel, params, state, who)
 
 
 def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: str | None = None) -> None:
@@ -75,6 +80,24 @@ def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: st
         where = f"at t = {part * period:g} s"
         _guarded(kernel, who, where, part * period, params, out)
         _check_outputs({"out": out}, who, where)
+
+
+def _probe_alone(kernel: Any, params: Any, state: Any, who: str) -> None:
+    """One contact whose parameters are followed by NaN in memory: a kernel that reads beyond its columns shows it."""
+    if not len(state):
+        return
+    columns = params.shape[1]
+    memory = np.full(columns + 64, np.nan)
+    memory[:columns] = params[0]
+    alone = memory[:columns].reshape(1, columns)
+    for gap in _GAPS:
+        where = f"at gap {gap:g} m, one contact alone"
+        force, d_gap, d_rate, _ = _call_law(kernel, alone, state[:1].copy(), gap, 0.0, who, where)
+        if not np.isfinite([force[0], d_gap[0], d_rate[0]]).all():
+            raise PluginError(
+                f"{who}: not finite {where}: the kernel gives NaN of itself, or reads beyond the {columns} columns of "
+                "parameters that build() returned"
+            )
 
 
 def _call_law(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str, where: str) -> tuple[Any, ...]:

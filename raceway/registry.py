@@ -189,8 +189,8 @@ class Registry:
         if found:
             owners = " and ".join(f"`{e.plugin.__qualname__}` of {e.distribution}" for e in found)
             raise PluginError(
-                f"two plug-ins claim the name '{name}' as {kind.replace('_', ' ')}: {owners}. Remove one, or name it in "
-                "RACEWAY_DISABLE."
+                f"two plug-ins claim the name '{name}' as {kind.replace('_', ' ')}: {owners}. Rename or "
+                "remove one: leave its --plugin file out, or name its distribution in RACEWAY_DISABLE."
             )
         names = self.names(kind)
         message = (

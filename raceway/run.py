@@ -18,7 +18,6 @@ from raceway.core.lines import Line, lines
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.model import Model, build_model
-from raceway.options import unused_options
 from raceway.plan import make_plan
 from raceway.plausibility import motion_warnings, refuse_impossible
 from raceway.registry import Registry, default_registry
@@ -26,6 +25,7 @@ from raceway.result import Result
 from raceway.scene import Scene
 from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds, step_error
 from raceway.statics import Equilibrium, settle
+from raceway.unused import unused
 
 
 def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress | None = None) -> Result:
@@ -96,7 +96,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         stability=_stability(motions),
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
-        warnings=tuple(dict.fromkeys([*_unused(scene), *equilibrium.warnings, *_motion_warnings(motions)])),
+        warnings=tuple(dict.fromkeys([*unused(scene), *equilibrium.warnings, *_motion_warnings(motions)])),
     )
     registry.notify("raceway_run_finished", result=result)
     return result
@@ -116,21 +116,6 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
 
 def _motion_warnings(motions: list[tuple[Model, Simulation]]) -> list[str]:
     return [w for model, one in motions for w in (*one.warnings, *motion_warnings(model, one.record))]
-
-
-def _unused(scene: Scene) -> tuple[str, ...]:
-    """A sentence for each option that is given and changes nothing."""
-    tables = {
-        "contact": scene.contact.law,
-        "integrator": scene.integrator.method,
-        "identifier": scene.identifier.method,
-        "excitation": scene.excitation,
-    }
-    return tuple(
-        f"`{table}.{option}` has no effect: {why}"
-        for table, plugin in tables.items()
-        for option, why in unused_options(plugin).items()
-    )
 
 
 def _refuse_no_number(found: Identification) -> None:

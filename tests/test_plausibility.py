@@ -72,3 +72,19 @@ def test_a_full_standard_output_ends_with_one_line_and_no_traceback(tmp_path):
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=tmp_path, check=False)
     assert done.returncode == 2
     assert "Traceback" not in done.stderr and done.stderr.count("No space left") == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"identifier": {"kind": "tangent"}, "integrator": {"turns": 5}}, "`integrator.turns` has no effect"),
+        ({"integrator": {"kind": "quasi_static"}, "rotor": {"mass": 2.0}}, "`rotor.mass` has no effect"),
+        ({"integrator": {"kind": "quasi_static"}, "contact": {"damping": 5.0}}, "`contact.damping` has no effect"),
+        ({"contact": {"stick_stiffness": 1e7}}, "`contact.stick_stiffness` has no effect"),
+        ({"rotor": {"polar_inertia": 1e-3}}, "`rotor.polar_inertia` has no effect"),
+        ({"bearing": {"row_distance": 0.02}}, "`bearing.row_distance` has no effect"),
+    ],
+)
+def test_keys_that_change_nothing_are_told(changes, told):
+    assert any(told in text for text in computed(**changes).warnings)
+    assert not any("has no effect" in text for text in computed().warnings)

@@ -16,7 +16,7 @@ def rows() -> list[Row]:
     out = []
     for row in in_a_process("count"):
         out.append(below(f"kernels that a second process compiles after `{row['word']}`", row["compiled"], 0, COUNT))
-        name = f"signatures that the implicit time loop gains by `{row['word']}`"
+        name = f"signatures that the time loops gain by `{row['word']}`"
         out.append(below(name, row["new_signatures"], 0, COUNT))
     for row in in_a_process("cost"):
         note = f"displacements differ by {row['deviation']:.1e}"
