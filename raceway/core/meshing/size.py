@@ -6,8 +6,7 @@ import attrs
 
 from raceway.errors import MeshError
 
-#: Bytes a cell while a mesh is made and judged: its arrays and the temporary ones beside them (1 000 000 cells took
-#: 0.45 GB; rounded up).
+#: Bytes a cell while a mesh is made, judged and renumbered: its arrays and the temporary ones beside them.
 BYTES_PER_CELL = 500
 #: Above this a mesh is refused [bytes].
 MEMORY_LIMIT = 4 * 2**30

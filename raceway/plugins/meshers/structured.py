@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.errors import MeshError
-from raceway.options import at_least, between, option, optional, positive, word_or
+from raceway.options import between, option, optional, positive, word_or
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,6 +55,7 @@ class Structured:
         MeshError
             Dimensions that are missing or do not fit, elements larger than the wall or too many for the memory.
         """
+        from raceway.core.meshing.place import azimuth, ball_names, placed
         from raceway.core.meshing.sphere import ball_mesh
 
         self._refuse(bearing)
@@ -65,11 +66,9 @@ class Structured:
             suffix = f"_row{row + 1}" if len(bearing.rows) > 1 else ""
             for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
                 bodies[word + suffix] = self._ring(bearing, inner, side, place)
-            digits = len(str(bearing.ball_count - 1))
-            for index in range(bearing.ball_count):
-                psi = _azimuth(bearing, index)
-                points = _placed(ball.points, bearing, psi, side, place)
-                bodies[f"ball_{index:0{digits}d}{suffix}"] = attrs.evolve(ball, points=points)
+            for index, word in enumerate(ball_names(bearing)):
+                points = placed(ball.points, bearing, azimuth(bearing, index), side, place)
+                bodies[word + suffix] = attrs.evolve(ball, points=points)
         return bodies
 
     def predict(self, bearing: Any) -> Prediction:
@@ -179,13 +178,14 @@ class Structured:
     def _ring(self, bearing: Any, inner: bool, side: float, place: float) -> HexMesh:
         import numpy as np
 
+        from raceway.core.meshing.place import azimuth
         from raceway.core.meshing.ring import ring_mesh
 
         shape = ring_shape(bearing, inner)
         left, arc, right, layers, band = self._ring_lines(bearing, shape)
-        mesh = ring_mesh(shape, left, arc, right, layers, self._divisions(bearing, shape), _azimuth(bearing, 0), band)
+        start = side * azimuth(bearing, 0)
+        mesh = ring_mesh(shape, left, arc, right, layers, self._divisions(bearing, shape), start, band)
         if side < 0.0:  # half a turn about y, not a mirror image: cells keep their sense; psi becomes -psi
-            mesh = ring_mesh(shape, left, arc, right, layers, self._divisions(bearing, shape), -_azimuth(bearing, 0), band)
             facets = dict(mesh.facet_sets)
             facets["face_negative"], facets["face_positive"] = facets["face_positive"], facets["face_negative"]
             nodes = dict(mesh.node_sets)
@@ -221,20 +221,3 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
         centre_r=middle + sense * offset * cos(alpha),
         contact=-sense * alpha,
     )
-
-
-def _azimuth(bearing: Any, index: int) -> float:
-    return float(bearing.first_ball_azimuth_deg * pi / 180.0 + 2.0 * pi * index / bearing.ball_count)
-
-
-def _placed(points: np.ndarray, bearing: Any, psi: float, side: float, place: float) -> np.ndarray:
-    """A ball's points from its own axes (rolling, across, towards the outer contact) to its place in the bearing."""
-    import numpy as np
-
-    alpha = bearing.contact_angle
-    radial = np.array([0.0, cos(psi), sin(psi)])
-    u = np.array([0.0, -sin(psi), cos(psi)])
-    w = np.array([side * sin(alpha), 0.0, 0.0]) + cos(alpha) * radial
-    v = np.cross(w, u)
-    centre = 0.5 * bearing.pitch_diameter * radial + [place, 0.0, 0.0]
-    return np.asarray(points @ np.stack([u, v, w]) + centre)
