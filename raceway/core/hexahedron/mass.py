@@ -31,7 +31,8 @@ def nodal_volumes(points: Floats, cells: NDArray[np.uint32]) -> Floats:
     slopes, values = shape_slopes(at), shape_values(at)
     out = np.empty((len(cells), 8))
     for part in batches(len(cells)):
-        determinant = np.linalg.det(jacobians(points[cells[part]], slopes))
+        with np.errstate(invalid="ignore"):  # a coordinate that is no number is refused below
+            determinant = np.linalg.det(jacobians(points[cells[part]], slopes))
         bad = ~(determinant > 0.0).all(axis=1)
         if bad.any():
             e = part.start + int(np.argmax(bad))

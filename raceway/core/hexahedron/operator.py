@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from raceway.core.hexahedron.mass import batches, element_masses, nodal_volumes
+from raceway.core.hexahedron.crew import Crew, Job
+from raceway.core.hexahedron.mass import element_masses, nodal_volumes
 from raceway.core.hexahedron.one_point import WORK, range_force
 from raceway.core.hexahedron.point_force import range_point_force
-from raceway.core.hexahedron.ranges import add_parts, add_parts_and_move, divide, share
-from raceway.core.hexahedron.shape import HOURGLASS, Floats, centre_gradients, mean_gradients
+from raceway.core.hexahedron.ranges import add_parts, add_parts_and_move, divide
+from raceway.core.hexahedron.recovery import centre_stress, hourglass_energy
+from raceway.core.hexahedron.shape import Floats
 from raceway.core.hexahedron.sparse import assemble
 from raceway.core.hexahedron.stable import stable_step
 from raceway.core.hexahedron.stiffness import stiffnesses
 from raceway.core.hexahedron.strain import KINDS
 from raceway.errors import MeshError
-
-_Job = Callable[[int], None]
 
 
 class HexOperator:
@@ -109,7 +107,7 @@ class HexOperator:
         """(n, 3) Internal forces K u [N] of displacements u (n, 3) [m]; ``out`` is overwritten and returned if given."""
         flat = self._flat(u)
         f = np.empty_like(self.points) if out is None else out
-        with _Crew(threads) as crew:
+        with Crew(threads) as crew:
             crew.do(len(self._ranges), self._force_job(flat))
             crew.do_shares(len(self.points), lambda a, b: add_parts(a, b, self._ranges, self._parts, f.reshape(-1)))
         return f
@@ -141,7 +139,7 @@ class HexOperator:
         def move(first: int, last: int) -> None:
             add_parts_and_move(first, last, self._ranges, self._parts, outer, inverse_mass, f, dt, flat_u, flat_v)
 
-        with _Crew(threads) as crew:
+        with Crew(threads) as crew:
             for _ in range(steps):
                 crew.do(len(self._ranges), job)
                 crew.do_shares(len(self.points), move)
@@ -172,21 +170,7 @@ class HexOperator:
 
     def stress(self, u: ArrayLike) -> Floats:
         """(m, 6) Stresses at the elements' centres [Pa], xx yy zz xy yz zx; "one_point" has but these."""
-        u = np.asarray(u, dtype=float).reshape(-1, 3)
-        out = np.empty((len(self.cells), 6))
-        lame, shear = self.moduli[0], self.moduli[1]
-        for part in batches(len(self.cells)):
-            corners, moved = self.points[self.cells[part]], u[self.cells[part]]
-            mean, _ = mean_gradients(corners)
-            at = mean if self.formulation == "one_point" else centre_gradients(corners)
-            gradient = np.einsum("kni,knj->kij", moved, at)
-            trace = np.trace(gradient, axis1=1, axis2=2)
-            change = np.einsum("kni,kni->k", moved, mean) if self.formulation == "mean_dilatation" else trace
-            for k in range(3):
-                out[part, k] = (lame + 2.0 * shear / 3.0) * change + 2.0 * shear * (gradient[:, k, k] - trace / 3.0)
-                after = (k + 1) % 3
-                out[part, 3 + k] = shear * (gradient[:, k, after] + gradient[:, after, k])
-        return out
+        return centre_stress(self.points, self.cells, self._flat(u).reshape(-1, 3), self.moduli, self.formulation)
 
     def energy(self, u: ArrayLike) -> float:
         """Strain energy u . K u / 2 [J], that of the hourglass modes included."""
@@ -196,21 +180,13 @@ class HexOperator:
         """The part of ``energy`` [J] that the hourglass control holds; 0 for the other formulations."""
         if self.formulation != "one_point":
             return 0.0
-        u, total = np.asarray(u, dtype=float).reshape(-1, 3), 0.0
-        for part in batches(len(self.cells)):
-            corners, moved = self.points[self.cells[part]], u[self.cells[part]]
-            mean, volume = mean_gradients(corners)
-            linear = np.einsum("kni,knj->kij", moved, mean)
-            held = np.einsum("kni,na->kia", moved, HOURGLASS) - linear @ np.einsum("kni,na->kia", corners, HOURGLASS)
-            stiffness = self.moduli[2] * volume * np.einsum("kni,kni->k", mean, mean) / 8.0
-            total += 0.5 * float(np.sum(stiffness * np.einsum("kia,kia->k", held, held)))
-        return total
+        return hourglass_energy(self.points, self.cells, self._flat(u).reshape(-1, 3), self.moduli)
 
     def stable_step(self) -> float:
         """Stable step of central differences with the lumped mass [s], from the elements' eigenvalues."""
         return stable_step(self.element_stiffness, self.element_masses)
 
-    def _force_job(self, u: Floats) -> _Job:
+    def _force_job(self, u: Floats) -> Job:
         """The work on one range, by its number."""
         if self.formulation == "one_point":
             x = self.points.reshape(-1)
@@ -222,31 +198,3 @@ class HexOperator:
         if flat.size != self.points.size:
             raise ValueError(f"{flat.size} numbers for {len(self.points)} nodes with three components")
         return flat
-
-
-class _Crew:
-    """Threads that share numbered jobs; one thread is the caller itself."""
-
-    def __init__(self, threads: int) -> None:
-        self._threads = threads
-        self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
-
-    def __enter__(self) -> _Crew:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._pool:
-            self._pool.shutdown()
-
-    def do(self, count: int, job: _Job) -> None:
-        """Jobs 0 to count - 1; returns when all are done."""
-        if self._pool is None:
-            for i in range(count):
-                job(i)
-        else:
-            list(self._pool.map(job, range(count)))
-
-    def do_shares(self, count: int, job: Callable[[int, int], None]) -> None:
-        """``job(first, last)`` on equal shares of ``count`` things."""
-        shares = share(count, self._threads)
-        self.do(len(shares), lambda i: job(*shares[i]))

@@ -16,8 +16,7 @@ from raceway.core.signatures import CUBE, MATRIX, VECTOR
 @jit(void(VECTOR, CUBE, int64, float64, int64, int64, VECTOR, VECTOR))
 def point_stress(moduli, B, point, weight, first, last, values, stress):
     """weight times the stress (6,) of the columns ``first`` to ``last - 1`` with these values."""
-    e = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    xx, yy, zz, xy, yz, zx = e
+    xx, yy, zz, xy, yz, zx = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for j in range(first, last):
         value = values[j]
         xx += B[point, 0, j] * value
