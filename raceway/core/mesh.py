@@ -154,12 +154,16 @@ class HexMesh:
 
         Notes
         -----
-        Nodes by reverse Cuthill-McKee on the graph of the cells' edges; cells by their smallest node.
+        Nodes by reverse Cuthill-McKee on the graph of the cells' edges, unless the given numbers are nearer already, as
+        those of swept meshes are; cells by their smallest node.
         """
         order = _cuthill_mckee(self.cells, len(self.points))
         place = np.empty(len(order), dtype=np.int64)
         place[order] = np.arange(len(order))
         cells = place[self.cells]
+        if np.ptp(cells, axis=1).sum() >= np.ptp(self.cells, axis=1).sum():
+            order = place = np.arange(len(order))
+            cells = self.cells
         sequence = np.argsort(cells.min(axis=1), kind="stable")
         where = np.empty(len(sequence), dtype=np.int64)
         where[sequence] = np.arange(len(sequence))

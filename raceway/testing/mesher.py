@@ -10,7 +10,6 @@ import numpy as np
 from raceway.testing.scenes import example_scene
 from raceway.testing.suite import Suite, check_class, duty, require
 
-
 #: Neighbours of each corner of a cell along its three axes.
 AROUND = ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3))
 

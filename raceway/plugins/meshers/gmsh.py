@@ -68,6 +68,10 @@ class Gmsh:
             raise MeshError(f"'{path}': mesh.kind = 'gmsh' reads {', '.join(_SUFFIXES)}, not '{suffix}'")
         if not Path(path).is_file():
             raise MeshError(f"'{path}' does not exist")
+        if suffix in (".step", ".stp"):
+            with Path(path).open("rb") as file:  # Gmsh's reader would write its complaints to standard output
+                if b"ISO-10303-21" not in file.read(4096):
+                    raise MeshError(f"'{path}' cannot be read: it is not a STEP file (no ISO-10303-21 at its beginning)")
         try:
             import gmsh
         except (ImportError, OSError) as why:  # OSError: its library lacks a system library
