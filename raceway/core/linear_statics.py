@@ -81,7 +81,7 @@ def solve_static(
     if len(free) <= DIRECT_UNKNOWNS:
         found = sparse.splu(inner.tocsc(), permc_spec="MMD_AT_PLUS_A").solve(right)
     else:
-        precondition = Preconditioner(inner, rigid_motions(points)[free])
+        precondition = Preconditioner(matrix, points, mask)
         found, iterations = _conjugate_gradients(inner, right, precondition, tolerance)
     residual = float(np.linalg.norm(inner @ found - right)) / size
     displacement[free] = found
@@ -99,29 +99,37 @@ class Preconditioner:
 
     Parameters
     ----------
-    matrix : (m, m) CSR, symmetric positive definite
-    motions : (m, 6) rigid motions at the rows of ``matrix``
+    matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
+    points : (n, 3) float [m]
+    held : (3 n,) bool
 
     References
     ----------
     P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996) 179-196: algebraic multigrid by smoothed aggregation.
     """
 
-    def __init__(self, matrix: csr_matrix, motions: np.ndarray) -> None:
+    def __init__(self, matrix: csr_matrix, points: np.ndarray, held: np.ndarray) -> None:
         import scipy.sparse as sp
 
         pyamg = _pyamg()
-        self.shape, self.dtype = matrix.shape, matrix.dtype
-        self.scale = 1.0 / np.sqrt(matrix.diagonal())
-        diagonal = sp.diags(self.scale)
-        scaled = (diagonal @ matrix @ diagonal).tocsr()
+        # Whole nodes, so that aggregates are made of nodes: a node that is held in part keeps unit rows for what is held.
+        kept = np.repeat(~held.reshape(-1, 3).all(axis=1), 3)
+        loose = ~held[kept]
+        self._rows = np.flatnonzero(loose)
+        inner = matrix[kept][:, kept]
+        scale = np.where(loose, 1.0 / np.sqrt(inner.diagonal()), 0.0)
+        scaled = sp.diags(scale) @ inner @ sp.diags(scale) + sp.diags((~loose).astype(float))
+        motions = rigid_motions(points)[kept]
+        candidates = np.divide(motions, scale[:, None], out=np.zeros_like(motions), where=loose[:, None])
+        self.scale = scale[loose]
+        self._size = len(loose)
         smoother = ("chebyshev", {"degree": 3, "iterations": 1})
         state = np.random.get_state()  # pyamg starts its spectral estimates at random: the same start, the same answer
         np.random.seed(0)
         try:
             self.levels = pyamg.smoothed_aggregation_solver(
-                scaled,
-                B=motions / self.scale[:, None],
+                scaled.tobsr((3, 3)),
+                B=candidates,
                 strength=("symmetric", {"theta": 0.0}),
                 presmoother=smoother,
                 postsmoother=smoother,
@@ -133,9 +141,11 @@ class Preconditioner:
         self._cycle = self.levels.aspreconditioner(cycle="V")
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
-        """Approximate solution (m,) or (m, k) for a residual."""
+        """Approximate solution (m,) or (m, k) for a residual, both on the m free degrees of freedom."""
         if residual.ndim == 1:
-            found: np.ndarray = self.scale * self._cycle.matvec(self.scale * residual)
+            whole = np.zeros(self._size)
+            whole[self._rows] = self.scale * residual
+            found: np.ndarray = self.scale * self._cycle.matvec(whole)[self._rows]
             return found
         return np.column_stack([self(column) for column in residual.T])
 
