@@ -31,8 +31,8 @@ def summary(meshes: Mapping[str, HexMesh]) -> dict[str, Any]:
 
     Notes
     -----
-    Bodies with the same cells and the same edge lengths (balls) are each judged: placing them changes roundings only,
-    so a body whose array ``cells`` is the very same object as an earlier one's takes its numbers over.
+    A body whose array ``cells`` is the very same object as an earlier one's, with edges as long (balls: a rigid motion of
+    one mesh), takes that one's numbers over.
     """
     bodies: dict[str, dict[str, Any]] = {}
     seen: dict[int, str] = {}
@@ -86,12 +86,12 @@ def _patch(mesh: HexMesh, name: str) -> dict[str, dict[str, float]]:
         0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)),
     ]
     area = mesh.facet_areas(name)
-    depth = mesh_volumes(mesh, mesh.facets(name)[:, 0]) / area
+    depth = _volumes(mesh, mesh.facets(name)[:, 0]) / area
     values = {"short": np.minimum(*sides), "long": np.maximum(*sides), "depth": depth}
     return {word: {"min": float(v.min()), "max": float(v.max())} for word, v in values.items()}
 
 
-def mesh_volumes(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
+def _volumes(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
     """(k,) volumes [m3] of some cells."""
     return HexMesh(mesh.points, mesh.cells[cells]).cell_volumes()
 

@@ -59,7 +59,7 @@ def hexahedra(path: Any, content: Any) -> tuple[np.ndarray, list[int | None]]:
     MeshError
         Solids that are not hexahedra of 8 nodes, or no hexahedra at all.
     """
-    foreign = {}
+    foreign: dict[str, int] = {}
     for block in content.cells:
         if block.type.startswith(_SOLIDS):
             foreign[block.type] = foreign.get(block.type, 0) + len(block.data)

@@ -64,7 +64,7 @@ def _surfaces(text: str) -> Iterator[tuple[str, list[tuple[str, str]]]]:
         options = {key.strip().upper(): value.strip() for key, value in words.items()}
         if options.get("TYPE", "ELEMENT").upper() == "ELEMENT" and "NAME" in options:
             lines = [tuple(part.strip() for part in line.split(",")[:2]) for line in body.splitlines() if line.strip()]
-            yield options["NAME"], lines  # type: ignore[misc]
+            yield options["NAME"], lines
 
 
 def _facets(path: Any, name: str, lines: list[tuple[str, str]], members: dict[str, np.ndarray]) -> np.ndarray:

@@ -27,8 +27,8 @@ class Msh:
         names = {(int(tag), int(dimension)): name for name, (tag, dimension) in content.field_data.items()}
         groups: dict[str, dict[str, list[np.ndarray]]] = {"quad": {}, "vertex": {}}
         for block, tags in zip(content.cells, content.cell_data.get(_PHYSICAL, []), strict=False):
-            dimension = {"quad": 2, "vertex": 0}.get(block.type)
-            for tag in np.unique(tags) if dimension is not None else ():
+            dimension = {"quad": 2, "vertex": 0}.get(block.type, -1)
+            for tag in np.unique(tags) if dimension >= 0 else ():
                 name = names.get((int(tag), dimension), f"physical_{tag}") if tag else None
                 if name is not None:
                     groups[block.type].setdefault(name, []).append(np.asarray(block.data)[np.asarray(tags) == tag])

@@ -126,6 +126,8 @@ class Structured:
 
     def _ball_lines(self, bearing: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
         """Lines of the cube along u, v, w, layers, and the semi-axes of the patch along u, v."""
+        import numpy as np
+
         from raceway.core.meshing.spacing import graded, growing
         from raceway.core.meshing.sphere import CUBE
 
@@ -139,14 +141,12 @@ class Structured:
             zone = min(zone, 0.8 * arc)
             lines.append(graded(-1.0, 1.0, -zone / arc, zone / arc, fine / arc, size / arc, self.growth))
         half = growing(1.0, size / arc, size / arc, self.growth)
-        import numpy as np
-
         w = np.concatenate([-half[:0:-1], half])
         length = (1.0 - CUBE) * radius
         fine = min(p[1] for p in pairs) / n
         layers = 1.0 - growing(1.0, fine / length, size / length, self.growth)[::-1]
-        zone = self.patch * max(p[1] for p in pairs), self.patch * max(p[0] for p in pairs)
-        return lines[0], lines[1], w, layers, zone
+        patch = self.patch * max(p[1] for p in pairs), self.patch * max(p[0] for p in pairs)
+        return lines[0], lines[1], w, layers, patch
 
     def _ring_lines(
         self, bearing: Any, shape: RingShape
