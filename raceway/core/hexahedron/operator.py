@@ -157,7 +157,8 @@ class HexOperator:
 
     def lumped_mass(self) -> Floats:
         """(n,) Masses of the nodes [kg]: row sums of the consistent mass."""
-        return np.bincount(self.cells.ravel(), weights=self.element_masses.ravel(), minlength=len(self.points))
+        masses = np.bincount(self.cells.ravel(), weights=self.element_masses.ravel(), minlength=len(self.points))
+        return masses.astype(np.float64, copy=False)
 
     def consistent_mass(self) -> Any:
         """(3 n, 3 n) Consistent mass [kg], scipy.sparse.csr_array."""

@@ -49,7 +49,7 @@ def share(count: int, threads: int) -> list[Any]:
 
 
 @jit(void(int64, int64, int64[:, ::1], VECTOR, VECTOR), releases=True)
-def add_parts(first, last, ranges, parts, f):
+def add_parts(first, last, ranges, parts, f):  # type: ignore[no-untyped-def]
     """Forces of the nodes ``first`` to ``last - 1``: the sum over the ranges, in their order."""
     for i in range(3 * first, 3 * last):
         f[i] = 0.0
@@ -61,7 +61,7 @@ def add_parts(first, last, ranges, parts, f):
 
 
 @jit(void(int64, int64, int64[:, ::1], VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR, VECTOR), releases=True)
-def add_parts_and_move(first, last, ranges, parts, load, inverse_mass, f, dt, u, v):
+def add_parts_and_move(first, last, ranges, parts, load, inverse_mass, f, dt, u, v):  # type: ignore[no-untyped-def]
     """One central-difference update of the nodes ``first`` to ``last - 1``.
 
     Parameters

@@ -10,6 +10,8 @@ from raceway.core.hexahedron.mass import batches
 from raceway.core.hexahedron.shape import Floats
 
 _BATCH = 2048
+#: Elements whose eigenvalues differ by less than this share are taken for equal.
+_SAME = 1e-9
 
 
 def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
@@ -26,7 +28,8 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
     -----
     No mode of the assembled mesh is faster than the fastest element (Fried 1972; Hughes, The Finite Element Method, 1987,
     section 9.1), so the step is safe.  Elements are visited in the order of a bound, the largest row sum of the scaled
-    stiffness, until no bound left exceeds the largest eigenvalue found: the result is that of all elements.
+    stiffness, until no bound left exceeds the largest eigenvalue found: the result is that of all elements.  Where many
+    elements are alike, a Cholesky factorisation, a tenth of the time of the eigenvalues, shows that a batch holds none above it.
     """
     count = len(masses)
     bounds = np.empty(count)
@@ -39,8 +42,18 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
             break
         chosen = order[begin:end]
         scaled = np.concatenate([_scaled(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in chosen.tolist()])
-        largest = max(largest, float(np.linalg.eigvalsh(scaled)[:, -1].max()))
+        if not _all_below(scaled, largest * (1.0 + _SAME)):
+            largest = max(largest, float(np.linalg.eigvalsh(scaled)[:, -1].max()))
     return float(2.0 / np.sqrt(largest))
+
+
+def _all_below(matrices: Floats, bound: float) -> bool:
+    """Whether all eigenvalues are below the bound: the difference is then positive definite."""
+    try:
+        np.linalg.cholesky(bound * np.eye(matrices.shape[-1]) - matrices)
+    except np.linalg.LinAlgError:
+        return False
+    return True
 
 
 def _growing(count: int) -> list[tuple[int, int]]:
