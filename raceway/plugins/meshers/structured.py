@@ -43,7 +43,7 @@ class Structured:
     ball_load: float | None = option(
         None,
         unit="N",
-        help="load of a ball whose ellipse the patches follow; default: of the scene",
+        help="load of a ball whose ellipse the patches follow; default: of the scene, else 300",
         rule=optional(positive()),
     )
 
