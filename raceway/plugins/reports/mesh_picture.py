@@ -42,7 +42,7 @@ def draw(meshes: Mapping[str, HexMesh], title: str, path: Path) -> Path:
             if surface.n_cells:
                 colour = next((value for word, value in _COLOURS.items() if name.startswith(word)), _OTHER)
                 plotter.add_mesh(
-                    surface, color=colour, show_edges=True, edge_color="#20262c", line_width=0.6, edge_opacity=0.45
+                    surface, color=colour, show_edges=True, edge_color="#20262c", line_width=0.6, edge_opacity=0.45, ambient=0.3
                 )
         plotter.add_text(title, position="upper_edge", font_size=13, color="#20262c")
         plotter.enable_anti_aliasing("ssaa")
@@ -65,7 +65,7 @@ def _surface(pyvista: Any, name: str, mesh: HexMesh) -> Any:
         azimuth = np.arctan2(middle[:, 2], middle[:, 1])
         cells = cells[(azimuth < _CUT[0]) | (azimuth > _CUT[1])]
     grid = pyvista.UnstructuredGrid({_HEXAHEDRON: cells}, mesh.points)
-    return grid.extract_surface()
+    return grid.extract_geometry()
 
 
 def _png(image: np.ndarray) -> bytes:
