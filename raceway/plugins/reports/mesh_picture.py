@@ -35,7 +35,7 @@ def draw(meshes: Mapping[str, HexMesh], title: str, path: Path) -> Path:
         message = 'the picture needs pyvista: pip install "raceway[view]", or leave out --picture'
         raise RacewayError(message) from None
     try:
-        plotter = pyvista.Plotter(off_screen=True, window_size=_SIZE)
+        plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(_SIZE))
         plotter.background_color = "white"
         for name, mesh in meshes.items():
             surface = _surface(pyvista, name, mesh)
@@ -64,7 +64,7 @@ def _surface(pyvista: Any, name: str, mesh: HexMesh) -> Any:
         middle = mesh.points[cells].mean(axis=1)
         azimuth = np.arctan2(middle[:, 2], middle[:, 1])
         cells = cells[(azimuth < _CUT[0]) | (azimuth > _CUT[1])]
-    grid = pyvista.UnstructuredGrid({_HEXAHEDRON: cells}, mesh.points)
+    grid: Any = pyvista.UnstructuredGrid({_HEXAHEDRON: cells}, mesh.points)
     return grid.extract_geometry()
 
 
