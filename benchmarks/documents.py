@@ -46,6 +46,7 @@ _ORDER = (
     ("load", None),
     ("excitation", "excitation"),
     ("bodies", None),
+    ("mesh", "mesher"),
     ("contact", "contact_law"),
     ("kinematics", None),
     ("integrator", "integrator"),
@@ -56,7 +57,9 @@ _NOTES = {
     "the required keys and one of `contact_angle_deg`, `radial_clearance` have to be given.",
     "supports": "In this version `outer_seat` and `inner_seat` must be `rigid`.",
     "excitation": "Without this table the scene is static and `identification` is null.",
-    "bodies": "This version has rigid rings and balls only: `rigid`.",
+    "bodies": "This version runs rigid rings and balls only: `rigid`.",
+    "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh; meshing by itself needs no other table than "
+    "[bearing] and this one.",
     "contact": "In this version `discretisation` must be `resultant`.",
 }
 

@@ -17,6 +17,7 @@ from raceway.command_frame import attempt, common, plugin_files, registry_with, 
 from raceway.command_inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
 from raceway.console import Commands, print_json
 from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 
 if TYPE_CHECKING:
@@ -269,5 +270,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (plugins, check_plugin, new_plugin, schema):
+for _command in (mesh, plugins, check_plugin, new_plugin, schema):
     main.add_command(_command)

@@ -7,6 +7,7 @@ compiled.  These protocols are one level deep: nothing has to inherit from them.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import attrs
@@ -130,18 +131,26 @@ class Identifier(Protocol):
 class Mesher(Protocol):
     """Bodies to hexahedra.
 
-    1. ``mesh(bearing)``: the meshes of the bodies, by name.
+    1. ``mesh(bearing)``: body -> mesh with ``points`` (n, 3) [m] and ``cells`` (m, 8) in VTK's order, best a
+       ``raceway.core.mesh.HexMesh`` with sets; ``bearing`` is the scene's [bearing] table.  Names of bodies:
+       ``inner_ring``, ``outer_ring``, ``ball_0`` and so on; a set of facets on the groove is called ``raceway``, on the
+       bore or the outer cylinder ``seat``, on a contact of a ball ``inner_patch`` and ``outer_patch``.
+    2. No cell is inverted or flat; what cannot be meshed raises ``MeshError``.
+    3. The same bearing gives the same mesh.
+    4. An option ``ball_load`` that is None gets the static load of a ball [N] from the scene.
     """
 
     name: ClassVar[str]
 
-    def mesh(self, bearing: Any) -> Any: ...
+    def mesh(self, bearing: Any) -> Mapping[str, Any]: ...
 
 
 class Format(Protocol):
-    """A file format.
+    """A file format, of meshes (``HexMesh``) or of anything else.
 
-    1. ``suffixes``: file endings with the dot.  2. ``read(path)``, ``write(path, what)``.
+    1. ``suffixes``: file endings with the dot.
+    2. ``write(path, what)``, ``read(path)``: what is written is read back the same, sets too.
+    3. A file that is missing or malformed raises a ``RacewayError`` that names it.
     """
 
     name: ClassVar[str]

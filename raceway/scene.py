@@ -256,6 +256,8 @@ class Scene:
                 tables[name] = _plain(part)
         if self.excitation is not None:
             tables["excitation"] = {"kind": self.excitation.name, **_plain(self.excitation)}
+        if self.mesh is not None:
+            tables["mesh"] = {"kind": self.mesh.name, **_plain(self.mesh)}
         return tables
 
 

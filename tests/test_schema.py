@@ -62,7 +62,9 @@ WRONG = {
     "preset": {"bearing": {"preset": "B7206G"}},
     "no kind": {"excitation": {"speed_rpm": 3.0}},
     "steps below the rule": {"integrator": {"steps_per_turn": 3}},
-    "mesh without meshers": {"mesh": {"kind": "structured"}},
+    "mesher that is not installed": {"mesh": {"kind": "structred"}},
+    "mesh without a kind": {"mesh": {"element_size": 1e-3}},
+    "element size of nothing": {"mesh": {"kind": "structured", "element_size": 0.0}},
 }
 
 

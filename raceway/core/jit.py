@@ -68,7 +68,9 @@ def _numba_cache_in(folder: Path) -> Iterator[None]:
         config.CACHE_DIR = before
 
 
-def jit(signature: Any, allocates: bool = False) -> Callable[[Callable[..., Any]], Any]:
+def jit(
+    signature: Any, allocates: bool = False, inline: bool = False, releases: bool = False
+) -> Callable[[Callable[..., Any]], Any]:
     """Compile a kernel for one explicit signature, now, through the cache.
 
     Parameters
@@ -78,6 +80,9 @@ def jit(signature: Any, allocates: bool = False) -> Callable[[Callable[..., Any]
     allocates : whether the kernel may create arrays
         Time loops do, once; laws, excitations and bodies may not: without allocation numba counts no references, and
         those atomic operations take as long as the arithmetic of a whole step.
+    inline : whether LLVM must write the function into its callers
+        For the parts of an element's arithmetic: a loop that calls is not vectorised.
+    releases : whether the kernel lets other Python threads run meanwhile
 
     Raises
     ------
@@ -92,6 +97,10 @@ def jit(signature: Any, allocates: bool = False) -> Callable[[Callable[..., Any]
     options: dict[str, Any] = {"error_model": "numpy"}
     if not allocates and hasattr(numba.core.registry.cpu_target.options, "_nrt"):  # an option that numba does not promise
         options["_nrt"] = False
+    if inline:
+        options["forceinline"] = True
+    if releases:
+        options["nogil"] = True
 
     def decorate(function: Callable[..., Any]) -> Any:
         start = time.perf_counter()

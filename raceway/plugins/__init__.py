@@ -7,11 +7,17 @@ from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.measured import Measured
 from raceway.plugins.excitations.run_up import RunUp
 from raceway.plugins.excitations.unidirectional import Unidirectional
+from raceway.plugins.formats.abaqus import Abaqus
+from raceway.plugins.formats.msh import Msh
+from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.identifiers.fft_1x import Fft1x
 from raceway.plugins.identifiers.impedance_fit import ImpedanceFit
 from raceway.plugins.identifiers.order_tracking import OrderTracking
 from raceway.plugins.identifiers.sine_fit import SineFit
 from raceway.plugins.identifiers.tangent import Tangent
+from raceway.plugins.meshers.file import File
+from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.plugins.meshers.structured import Structured
 from raceway.plugins.reports.pictures import Pictures
 
 
@@ -23,6 +29,16 @@ def raceway_excitations() -> list[type]:
 @hookimpl
 def raceway_identifiers() -> list[type]:
     return [Fft1x, SineFit, Tangent, ImpedanceFit, OrderTracking]
+
+
+@hookimpl
+def raceway_meshers() -> list[type]:
+    return [Structured, File, Gmsh]
+
+
+@hookimpl
+def raceway_formats() -> list[type]:
+    return [Vtu, Abaqus, Msh]
 
 
 @hookimpl

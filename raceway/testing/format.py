@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
@@ -14,11 +15,13 @@ from raceway.testing.suite import Suite, check_class, duty, require
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two things read from files are equal, arrays inside them too."""
+    """Whether two things read from files are equal, arrays inside them too; attrs objects (meshes) field by field."""
     if isinstance(a, dict) and isinstance(b, dict):
         return set(a) == set(b) and all(same(a[k], b[k]) for k in a)
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
         return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b, strict=True))
+    if attrs.has(type(a)) and type(a) is type(b):
+        return all(same(getattr(a, field.name), getattr(b, field.name)) for field in attrs.fields(type(a)))
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return np.array_equal(np.asarray(a), np.asarray(b))
     return bool(a == b)

@@ -10,6 +10,9 @@ import numpy as np
 from raceway.testing.scenes import example_scene
 from raceway.testing.suite import Suite, check_class, duty, require
 
+#: Neighbours of each corner of a cell along its three axes.
+AROUND = ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3))
+
 
 class MesherSuite(Suite):
     """Duties of ``raceway.contracts.Mesher``."""
@@ -39,13 +42,26 @@ class MesherSuite(Suite):
     def test_volumes(self, mesher: Any) -> None:
         for name, mesh in mesher.mesh(example_scene().bearing).items():
             corner = np.asarray(mesh.points)[np.asarray(mesh.cells)]
-            # Nodes 0 to 3 around the bottom, 4 to 7 above them: the edges at node 0 and at its opposite, node 6.
-            for at, ends in ((0, (1, 3, 4)), (6, (5, 7, 2))):
+            # Nodes 0 to 3 around the bottom, 4 to 7 above them: the edges at each corner, right-handed.
+            for at, ends in enumerate(AROUND):
                 edges = corner[:, ends] - corner[:, [at]]
                 volume = np.linalg.det(edges)
                 require(
                     (volume > 0.0).all(), f"'{name}': {(volume <= 0.0).sum()} of {len(volume)} cells are inside out or flat"
                 )
+
+    @duty("sets, where there are some, name nodes (k,) and facets (k, 2) that exist")
+    def test_sets(self, mesher: Any) -> None:
+        for name, mesh in mesher.mesh(example_scene().bearing).items():
+            for word, members in getattr(mesh, "node_sets", {}).items():
+                nodes = np.asarray(members)
+                good = nodes.ndim == 1 and len(nodes) and nodes.min() >= 0 and nodes.max() < len(mesh.points)
+                require(good, f"'{name}': node set '{word}' is empty or names points that do not exist")
+            for word, members in getattr(mesh, "facet_sets", {}).items():
+                facets = np.asarray(members)
+                good = facets.ndim == 2 and facets.shape[1] == 2 and len(facets) and facets.min() >= 0
+                good = good and facets[:, 0].max() < len(mesh.cells) and facets[:, 1].max() < 6
+                require(good, f"'{name}': facet set '{word}' is empty or names faces that do not exist")
 
     @duty("twice the same bearing gives the same mesh")
     def test_repeats(self, mesher: Any) -> None:

@@ -1,0 +1,16 @@
+"""The eight-node hexahedron: forces, matrices, masses and steps of elastic bodies.
+
+operator     HexOperator: one mesh with its material, the face of this package
+shape        shape functions, Gauss rules, mean gradients by numpy
+modes        an element's fields as sums of its eight modes, in scalars
+one_point    the fast kernel: exact mean gradient, hourglass control, blocks of 16
+ranges       the division of a mesh into parts, their sum, the central-difference update
+strain       strain-displacement matrices of all four formulations
+stiffness    element stiffness matrices and their sum
+point_force  internal force of the eight-point formulations
+crew         threads that share the ranges
+recovery     stresses and hourglass energy
+sparse       sparse matrices of a mesh
+mass         lumped and consistent masses
+stable       the stable step from element eigenvalues
+"""

@@ -1,0 +1,44 @@
+"""Stresses and hourglass energy of a displacement, by numpy over batches of elements."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raceway.core.hexahedron.mass import batches
+from raceway.core.hexahedron.shape import HOURGLASS, Floats, centre_gradients, mean_gradients
+
+
+def centre_stress(points: Floats, cells: NDArray[np.uint32], u: Floats, moduli: Floats, formulation: str) -> Floats:
+    """(m, 6) Stresses at the elements' centres [Pa] of displacements u (n, 3) [m], xx yy zz xy yz zx.
+
+    "one_point" knows its mean gradient only, "mean_dilatation" takes the volume change from it; incompatible modes
+    have no gradient at the centre.
+    """
+    out = np.empty((len(cells), 6))
+    lame, shear = moduli[0], moduli[1]
+    for part in batches(len(cells)):
+        corners, moved = points[cells[part]], u[cells[part]]
+        mean, _ = mean_gradients(corners)
+        at = mean if formulation == "one_point" else centre_gradients(corners)
+        gradient = np.einsum("kni,knj->kij", moved, at)
+        trace = np.trace(gradient, axis1=1, axis2=2)
+        change = np.einsum("kni,kni->k", moved, mean) if formulation == "mean_dilatation" else trace
+        for k in range(3):
+            out[part, k] = (lame + 2.0 * shear / 3.0) * change + 2.0 * shear * (gradient[:, k, k] - trace / 3.0)
+            after = (k + 1) % 3
+            out[part, 3 + k] = shear * (gradient[:, k, after] + gradient[:, after, k])
+    return out
+
+
+def hourglass_energy(points: Floats, cells: NDArray[np.uint32], u: Floats, moduli: Floats) -> float:
+    """Energy of the hourglass control of the one-point element [J]; see ``raceway.core.hexahedron.one_point``."""
+    total = 0.0
+    for part in batches(len(cells)):
+        corners, moved = points[cells[part]], u[cells[part]]
+        mean, volume = mean_gradients(corners)
+        linear = np.einsum("kni,knj->kij", moved, mean)
+        held = np.einsum("kni,na->kia", moved, HOURGLASS) - linear @ np.einsum("kni,na->kia", corners, HOURGLASS)
+        stiffness = moduli[2] * volume * np.einsum("kni,kni->k", mean, mean) / 8.0
+        total += 0.5 * float(np.sum(stiffness * np.einsum("kia,kia->k", held, held)))
+    return total

@@ -1,0 +1,129 @@
+"""Strain-displacement matrices of the four formulations, one element at a time.
+
+``one_point``        the exact mean gradient, one point (hourglass control is added by its users)
+``full``             2 x 2 x 2 Gauss points
+``incompatible``     full, with the gradients of 1 - xi^2, 1 - eta^2, 1 - zeta^2 as nine more columns, mapped by the centre's
+                     Jacobian and scaled by det J(0) / det J: their mean vanishes on every element, which is the patch test
+``mean_dilatation``  full, with the volume change of every point replaced by the element's mean
+
+Strains are in Voigt's order xx yy zz xy yz zx, shears being angles.
+
+References
+----------
+Taylor, Beresford, Wilson, A non-conforming element for stress analysis, Int. J. Numer. Meth. Engng 10 (1976) 1211-1219.
+Simo, Rifai, A class of mixed assumed strain methods, Int. J. Numer. Meth. Engng 29 (1990) 1595-1638.
+Hughes, Generalization of selective integration procedures, Int. J. Numer. Meth. Engng 15 (1980) 1413-1418.
+"""
+
+import numpy as np
+from numba import float64, int64, void
+
+from raceway.core.hexahedron.shape import gauss, shape_slopes
+from raceway.core.jit import jit
+from raceway.core.signatures import CUBE, MATRIX, VECTOR
+
+#: Numbers of the formulations, as the kernels know them.
+KINDS = {"one_point": 0, "full": 1, "incompatible": 2, "mean_dilatation": 3}
+#: Columns: 24 displacements and 9 incompatible modes.
+COLUMNS = 33
+
+_AT = gauss(2)[0]
+#: (9, 8, 3) Slopes of the shape functions at the eight Gauss points and at the centre.
+_SLOPES = shape_slopes(np.concatenate([_AT, np.zeros((1, 3))]))
+
+
+@jit(float64(MATRIX, int64, MATRIX))
+def _invert_jacobian(x, point, inverse):
+    """d(xi_i) / d(x_j) at a point; returns the determinant of the Jacobian."""
+    for i in range(3):  # the Jacobian's transpose first: inverse[a, b] = d(x_b) / d(xi_a)
+        for j in range(3):
+            total = 0.0
+            for n in range(8):
+                total += _SLOPES[point, n, i] * x[n, j]
+            inverse[i, j] = total
+    a, b, c = inverse[0, 0], inverse[0, 1], inverse[0, 2]
+    d, e, f = inverse[1, 0], inverse[1, 1], inverse[1, 2]
+    g, h, k = inverse[2, 0], inverse[2, 1], inverse[2, 2]
+    determinant = a * (e * k - f * h) - b * (d * k - f * g) + c * (d * h - e * g)
+    over = 1.0 / determinant
+    inverse[0, 0], inverse[1, 0], inverse[2, 0] = (e * k - f * h) * over, (c * h - b * k) * over, (b * f - c * e) * over
+    inverse[0, 1], inverse[1, 1], inverse[2, 1] = (f * g - d * k) * over, (a * k - c * g) * over, (c * d - a * f) * over
+    inverse[0, 2], inverse[1, 2], inverse[2, 2] = (d * h - e * g) * over, (b * g - a * h) * over, (a * e - b * d) * over
+    return determinant
+
+
+@jit(void(CUBE, int64, int64, float64, float64, float64))
+def _set_columns(B, point, column, gx, gy, gz):
+    """The strains of a displacement (x, y, z) with this gradient: three columns."""
+    for row in range(6):
+        for k in range(3):
+            B[point, row, column + k] = 0.0
+    B[point, 0, column], B[point, 1, column + 1], B[point, 2, column + 2] = gx, gy, gz
+    B[point, 3, column], B[point, 3, column + 1] = gy, gx
+    B[point, 4, column + 1], B[point, 4, column + 2] = gz, gy
+    B[point, 5, column + 2], B[point, 5, column] = gx, gz
+
+
+@jit(int64(int64, MATRIX, MATRIX, MATRIX, CUBE, VECTOR))
+def strain_matrices(kind, x, inverse, mean, B, weight):
+    """Fill the strain matrices of one element.
+
+    Parameters
+    ----------
+    kind : int
+        See ``KINDS``.
+    x : (8, 3) float
+        Corners [m].
+    inverse : (3, 3) float
+        Work space.
+    mean : (8, 3) float
+        Out: mean gradients of the shape functions [1/m].
+    B : (8, 6, 33) float
+        Out: strains at each point of unit displacements [1/m].
+    weight : (8,) float
+        Out: volume of each point [m3].
+
+    Returns
+    -------
+    points : int
+        How many points there are: 1 or 8.
+    """
+    volume = 0.0
+    mean[:, :] = 0.0
+    for g in range(8):
+        weight[g] = _invert_jacobian(x, g, inverse)
+        volume += weight[g]
+        for n in range(8):
+            s, t, r = _SLOPES[g, n, 0], _SLOPES[g, n, 1], _SLOPES[g, n, 2]
+            gx = s * inverse[0, 0] + t * inverse[1, 0] + r * inverse[2, 0]
+            gy = s * inverse[0, 1] + t * inverse[1, 1] + r * inverse[2, 1]
+            gz = s * inverse[0, 2] + t * inverse[1, 2] + r * inverse[2, 2]
+            mean[n, 0] += weight[g] * gx
+            mean[n, 1] += weight[g] * gy
+            mean[n, 2] += weight[g] * gz
+            if kind != 0:
+                _set_columns(B, g, 3 * n, gx, gy, gz)
+    for n in range(8):
+        for k in range(3):
+            mean[n, k] /= volume
+    if kind == 0:
+        weight[0] = volume
+        for n in range(8):
+            _set_columns(B, 0, 3 * n, mean[n, 0], mean[n, 1], mean[n, 2])
+        return 1
+    if kind == 2:
+        centre = _invert_jacobian(x, 8, inverse)
+        for g in range(8):
+            for mode in range(3):
+                slope = -2.0 * _AT[g, mode] * centre / weight[g]
+                _set_columns(
+                    B, g, 24 + 3 * mode, slope * inverse[mode, 0], slope * inverse[mode, 1], slope * inverse[mode, 2]
+                )
+    if kind == 3:
+        for g in range(8):
+            for n in range(8):
+                for k in range(3):
+                    shift = (mean[n, k] - B[g, k, 3 * n + k]) / 3.0
+                    for row in range(3):
+                        B[g, row, 3 * n + k] += shift
+    return 8

@@ -1,0 +1,197 @@
+"""Static equilibrium of one elastic body: K u = f with some displacements prescribed.
+
+Large systems: conjugate gradients, preconditioned by smoothed aggregation whose coarse spaces hold the six rigid motions,
+so that the number of iterations hardly grows with the mesh.  Small systems: a sparse factorisation, which costs less there.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.core.rigid import MOTIONS, free_motions, rigid_motions
+from raceway.errors import ConvergenceError, RacewayError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+#: Unknowns up to which a factorisation is faster than setting up the hierarchy (measured on solid bodies).
+DIRECT_UNKNOWNS = 3000
+#: Some twenty iterations are normal; ten times that means that the matrix is not what this solver is for.
+MOST_ITERATIONS = 200
+
+
+@attrs.frozen(eq=False)
+class Solution:
+    """Displacements that balance a load.
+
+    Attributes
+    ----------
+    displacement : (n, 3) float [m]
+    iterations : of the conjugate gradients; 0 where the system was factorised
+    residual : |K u - f| over |f| on the free degrees of freedom, with f the load and the pull of the prescribed ones
+    """
+
+    displacement: np.ndarray
+    iterations: int
+    residual: float
+
+
+def solve_static(
+    stiffness: csr_matrix,
+    points: np.ndarray,
+    load: np.ndarray,
+    held: np.ndarray,
+    values: np.ndarray | float = 0.0,
+    tolerance: float = 1e-8,
+) -> Solution:
+    """Displacements of a body under nodal forces and prescribed displacements.
+
+    Parameters
+    ----------
+    stiffness : (3 n, 3 n) CSR, symmetric positive semi-definite [N/m]
+    points : (n, 3) float [m]
+    load : (n, 3) float [N]
+    held : (n, 3) bool, prescribed degrees of freedom
+    values : (n, 3) float or one number, what is prescribed there [m]
+    tolerance : of the residual relative to the right-hand side
+
+    Raises
+    ------
+    ConvergenceError
+        A rigid motion that nothing holds, a load or matrix that is not finite, or iterations that end too early.
+    """
+    import scipy.sparse.linalg as sparse
+
+    mask = np.asarray(held, dtype=bool).reshape(-1)
+    displacement = np.where(mask, np.broadcast_to(values, held.shape).reshape(-1), 0.0)
+    matrix = stiffness.tocsr()
+    if not (np.isfinite(load).all() and np.isfinite(displacement).all() and np.isfinite(matrix.data).all()):
+        raise ConvergenceError("the static system has loads, prescribed displacements or stiffness that are not finite")
+    _refuse_free_motion(matrix, points, mask)
+    free = np.flatnonzero(~mask)
+    right = (np.asarray(load, dtype=float).reshape(-1) - matrix @ displacement)[free]
+    size = float(np.linalg.norm(right))
+    if size == 0.0:
+        return Solution(displacement.reshape(-1, 3), 0, 0.0)
+    inner = matrix[free][:, free]
+    iterations = 0
+    if len(free) <= DIRECT_UNKNOWNS:
+        found = sparse.splu(inner.tocsc(), permc_spec="MMD_AT_PLUS_A").solve(right)
+    else:
+        precondition = Preconditioner(matrix, points, mask)
+        found, iterations = _conjugate_gradients(inner, right, precondition, tolerance)
+    residual = float(np.linalg.norm(inner @ found - right)) / size
+    displacement[free] = found
+    if not residual <= 10.0 * tolerance:  # the true residual may lag behind the recursive one, and NaN fails too
+        message = f"the static solution stopped after {iterations} iterations at a residual of {residual:.1e}"
+        raise ConvergenceError(f"{message}, {tolerance:g} was asked for", {"displacement": displacement.reshape(-1, 3)})
+    return Solution(displacement.reshape(-1, 3), iterations, residual)
+
+
+class Preconditioner:
+    """One V-cycle of smoothed aggregation on the symmetrically scaled matrix.
+
+    Scaling with the root of the diagonal makes Chebyshev smoothing, which knows one spectral bound for all rows, work on
+    graded meshes whose rows differ by orders of magnitude.
+
+    Parameters
+    ----------
+    matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
+    points : (n, 3) float [m]
+    held : (3 n,) bool
+
+    References
+    ----------
+    P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996) 179-196: algebraic multigrid by smoothed aggregation.
+    """
+
+    def __init__(self, matrix: csr_matrix, points: np.ndarray, held: np.ndarray) -> None:
+        import scipy.sparse as sp
+
+        pyamg = _pyamg()
+        # Whole nodes, so that aggregates are made of nodes: a node that is held in part keeps unit rows for what is held.
+        kept = np.repeat(~held.reshape(-1, 3).all(axis=1), 3)
+        loose = ~held[kept]
+        self._rows = np.flatnonzero(loose)
+        inner = matrix[kept][:, kept]
+        scale = np.where(loose, 1.0 / np.sqrt(inner.diagonal()), 0.0)
+        scaled = sp.diags(scale) @ inner @ sp.diags(scale) + sp.diags((~loose).astype(float))
+        motions = rigid_motions(points)[kept]
+        candidates = np.divide(motions, scale[:, None], out=np.zeros_like(motions), where=loose[:, None])
+        self.scale = scale[loose]
+        self._size = len(loose)
+        smoother = ("chebyshev", {"degree": 3, "iterations": 1})
+        state = np.random.get_state()  # pyamg starts its spectral estimates at random: the same start, the same answer
+        np.random.seed(0)
+        try:
+            self.levels = pyamg.smoothed_aggregation_solver(
+                scaled.tobsr((3, 3)),
+                B=candidates,
+                strength=("symmetric", {"theta": 0.0}),
+                presmoother=smoother,
+                postsmoother=smoother,
+                improve_candidates=None,
+                max_coarse=500,
+            )
+        finally:
+            np.random.set_state(state)
+        self._cycle = self.levels.aspreconditioner(cycle="V")
+
+    def __call__(self, residual: np.ndarray) -> np.ndarray:
+        """Approximate solution (m,) or (m, k) for a residual, both on the m free degrees of freedom."""
+        if residual.ndim == 1:
+            whole = np.zeros(self._size)
+            whole[self._rows] = self.scale * residual
+            found: np.ndarray = self.scale * self._cycle.matvec(whole)[self._rows]
+            return found
+        return np.column_stack([self(column) for column in residual.T])
+
+
+def _conjugate_gradients(
+    matrix: csr_matrix, right: np.ndarray, precondition: Preconditioner, tolerance: float
+) -> tuple[np.ndarray, int]:
+    """Solution and iterations; ends at the tolerance or at ``MOST_ITERATIONS``."""
+    found, residual = np.zeros_like(right), right.copy()
+    direction, before = np.zeros_like(right), 1.0
+    goal = tolerance * float(np.linalg.norm(right))
+    for done in range(MOST_ITERATIONS):
+        if np.linalg.norm(residual) <= goal:
+            return found, done
+        corrected = precondition(residual)
+        now = float(residual @ corrected)
+        direction = corrected + (now / before if done else 0.0) * direction
+        image = matrix @ direction
+        step = now / float(direction @ image)
+        found += step * direction
+        residual -= step * image
+        before = now
+    return found, MOST_ITERATIONS
+
+
+def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray) -> None:
+    """Every connected part has to be held against all six rigid motions."""
+    from scipy.sparse.csgraph import connected_components
+
+    count, label = connected_components(matrix, directed=False)
+    part = label[::3]
+    # Zero blocks may be left out of the matrix, so a node's three rows can be in parts of their own only where they are empty.
+    for index in np.unique(part):
+        nodes = np.flatnonzero(part == index)
+        loose = free_motions(points[nodes], mask.reshape(-1, 3)[nodes])
+        if loose:
+            where = f" of part {index + 1} of {count}, {len(nodes)} nodes," if count > 1 else ""
+            names = ", ".join(MOTIONS[i] for i in loose)
+            raise ConvergenceError(
+                f"nothing holds the rigid motion{where or ' of the body'}: {names}. Prescribe displacements that stop it"
+            )
+
+
+def _pyamg() -> Any:
+    try:
+        import pyamg
+    except ImportError:
+        raise RacewayError('large elastic bodies need pyamg: pip install "raceway[mesh]"') from None
+    return pyamg

@@ -1,0 +1,248 @@
+"""Hexahedral meshes: points, cells, named sets of nodes and of facets; volume, areas, normals, merging, renumbering.
+
+Nodes of a cell stand in VTK's order: 0 to 3 around the bottom, 4 to 7 above them.  A facet is a cell and one of its six
+local faces (``FACES``), which are Abaqus's S1 to S6 in the same order.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import MeshError
+
+#: (6, 4) nodes of the local faces, anticlockwise seen from outside.
+FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+#: (12, 2) nodes of the local edges: four along each local axis.
+EDGES = np.array(
+    [[0, 1], [3, 2], [4, 5], [7, 6], [0, 3], [1, 2], [4, 7], [5, 6], [0, 4], [1, 5], [2, 6], [3, 7]],
+)
+#: (8, 3) local coordinates of the nodes, -1 or 1.
+CORNERS = np.array(
+    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], dtype=float
+)
+#: Cells that are worked on at once, so that temporary arrays stay small.
+BLOCK = 65536
+
+
+def _points(value: Any) -> np.ndarray:
+    return np.ascontiguousarray(value, dtype=np.float64)
+
+
+def _cells(value: Any) -> np.ndarray:
+    return np.ascontiguousarray(value, dtype=np.int64)
+
+
+def _node_sets(value: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    return {str(name): np.unique(np.asarray(nodes, dtype=np.int64)) for name, nodes in value.items()}
+
+
+def _facet_sets(value: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    out = {}
+    for name, facets in value.items():
+        pairs = np.asarray(facets, dtype=np.int64).reshape(-1, 2)
+        keys = np.unique(6 * pairs[:, 0] + pairs[:, 1])
+        out[str(name)] = np.column_stack([keys // 6, keys % 6])
+    return out
+
+
+@attrs.frozen(eq=False)
+class HexMesh:
+    """One body, or several.
+
+    Attributes
+    ----------
+    points : (n, 3) float64 [m]
+    cells : (m, 8) int64, nodes in VTK's order
+    node_sets : name -> (k,) int64, ascending
+    facet_sets : name -> (k, 2) int64, cell and local face, ascending
+    """
+
+    points: np.ndarray = attrs.field(converter=_points)
+    cells: np.ndarray = attrs.field(converter=_cells)
+    node_sets: dict[str, np.ndarray] = attrs.field(factory=dict, converter=_node_sets, repr=False)
+    facet_sets: dict[str, np.ndarray] = attrs.field(factory=dict, converter=_facet_sets, repr=False)
+
+    def __attrs_post_init__(self) -> None:
+        points, cells = self.points, self.cells
+        if points.ndim != 2 or points.shape[1] != 3 or not len(points):
+            raise MeshError(f"points have the shape {points.shape}; it must be (n, 3) with at least one point")
+        if cells.ndim != 2 or cells.shape[1] != 8 or not len(cells):
+            raise MeshError(f"cells have the shape {cells.shape}; it must be (m, 8), hexahedra, with at least one cell")
+        if not np.isfinite(points).all():
+            bad = int(np.argmin(np.isfinite(points).all(axis=1)))
+            raise MeshError(f"point {bad} has a coordinate that is not a finite number: {points[bad]}")
+        if cells.min() < 0 or cells.max() >= len(points):
+            bad = int(np.argmax((cells < 0).any(axis=1) | (cells >= len(points)).any(axis=1)))
+            raise MeshError(f"cell {bad} names a point that does not exist: {cells[bad]} of {len(points)} points")
+        for name, nodes in self.node_sets.items():
+            if len(nodes) and (nodes[0] < 0 or nodes[-1] >= len(points)):
+                raise MeshError(f"node set '{name}' names a point that does not exist: there are {len(points)}")
+        for name, facets in self.facet_sets.items():
+            if len(facets) and (facets[0, 0] < 0 or facets[-1, 0] >= len(cells)):
+                raise MeshError(f"facet set '{name}' names a cell that does not exist: there are {len(cells)}")
+
+    @property
+    def memory_bytes(self) -> int:
+        """Bytes of all arrays."""
+        arrays = [self.points, self.cells, *self.node_sets.values(), *self.facet_sets.values()]
+        return sum(array.nbytes for array in arrays)
+
+    def nodes(self, name: str) -> np.ndarray:
+        """(k,) nodes of a node set.
+
+        Raises
+        ------
+        MeshError
+            A set that is missing, with the nearest name, or empty.
+        """
+        return _member(self.node_sets, name, "node")
+
+    def facets(self, name: str) -> np.ndarray:
+        """(k, 2) cells and local faces of a facet set; raises ``MeshError`` as ``nodes`` does."""
+        return _member(self.facet_sets, name, "facet")
+
+    def facet_nodes(self, name: str) -> np.ndarray:
+        """(k, 4) nodes of the facets of a set, anticlockwise seen from outside."""
+        facets = self.facets(name)
+        return self.cells[facets[:, :1], FACES[facets[:, 1]]]
+
+    def cell_volumes(self) -> np.ndarray:
+        """(m,) volumes [m3] by 2 x 2 x 2 Gauss points, which is exact: the determinant is quadratic in each coordinate."""
+        gauss = CORNERS / np.sqrt(3.0)
+        slopes = _slopes(gauss).reshape(24, 8)
+        out = np.empty(len(self.cells))
+        for first in range(0, len(out), BLOCK):
+            corner = self.points[self.cells[first : first + BLOCK]]
+            jacobian = np.matmul(slopes, corner).reshape(-1, 8, 3, 3)
+            a, b, c = jacobian[:, :, 0], jacobian[:, :, 1], jacobian[:, :, 2]
+            out[first : first + BLOCK] = np.einsum("mgi,mgi->m", a, np.cross(b, c))
+        return out
+
+    def volume(self) -> float:
+        """Volume [m3]."""
+        return float(self.cell_volumes().sum())
+
+    def facet_areas(self, name: str) -> np.ndarray:
+        """(k,) areas [m2] of the bilinear facets of a set, by 2 x 2 Gauss points."""
+        a, b, c, d = np.moveaxis(self.points[self.facet_nodes(name)], 1, 0)
+        total = np.zeros(len(a))
+        for s in (-1.0, 1.0):
+            for t in (-1.0, 1.0):
+                u, v = s / np.sqrt(3.0), t / np.sqrt(3.0)
+                along = (1 - v) * (b - a) + (1 + v) * (c - d)
+                across = (1 - u) * (d - a) + (1 + u) * (c - b)
+                total += np.linalg.norm(np.cross(along, across), axis=1) / 16.0
+        return total
+
+    def facet_normals(self, name: str) -> np.ndarray:
+        """(k, 3) mean unit normals of the facets of a set, outward."""
+        a, b, c, d = np.moveaxis(self.points[self.facet_nodes(name)], 1, 0)
+        normal = np.cross(c - a, d - b)
+        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+    def locality(self) -> float:
+        """Mean distance of the largest and the smallest node number of a cell: how far apart in memory its points lie."""
+        return float((self.cells.max(axis=1) - self.cells.min(axis=1)).mean())
+
+    def renumbered(self) -> HexMesh:
+        """The same mesh with neighbours near each other in memory.
+
+        Notes
+        -----
+        Nodes by reverse Cuthill-McKee on the graph of the cells' edges, unless the given numbers are nearer already, as
+        those of swept meshes are; cells by their smallest node.
+        """
+        order = _cuthill_mckee(self.cells, len(self.points))
+        place = np.empty(len(order), dtype=np.int64)
+        place[order] = np.arange(len(order))
+        cells = place[self.cells]
+        if np.ptp(cells, axis=1).sum() >= np.ptp(self.cells, axis=1).sum():
+            order = place = np.arange(len(order))
+            cells = self.cells
+        sequence = np.argsort(cells.min(axis=1), kind="stable")
+        where = np.empty(len(sequence), dtype=np.int64)
+        where[sequence] = np.arange(len(sequence))
+        return HexMesh(
+            self.points[order],
+            cells[sequence],
+            {name: place[nodes] for name, nodes in self.node_sets.items()},
+            {name: np.column_stack([where[f[:, 0]], f[:, 1]]) for name, f in self.facet_sets.items()},
+        )
+
+
+def merged(meshes: Mapping[str, HexMesh]) -> HexMesh:
+    """Several meshes as one, points not shared; set ``s`` of body ``b`` is called ``b.s``, all cells of ``b`` also ``b``.
+
+    Raises
+    ------
+    MeshError
+        No mesh at all.
+    """
+    if not meshes:
+        raise MeshError("there is no mesh to merge")
+    node_sets: dict[str, Any] = {}
+    facet_sets: dict[str, Any] = {}
+    cells, point, cell = [], 0, 0
+    for body, mesh in meshes.items():
+        cells.append(mesh.cells + point)
+        node_sets[body] = np.arange(point, point + len(mesh.points))
+        node_sets.update({f"{body}.{name}": nodes + point for name, nodes in mesh.node_sets.items()})
+        facet_sets.update({f"{body}.{name}": facets + [cell, 0] for name, facets in mesh.facet_sets.items()})
+        point, cell = point + len(mesh.points), cell + len(mesh.cells)
+    return HexMesh(np.concatenate([m.points for m in meshes.values()]), np.concatenate(cells), node_sets, facet_sets)
+
+
+def boundary(cells: np.ndarray) -> np.ndarray:
+    """(k, 2) facets that belong to one cell only: the surface."""
+    nodes = np.sort(cells[:, FACES].reshape(-1, 4), axis=1)
+    order = np.lexsort(nodes.T)
+    ordered = nodes[order]
+    alike = (ordered[1:] == ordered[:-1]).all(axis=1)
+    single = ~(np.r_[False, alike] | np.r_[alike, False])
+    keys = np.sort(order[single])
+    return np.column_stack([keys // 6, keys % 6])
+
+
+def nodes_of(cells: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """(k,) nodes of facets, ascending."""
+    return np.unique(cells[facets[:, :1], FACES[facets[:, 1]]])
+
+
+def _slopes(local: np.ndarray) -> np.ndarray:
+    """(g, 3, 8) derivatives of the trilinear shape functions at local coordinates (g, 3)."""
+    factors = 1.0 + local[:, None, :] * CORNERS[None]
+    out = np.empty((len(local), 3, 8))
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        out[:, i] = CORNERS[:, i] * factors[:, :, j] * factors[:, :, k] / 8.0
+    return out
+
+
+def _cuthill_mckee(cells: np.ndarray, count: int) -> np.ndarray:
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+    pairs = cells.astype(np.int32)[:, EDGES].reshape(-1, 2)
+    # Each edge once: cells that share it repeat it, and the conversion would carry all of them along.
+    keys = np.unique(pairs.min(axis=1).astype(np.int64) * count + pairs.max(axis=1))
+    low, high = keys // count, keys % count
+    rows, columns = np.concatenate([low, high]), np.concatenate([high, low])
+    graph = coo_matrix((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count, count)).tocsr()
+    return np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True), dtype=np.int64)
+
+
+def _member(sets: dict[str, np.ndarray], name: str, kind: str) -> np.ndarray:
+    if name not in sets:
+        close = difflib.get_close_matches(name, list(sets), n=1, cutoff=0.4)
+        hint = f" (did you mean '{close[0]}'?)" if close else ""
+        raise MeshError(f"the mesh has no {kind} set '{name}'{hint}; it has {', '.join(sorted(sets)) or 'none'}")
+    found = sets[name]
+    if not len(found):
+        full = [other for other in sorted(sets) if len(sets[other])]
+        raise MeshError(f"{kind} set '{name}' is empty; sets that are not: {', '.join(full) or 'none'}")
+    return found

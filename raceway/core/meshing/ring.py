@@ -1,0 +1,186 @@
+"""A ring as a solid of revolution: profile with the true groove arc, shoulders and bore, swept uniformly in azimuth.
+
+The profile is one mapped block: lines along the surface of lands and groove, from side face to side face, times layers
+from there to the seat (bore, or outer cylinder).  x is the axis of the bearing, the azimuth runs from +y to +z.
+"""
+
+from __future__ import annotations
+
+from math import acos, asin, cos, pi, sin, sqrt
+
+import attrs
+import numpy as np
+
+from raceway.core.mesh import HexMesh, nodes_of
+from raceway.errors import MeshError
+
+
+@attrs.frozen
+class RingShape:
+    """Profile of a ring, lengths in metres.
+
+    Attributes
+    ----------
+    inner : whether it is the inner ring (groove on its outside)
+    seat, land : radius of bore or outer cylinder, and of the shoulders
+    width : between the side faces at -width/2 and width/2
+    groove : radius of the groove
+    centre_x, centre_r : axial place and radius of the circle of groove centres
+    contact : angle from the groove's radial direction to the free contact [rad], along increasing x
+    """
+
+    inner: bool
+    seat: float
+    land: float
+    width: float
+    groove: float
+    centre_x: float
+    centre_r: float
+    contact: float
+
+    def __attrs_post_init__(self) -> None:
+        name = "inner ring" if self.inner else "outer ring"
+        over = self.sign * (self.land - self.centre_r)
+        if not 0.0 < over < self.groove:
+            raise MeshError(
+                f"{name}: the shoulder at radius {1e3 * self.land:.4g} mm does not cut the groove between its bottom and its "
+                "centre: change `bearing.shoulder_height`"
+            )
+        if self.wall <= 0.0:
+            raise MeshError(f"{name}: no wall is left below the groove ({1e3 * self.wall:.4g} mm)")
+        half = self.groove * sin(self.edge)
+        if abs(self.centre_x) + half >= 0.5 * self.width:
+            raise MeshError(
+                f"{name}: a width of {1e3 * self.width:.4g} mm does not hold the groove, which reaches to "
+                f"{1e3 * (abs(self.centre_x) + half):.4g} mm from its middle: give a larger `bearing.width`"
+            )
+        if abs(self.contact) >= self.edge:
+            raise MeshError(
+                f"{name}: the contact angle of {abs(self.contact) * 180 / pi:.3g} deg lies outside the groove, which ends at "
+                f"{self.edge * 180 / pi:.3g} deg: give a larger `bearing.shoulder_height`"
+            )
+
+    @property
+    def sign(self) -> float:
+        """-1 for the inner ring, whose groove bottom lies below its centre, 1 for the outer one."""
+        return -1.0 if self.inner else 1.0
+
+    @property
+    def edge(self) -> float:
+        """Angle from the groove's bottom to its edge [rad]."""
+        return acos(self.sign * (self.land - self.centre_r) / self.groove)
+
+    @property
+    def wall(self) -> float:
+        """Thickness under the bottom of the groove [m]."""
+        return self.sign * (self.seat - (self.centre_r + self.sign * self.groove))
+
+    @property
+    def thickness(self) -> float:
+        """Thickness at the shoulders [m]."""
+        return abs(self.seat - self.land)
+
+    @property
+    def volume(self) -> float:
+        """Exact volume [m3]: hollow cylinder less the groove's circular segment (Pappus)."""
+        away = abs(self.centre_r - self.land)
+        half = sqrt(self.groove**2 - away**2)
+        area = self.groove**2 * asin(half / self.groove) - half * away
+        radius = self.centre_r + self.sign * 2.0 * half**3 / (3.0 * area)
+        tube = pi * abs(self.land**2 - self.seat**2) * self.width
+        return tube - 2.0 * pi * radius * area
+
+    @property
+    def raceway_area(self) -> float:
+        """Exact area of the groove [m2]: its arc swept at the radius of the arc's centroid (Pappus)."""
+        radius = self.centre_r + self.sign * self.groove * sin(self.edge) / self.edge
+        return 2.0 * pi * radius * 2.0 * self.groove * self.edge
+
+    def surface(self, angles: np.ndarray) -> np.ndarray:
+        """(n, 2) x and radius of points of the groove, angle from its bottom towards +x [rad]."""
+        return np.column_stack(
+            [
+                self.centre_x + self.groove * np.sin(angles),
+                self.centre_r + self.sign * self.groove * np.cos(angles),
+            ]
+        )
+
+
+def ring_mesh(
+    shape: RingShape,
+    left: np.ndarray,
+    arc: np.ndarray,
+    right: np.ndarray,
+    layers: np.ndarray,
+    divisions: int,
+    start: float = 0.0,
+    band: tuple[float, float] | None = None,
+) -> HexMesh:
+    """The swept mesh.
+
+    Parameters
+    ----------
+    left, right : (n,) points 0 to 1 on the lands, left from the side face to the groove, right from the groove
+    arc : (n,) angles of points on the groove [rad], from edge to edge
+    layers : (n,) points 0 to 1 from the raceway to the seat
+    divisions, start : cells around the ring, and the azimuth of the first nodes [rad]
+    band : angles between which facets belong to the set "band", the refined zone of the raceway
+
+    Notes
+    -----
+    Sets of facets and of nodes: raceway, band, land, seat, face_negative, face_positive.
+    """
+    if divisions < 3:
+        raise MeshError(f"a ring needs at least 3 cells around it, not {divisions}")
+    groove = shape.surface(arc)
+    x0, x1, half = groove[0, 0], groove[-1, 0], 0.5 * shape.width
+    low = np.column_stack([-half + left[:-1] * (x0 + half), np.full(len(left) - 1, shape.land)])
+    high = np.column_stack([x1 + right[1:] * (half - x1), np.full(len(right) - 1, shape.land)])
+    top = np.concatenate([low, groove, high])
+    ni, nj = len(top), len(layers)
+    # Radius outward with j: the inner ring's layers begin at its bore.
+    depth = 1.0 - layers[::-1] if shape.inner else layers
+    inside, outside = (np.full(ni, shape.seat), top[:, 1]) if shape.inner else (top[:, 1], np.full(ni, shape.seat))
+    radius = inside[None, :] + depth[:, None] * (outside - inside)[None, :]
+    psi = start + 2.0 * pi * np.arange(divisions) / divisions
+    x = np.broadcast_to(top[:, 0], (divisions, nj, ni))
+    points = np.stack([x, np.cos(psi)[:, None, None] * radius, np.sin(psi)[:, None, None] * radius], axis=-1)
+    cells = _swept_cells(ni, nj, divisions)
+    facets = _facets(shape.inner, ni, nj, divisions, len(left) - 1, len(right) - 1, arc, band)
+    return HexMesh(points.reshape(-1, 3), cells, {name: nodes_of(cells, f) for name, f in facets.items()}, facets)
+
+
+def _swept_cells(ni: int, nj: int, nk: int) -> np.ndarray:
+    k, j, i = np.meshgrid(np.arange(nk), np.arange(nj - 1), np.arange(ni - 1), indexing="ij")
+    here, there = (k * nj + j) * ni + i, ((k + 1) % nk * nj + j) * ni + i
+    return np.stack([n + o for n in (here, there) for o in (0, 1, ni + 1, ni)], axis=-1).reshape(-1, 8)
+
+
+def _facets(
+    inner: bool, ni: int, nj: int, nk: int, left: int, right: int, arc: np.ndarray, band: tuple[float, float] | None
+) -> dict[str, np.ndarray]:
+    """Facets of the named surfaces; local faces: 2 towards the axis, 4 away from it, 5 at -x, 3 at +x."""
+    number = np.arange(nk * (nj - 1) * (ni - 1)).reshape(nk, nj - 1, ni - 1)
+    raceway, seat = (number[:, -1], number[:, 0]) if inner else (number[:, 0], number[:, -1])
+    up, down = (4, 2) if inner else (2, 4)
+
+    def facets(cells: np.ndarray, face: int) -> np.ndarray:
+        return np.column_stack([cells.ravel(), np.full(cells.size, face)])
+
+    groove = raceway[:, left : ni - 1 - right]
+    out = {
+        "raceway": facets(groove, up),
+        "land": facets(np.concatenate([raceway[:, :left], raceway[:, ni - 1 - right :]], axis=1), up),
+        "seat": facets(seat, down),
+        "face_negative": facets(number[:, :, 0], 5),
+        "face_positive": facets(number[:, :, -1], 3),
+    }
+    if band is not None:
+        middle = 0.5 * (arc[1:] + arc[:-1])
+        out["band"] = facets(groove[:, (middle > band[0]) & (middle < band[1])], up)
+    return out
+
+
+def azimuth_step(shape: RingShape, divisions: int) -> float:
+    """Distance of neighbouring nodes along the rolling direction at the contact [m]."""
+    return 2.0 * (shape.centre_r + shape.sign * shape.groove * cos(shape.contact)) * sin(pi / divisions)

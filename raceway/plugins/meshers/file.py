@@ -1,0 +1,86 @@
+"""Meshes that the user brings: a file for each body, sets mapped to the names that the program uses."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.errors import MeshError
+from raceway.options import nearest, option, positive
+from raceway.plugins.meshers._bodies import BODIES, bodies, refuse_no_body, with_node_sets
+
+if TYPE_CHECKING:
+    from raceway.core.mesh import HexMesh
+
+
+@attrs.frozen
+class File:
+    """Hexahedra from files (.vtu, .inp, .msh), one for each body; [mesh.sets.BODY] names their sets."""
+
+    name: ClassVar[str] = "file"
+
+    inner_ring: str | None = option(None, help="file of the inner ring, in the bearing's coordinates", path=True)
+    outer_ring: str | None = option(None, help="file of the outer ring, in the bearing's coordinates", path=True)
+    ball: str | None = option(
+        None, help="file of one ball about its centre: x rolling, y across, z towards the outer contact", path=True
+    )
+    scale: float = option(1.0, unit="m", help="one unit of the files; 1e-3 for files in millimetres", rule=positive())
+    sets: dict[str, dict[str, str]] | None = option(
+        None, help="for each body: the program's name of a set = its name in the file"
+    )
+
+    def __attrs_post_init__(self) -> None:
+        refuse_no_body(self)
+        for body in self.sets or {}:
+            if body not in BODIES or getattr(self, body) is None:
+                given = [b for b in BODIES if getattr(self, b) is not None]
+                raise ValueError(f"`sets.{body}`: there is no such body{nearest(body, given)}; given: {', '.join(given)}")
+
+    @classmethod
+    def examples(cls) -> list[File]:
+        """A coarse ring of the package's data."""
+        path = str(files("raceway").joinpath("data/meshes/ring.inp"))
+        return [cls(inner_ring=path, scale=1e-3, sets={"inner_ring": {"raceway": "OUTSIDE"}})]
+
+    def mesh(self, bearing: Any) -> dict[str, HexMesh]:
+        """Meshes of the bodies that have files, renumbered.
+
+        Raises
+        ------
+        MeshError
+            Files that cannot be read or hold other solids, sets that are missing or empty, bad cells.
+        """
+        return bodies(self, bearing, self._body)
+
+    def _body(self, body: str, path: str) -> HexMesh:
+        from raceway.core.mesh_quality import refuse_bad_cells
+        from raceway.plugins.formats.abaqus import Abaqus
+        from raceway.plugins.formats.msh import Msh
+        from raceway.plugins.formats.vtu import Vtu
+
+        known = {suffix: form for form in (Vtu, Abaqus, Msh) for suffix in form.suffixes}
+        suffix = Path(path).suffix.lower()
+        if suffix not in known:
+            raise MeshError(f"'{path}': no format has the ending '{suffix}'; there are {', '.join(sorted(known))}")
+        mesh: HexMesh = known[suffix]().read(path)
+        nodes, facets = dict(mesh.node_sets), dict(mesh.facet_sets)
+        for own, theirs in (self.sets or {}).get(body, {}).items():
+            try:
+                if theirs in nodes and theirs not in facets:
+                    nodes[own] = mesh.nodes(theirs)
+                else:
+                    facets[own] = mesh.facets(theirs)
+                    if theirs in nodes:
+                        nodes[own] = mesh.nodes(theirs)
+            except MeshError as why:
+                raise MeshError(f"`mesh.sets.{body}.{own}`: '{path}': {why}") from why
+        for kind, found in (("node", nodes), ("facet", facets)):
+            empty = [name for name, members in found.items() if not len(members)]
+            if empty:
+                raise MeshError(f"'{path}': {kind} set '{empty[0]}' is empty")
+        mesh = attrs.evolve(mesh, points=self.scale * mesh.points, node_sets=nodes, facet_sets=facets)
+        refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
+        return with_node_sets(mesh.renumbered())

@@ -1,0 +1,223 @@
+"""Structured hexahedra of a whole bearing: rings with the true groove, balls as cubed spheres, graded to the contacts."""
+
+from __future__ import annotations
+
+from math import ceil, cos, pi, sin
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.errors import MeshError
+from raceway.options import between, option, optional, positive, word_or
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.core.mesh import HexMesh
+    from raceway.core.meshing.ring import RingShape
+    from raceway.core.meshing.size import Prediction
+
+#: Load of a ball [N] whose ellipse the patches follow where neither the scene nor the option says it.
+BALL_LOAD = 300.0
+
+
+@attrs.frozen
+class Structured:
+    """Structured hexahedra: rings swept from their profile, balls as cubed spheres, both graded to the contacts."""
+
+    name: ClassVar[str] = "structured"
+
+    element_size: float = option(0.5e-3, unit="m", help="no edge of a cell is longer", rule=positive())
+    nodes_per_semi_axis: int = option(
+        4,
+        help="cells along each semi-axis of a ball's contact ellipse, and along the major one of a race's",
+        rule=between(1, 64),
+    )
+    growth: float = option(1.3, help="ratio of neighbouring cells between patch and bulk", rule=between(1.02, 3.0))
+    patch: float = option(1.25, help="refined zone, in semi-axes of the contact ellipse", rule=between(0.5, 5.0))
+    azimuth_cells: int | str = option(
+        "auto",
+        help="cells around each ring, rounded up to a multiple of the balls; 'auto': as element_size asks",
+        rule=word_or(between(3, 1_000_000), "auto"),
+    )
+    ball_load: float | None = option(
+        None,
+        unit="N",
+        help="load of a ball whose ellipse the patches follow; default: of the scene, else 300",
+        rule=optional(positive()),
+    )
+
+    def mesh(self, bearing: Any) -> dict[str, HexMesh]:
+        """inner_ring, outer_ring and every ball of each row, in the bearing's coordinates.
+
+        Raises
+        ------
+        MeshError
+            Dimensions that are missing or do not fit, elements larger than the wall or too many for the memory.
+        """
+        from raceway.core.meshing.place import azimuth, ball_names, placed
+        from raceway.core.meshing.sphere import ball_mesh
+
+        self._refuse(bearing)
+        bodies: dict[str, HexMesh] = {}
+        u, v, w, layers, patch = self._ball_lines(bearing)
+        ball = ball_mesh(0.5 * bearing.ball_diameter, u, v, w, layers, patch)
+        for row, (side, place) in enumerate(bearing.rows):
+            suffix = f"_row{row + 1}" if len(bearing.rows) > 1 else ""
+            for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
+                bodies[word + suffix] = self._ring(bearing, inner, side, place)
+            for index, word in enumerate(ball_names(bearing)):
+                points = placed(ball.points, bearing, azimuth(bearing, index), side, place)
+                bodies[word + suffix] = attrs.evolve(ball, points=points)
+        return bodies
+
+    def predict(self, bearing: Any) -> Prediction:
+        """Number of cells and bytes, exactly as ``mesh`` would make them; nothing is meshed.
+
+        Raises
+        ------
+        MeshError
+            As ``mesh``, but for the memory.
+        """
+        from raceway.core.meshing.size import Prediction
+        from raceway.core.meshing.sphere import ball_cells
+
+        u, v, w, layers, _ = self._ball_lines(bearing)
+        balls = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1) * bearing.ball_count
+        rings = 0
+        for inner in (True, False):
+            shape = ring_shape(bearing, inner)
+            left, arc, right, depth, _ = self._ring_lines(bearing, shape)
+            rings += (len(left) + len(arc) + len(right) - 3) * (len(depth) - 1) * self._divisions(bearing, shape)
+        return Prediction.of((balls + rings) * len(bearing.rows))
+
+    def _refuse(self, bearing: Any) -> None:
+        from raceway.core.meshing.size import Prediction, refuse_coarse, refuse_memory
+
+        volume = pi / 6.0 * bearing.ball_diameter**3 * bearing.ball_count
+        for inner, word in ((True, "inner"), (False, "outer")):
+            shape = ring_shape(bearing, inner)
+            refuse_coarse(self.element_size, shape.wall, f"wall of the {word} ring under its groove")
+            volume += shape.volume
+        refuse_coarse(self.element_size, 0.5 * bearing.ball_diameter, "radius of a ball")
+        # From the volume first: with tiny elements even the lines of the mesh would not fit.
+        lowest = Prediction.of(volume * len(bearing.rows) / self.element_size**3)
+        refuse_memory(lowest, "mesh.element_size", self.element_size, "take larger elements")
+        remedy = "take larger elements, fewer nodes_per_semi_axis or azimuth_cells, or a larger growth"
+        refuse_memory(self.predict(bearing), "mesh.element_size", self.element_size, remedy)
+
+    def _semi_axes(self, bearing: Any, inner: bool) -> tuple[float, float]:
+        """Semi-axes [m] of a contact ellipse, along the groove and along the rolling direction."""
+        from raceway.core.geometry import BallBearing
+        from raceway.core.hertz import contact_modulus
+
+        rings, balls = bearing.rings, bearing.balls
+        modulus = contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)
+        row = BallBearing(
+            bearing.ball_diameter,
+            bearing.pitch_diameter,
+            bearing.ball_count,
+            bearing.contact_angle,
+            bearing.conformity_inner,
+            bearing.conformity_outer,
+        )
+        major, minor = row.ellipses(modulus)[0 if inner else 1].semi_axes(self.ball_load or BALL_LOAD)
+        return float(major), float(minor)
+
+    def _ball_lines(self, bearing: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
+        """Lines of the cube along u, v, w, layers, and the semi-axes of the patch along u, v."""
+        import numpy as np
+
+        from raceway.core.meshing.spacing import graded, growing
+        from raceway.core.meshing.sphere import CUBE
+
+        # Both contacts of a ball share the cube's lines: the larger ellipse sets the zone, the smaller one the size.
+        pairs = [self._semi_axes(bearing, inner) for inner in (True, False)]
+        radius, size, n = 0.5 * bearing.ball_diameter, self.element_size, self.nodes_per_semi_axis
+        arc = 0.25 * pi * radius
+        lines = []
+        for axis in (1, 0):
+            zone, fine = self.patch * max(p[axis] for p in pairs), min(p[axis] for p in pairs) / n
+            zone = min(zone, 0.8 * arc)
+            lines.append(graded(-1.0, 1.0, -zone / arc, zone / arc, fine / arc, size / arc, self.growth))
+        half = growing(1.0, size / arc, size / arc, self.growth)
+        w = np.concatenate([-half[:0:-1], half])
+        length = (1.0 - CUBE) * radius
+        fine = min(p[1] for p in pairs) / n
+        layers = 1.0 - growing(1.0, fine / length, size / length, self.growth)[::-1]
+        patch = self.patch * max(p[1] for p in pairs), self.patch * max(p[0] for p in pairs)
+        return lines[0], lines[1], w, layers, patch
+
+    def _ring_lines(
+        self, bearing: Any, shape: RingShape
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
+        """Points of the left land, the groove, the right land, the layers, and the refined band's angles."""
+        from raceway.core.meshing.spacing import graded, growing
+
+        major, _ = self._semi_axes(bearing, shape.inner)
+        size, edge = self.element_size, shape.edge
+        half = self.patch * major / shape.groove
+        band = max(shape.contact - half, -0.98 * edge), min(shape.contact + half, 0.98 * edge)
+        fine = major / self.nodes_per_semi_axis
+        arc = graded(-edge, edge, *band, fine / shape.groove, size / shape.groove, self.growth)
+        reach = shape.groove * sin(edge)
+        lands = [0.5 * shape.width + s * shape.centre_x - reach for s in (1.0, -1.0)]
+        left, right = (growing(1.0, size / land, size / land, self.growth) for land in lands)
+        # As fine in depth as along the groove: the uniform azimuth does not follow the minor semi-axis.
+        thickness = shape.thickness
+        layers = growing(1.0, min(fine, size) / thickness, size / thickness, self.growth)
+        return left, arc, right, layers, band
+
+    def _divisions(self, bearing: Any, shape: RingShape) -> int:
+        """Cells around a ring: a multiple of the balls, so that each of them meets the same nodes."""
+        wanted = self.azimuth_cells
+        if isinstance(wanted, str):
+            wanted = ceil(2.0 * pi * max(shape.seat, shape.land) / self.element_size)
+        return bearing.ball_count * max(ceil(wanted / bearing.ball_count), ceil(12 / bearing.ball_count))
+
+    def _ring(self, bearing: Any, inner: bool, side: float, place: float) -> HexMesh:
+        import numpy as np
+
+        from raceway.core.meshing.place import azimuth
+        from raceway.core.meshing.ring import ring_mesh
+
+        shape = ring_shape(bearing, inner)
+        left, arc, right, layers, band = self._ring_lines(bearing, shape)
+        start = side * azimuth(bearing, 0)
+        mesh = ring_mesh(shape, left, arc, right, layers, self._divisions(bearing, shape), start, band)
+        if side < 0.0:  # half a turn about y, not a mirror image: cells keep their sense; psi becomes -psi
+            facets = dict(mesh.facet_sets)
+            facets["face_negative"], facets["face_positive"] = facets["face_positive"], facets["face_negative"]
+            nodes = dict(mesh.node_sets)
+            nodes["face_negative"], nodes["face_positive"] = nodes["face_positive"], nodes["face_negative"]
+            mesh = attrs.evolve(mesh, points=mesh.points * [-1.0, 1.0, -1.0], node_sets=nodes, facet_sets=facets)
+        return mesh if place == 0.0 else attrs.evolve(mesh, points=mesh.points + np.array([place, 0.0, 0.0]))
+
+
+def ring_shape(bearing: Any, inner: bool) -> RingShape:
+    """Profile of a ring of a row with side +1, from the dimensions of the scene's [bearing] table.
+
+    Raises
+    ------
+    MeshError
+        Dimensions that are missing, or that do not fit together.
+    """
+    from raceway.core.meshing.ring import RingShape
+
+    for key in ("bore", "outer_diameter", "width"):
+        if getattr(bearing, key, None) is None:
+            raise MeshError(f"`bearing.{key}` is missing: rings of hexahedra need bore, outer_diameter and width")
+    d, middle, alpha = bearing.ball_diameter, 0.5 * bearing.pitch_diameter, bearing.contact_angle
+    conformity = bearing.conformity_inner if inner else bearing.conformity_outer
+    offset, sense = (conformity - 0.5) * d, 1.0 if inner else -1.0
+    depth = bearing.shoulder_height or 0.2 * d
+    return RingShape(
+        inner=inner,
+        seat=0.5 * (bearing.bore if inner else bearing.outer_diameter),
+        land=middle - sense * (0.5 * d - depth),
+        width=bearing.width,
+        groove=conformity * d,
+        centre_x=sense * offset * sin(alpha),
+        centre_r=middle + sense * offset * cos(alpha),
+        contact=-sense * alpha,
+    )

@@ -1,0 +1,105 @@
+"""What every formulation must do: constant strain, rigid motion, energy, mass, stable step."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from raceway.core.hexahedron.operator import HexOperator
+from raceway.core.hexahedron.strain import KINDS
+from tests.hexahedron.blocks import block, distorted
+from tests.reference import hexahedron as reference
+
+STEEL = (2.1e11, 0.29, 7810.0)
+EVERY = pytest.mark.parametrize("kind", KINDS)
+SLOPES = np.array([[1.0, 0.3, -0.2], [0.1, -0.7, 0.5], [0.4, 0.2, 0.6]])
+
+
+@EVERY
+def test_patch(kind):
+    """A linear field on a distorted mesh: inner nodes find it, and every stress is the exact one."""
+    points, cells, inner = distorted((4, 4, 4))
+    op = HexOperator(points, cells, *STEEL, kind)
+    exact = points @ SLOPES.T + 0.1
+    free = np.repeat(inner, 3)
+    K, u = op.stiffness().toarray(), exact.ravel().copy()
+    u[free] = np.linalg.solve(K[np.ix_(free, free)], -K[np.ix_(free, ~free)] @ u[~free])
+    assert np.abs(u - exact.ravel()).max() <= 1e-12 * np.abs(exact).max()
+    strain = 0.5 * (SLOPES + SLOPES.T)
+    stress = op.moduli[0] * np.trace(strain) * np.eye(3) + 2.0 * op.moduli[1] * strain
+    expected = stress[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
+    assert np.abs(op.stress(u.reshape(-1, 3)) - expected).max() <= 1e-12 * np.abs(expected).max()
+    energy = 0.5 * np.sum(stress * strain) * op.element_masses.sum() / op.density
+    assert op.energy(exact) == pytest.approx(energy, rel=1e-12)
+    assert op.hourglass_energy(exact) <= 1e-24 * energy
+
+
+@EVERY
+@pytest.mark.parametrize("counts", [(1, 1, 1), (2, 3, 2)])
+def test_six_zero_energy_modes_and_no_more(kind, counts):
+    points, cells, _ = distorted(counts)
+    values = np.linalg.eigvalsh(HexOperator(points, cells, *STEEL, kind).stiffness().toarray())
+    assert np.abs(values[:6]).max() <= 1e-13 * values[-1]
+    assert values[6] >= 1e-4 * values[-1]
+
+
+def test_without_hourglass_control_one_element_has_twelve_modes_more():
+    points, cells, _ = distorted((1, 1, 1))
+    values = np.linalg.eigvalsh(HexOperator(points, cells, *STEEL, hourglass=0.0).stiffness().toarray())
+    assert np.sum(np.abs(values) <= 1e-13 * values[-1]) == 18
+
+
+def test_hourglass_energy_is_what_the_hourglass_coefficient_adds():
+    points, cells, _ = distorted((3, 3, 3))
+    u = np.random.default_rng(8).standard_normal(points.shape)
+    held, free = HexOperator(points, cells, *STEEL), HexOperator(points, cells, *STEEL, hourglass=0.0)
+    assert held.hourglass_energy(u) == pytest.approx(held.energy(u) - free.energy(u), rel=1e-12)
+    assert HexOperator(points, cells, *STEEL, "full").hourglass_energy(u) == 0.0
+
+
+@EVERY
+def test_masses(kind):
+    points, cells, _ = distorted((3, 2, 4))
+    op = HexOperator(points, cells, *STEEL, kind)
+    matrices = [reference.element_mass(points[cell], 7810.0) for cell in cells]
+    expected = np.kron(reference.assembled(cells, len(points), matrices, 1), np.eye(3))
+    M = op.consistent_mass().toarray()
+    assert np.abs(M - expected).max() <= 1e-13 * expected.max()
+    assert np.abs(M.sum(axis=1)[::3] - op.lumped_mass()).max() <= 1e-13 * op.lumped_mass().max()
+    straight = HexOperator(*block((3, 2, 4), (0.5, 0.25, 2.0)), *STEEL, kind)
+    assert straight.lumped_mass().sum() == pytest.approx(7810.0 * 0.25, rel=1e-14)
+
+
+@EVERY
+def test_stable_step_is_safe_and_close(kind):
+    """Elements bound the mesh from above: on one element exactly, on equal cubes, whose neighbours cannot all swing at once
+    in the fastest way, a fifth to a quarter below."""
+    for counts, least in (((1, 1, 1), 1.0 - 1e-12), ((4, 4, 4), 0.75)):
+        points, cells, _ = distorted(counts, 0.0 if counts[0] > 1 else 0.25)
+        op = HexOperator(points, cells, *STEEL, kind)
+        mass = np.repeat(op.lumped_mass(), 3)
+        fastest = np.sqrt(eigh(op.stiffness().toarray(), np.diag(mass), eigvals_only=True)[-1])
+        assert least <= op.stable_step() * fastest / 2.0 <= 1.0 + 1e-12
+
+
+def test_stable_step_of_a_distorted_mesh_is_the_least_of_all_elements():
+    points, cells, _ = distorted((5, 5, 5), 0.3)
+    op = HexOperator(points, cells, *STEEL)
+    each = [HexOperator(points, cells[[e]], *STEEL).stable_step() for e in range(len(cells))]
+    assert op.stable_step() == pytest.approx(min(each), rel=1e-12)
+
+
+def test_central_differences_hold_below_the_stable_step_and_blow_up_above_the_meshs_own():
+    points, cells, _ = distorted((4, 4, 4), sides=(1e-3, 1e-3, 1e-3))
+    op = HexOperator(points, cells, *STEEL)
+    start = np.random.default_rng(9).standard_normal(points.shape) * 1e-9
+    mass = np.repeat(op.lumped_mass(), 3)
+    limit = 2.0 / np.sqrt(eigh(op.stiffness().toarray(), np.diag(mass), eigvals_only=True)[-1])
+    grown = []
+    for dt in (0.999 * op.stable_step(), 1.02 * limit):
+        u, v = start.copy(), np.zeros_like(start)
+        op.advance(u, v, np.zeros_like(u), 1.0 / op.lumped_mass(), dt, steps=400)
+        shift = np.average(u, axis=0, weights=op.lumped_mass())
+        grown.append(np.abs(u - shift).max() / np.abs(start).max())
+    assert grown[0] < 30.0 and grown[1] > 1e6

@@ -1,0 +1,194 @@
+"""Meshes from files and from Gmsh: sets, other solids, and files that are not what they should be."""
+
+import sys
+
+import attrs
+import meshio
+import numpy as np
+import pytest
+
+from raceway import load_scene, scene_from_dict
+from raceway.errors import MeshError, SceneError
+from raceway.meshing import mesh_scene
+from raceway.plugins.formats.abaqus import Abaqus
+from raceway.plugins.formats.msh import Msh
+from raceway.plugins.formats.vtu import Vtu
+from raceway.plugins.meshers.file import File
+from raceway.plugins.meshers.gmsh import Gmsh
+from tests.command_line import EXAMPLES
+from tests.mesh.cubes import block
+
+BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
+FORMATS = [Vtu(), Abaqus(), Msh()]
+
+
+def path_of(folder, form, name="body"):
+    return folder / f"{name}{form.suffixes[0]}"
+
+
+@pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
+def test_a_mesh_survives_a_file_bit_for_bit(form, tmp_path):
+    rng = np.random.default_rng(2)
+    mesh = block()
+    mesh = attrs.evolve(mesh, points=mesh.points + 1e-3 * rng.standard_normal(mesh.points.shape))
+    form.write(path_of(tmp_path, form), mesh)
+    back = form.read(path_of(tmp_path, form))
+    assert np.array_equal(back.points, mesh.points) and np.array_equal(back.cells, mesh.cells)
+    assert np.array_equal(back.facets("outside"), mesh.facets("outside"))
+    assert np.array_equal(back.nodes("corner"), mesh.nodes("corner"))
+
+
+@pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
+def test_tetrahedra_are_refused_with_their_number(form, tmp_path):
+    path = path_of(tmp_path, form)
+    meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]).write(
+        path, **({"file_format": "gmsh22"} if form.name == "msh" else {})
+    )
+    with pytest.raises(MeshError, match=r"not hexahedra of 8 nodes: 1 of type tetra.*subdivision") as told:
+        form.read(path)
+    assert path.name in str(told.value)
+
+
+@pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
+@pytest.mark.parametrize("content", [None, b"", b"\x00\xff nothing of the kind \xfe" * 9])
+def test_unreadable_files_are_named(form, content, tmp_path):
+    path = path_of(tmp_path, form)
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(MeshError, match=path.name):
+        form.read(path)
+
+
+def test_formats_without_meshio_name_the_extra(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "meshio", None)
+    with pytest.raises(MeshError, match=r"pip install 'raceway\[mesh\]'"):
+        Vtu().write(tmp_path / "x.vtu", block())
+
+
+def test_an_abaqus_file_written_by_hand(tmp_path):
+    nodes = "\n".join(f"{10 + i}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(block(1, 1, 1).points))
+    order = ", ".join(str(10 + n) for n in block(1, 1, 1).cells[0])
+    text = f"*Heading\n*NODE\n{nodes}\n*ELEMENT, TYPE=C3D8R, ELSET=All\n7, {order}\n*NSET, NSET=Fixed\n10, 11\n"
+    text += "*SURFACE, NAME=Race, TYPE=ELEMENT\nALL, S2\n*STEP\n"
+    (tmp_path / "hand.inp").write_text(text)
+    mesh = Abaqus().read(tmp_path / "hand.inp")
+    assert mesh.nodes("Fixed").tolist() == [0, 1] and mesh.facets("Race").tolist() == [[0, 1]]
+    (tmp_path / "hand.inp").write_text(text.replace("ALL, S2", "Alll, S2"))
+    with pytest.raises(MeshError, match="surface 'Race' has the line 'Alll, S2'.*Known element sets: all"):
+        Abaqus().read(tmp_path / "hand.inp")
+
+
+@pytest.fixture
+def given(tmp_path):
+    Abaqus().write(tmp_path / "body.inp", block())
+    return str(tmp_path / "body.inp")
+
+
+def test_sets_are_mapped_and_the_ball_is_placed(given):
+    meshes = File(inner_ring=given, ball=given, scale=1e-3, sets={"inner_ring": {"raceway": "outside"}}).mesh(BEARING)
+    assert list(meshes) == ["inner_ring", *(f"ball_{i:02d}" for i in range(12))]
+    ring = meshes["inner_ring"]
+    assert ring.facet_areas("raceway").sum() == pytest.approx(22e-6, rel=1e-12)
+    assert len(ring.nodes("raceway")) == len(ring.nodes("outside"))
+    # The ball's own origin lies at its place on the pitch circle; ball 3 of 12 stands on +z.
+    corner = meshes["ball_03"].points[meshes["ball_03"].nodes("corner")][0]
+    assert corner == pytest.approx([0.0, 0.0, 0.5 * BEARING.pitch_diameter], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("sets", "words"),
+    [
+        ({"raceway": "outsid"}, r"`mesh.sets.inner_ring.raceway`: .*no facet set 'outsid' \(did you mean 'outside'\?\)"),
+        ({"raceway": "hollow"}, "facet set 'hollow' is empty"),
+    ],
+)
+def test_missing_and_empty_sets_of_a_file(tmp_path, sets, words):
+    mesh = block()
+    Vtu().write(tmp_path / "body.vtu", attrs.evolve(mesh, facet_sets={**mesh.facet_sets, "hollow": []}))
+    with pytest.raises(MeshError, match=words):
+        File(inner_ring=str(tmp_path / "body.vtu"), sets={"inner_ring": sets}).mesh(BEARING)
+
+
+def test_inverted_cells_of_a_file_are_refused(tmp_path):
+    mesh = block()
+    Vtu().write(tmp_path / "body.vtu", attrs.evolve(mesh, points=mesh.points * [1, 1, -1]))
+    with pytest.raises(MeshError, match=r"inner_ring \(body.vtu\).*60 of 60 cells.*inverted"):
+        File(inner_ring=str(tmp_path / "body.vtu")).mesh(BEARING)
+
+
+@pytest.mark.parametrize(
+    ("path", "words"), [("body.obj", "no format has the ending '.obj'"), ("gone.vtu", "does not exist")]
+)
+def test_files_of_no_use(tmp_path, path, words):
+    with pytest.raises(MeshError, match=words):
+        File(ball=str(tmp_path / path)).mesh(BEARING)
+
+
+def test_scenes_name_files_beside_them(given, tmp_path):
+    text = '[bearing]\npreset = "B7206C"\n[mesh]\nkind = "file"\ninner_ring = "body.inp"\n[mesh.sets.inner_ring]\nraceway = "outside"\n'
+    (tmp_path / "scene.toml").write_text(text)
+    assert mesh_scene(load_scene(tmp_path / "scene.toml"))["inner_ring"].volume() == pytest.approx(6.0)
+    for mesh, words in (
+        ({"kind": "file"}, "names no body"),
+        ({"kind": "file", "ball": "b.inp", "sets": {"bal": {}}}, r"did you mean 'ball'"),
+    ):
+        with pytest.raises(SceneError, match=words):
+            scene_from_dict({"bearing": {"preset": "B7206C"}, "mesh": mesh})
+
+
+BOX = 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 10, 8, 6};\n'
+BALL = 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 4};\n'
+
+
+@pytest.fixture(scope="module")
+def solids(tmp_path_factory):
+    import gmsh
+
+    folder = tmp_path_factory.mktemp("solids")
+    for name, text in (("box", BOX), ("ball", BALL)):
+        (folder / f"{name}.geo").write_text(text)
+        gmsh.initialize([], readConfigFiles=False, interruptible=False)
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(folder / f"{name}.geo"))
+        gmsh.write(str(folder / f"{name}.step"))
+        gmsh.finalize()
+    return folder
+
+
+def test_a_step_block_becomes_transfinite_hexahedra_in_metres(solids):
+    mesh = Gmsh(inner_ring=str(solids / "box.step"), element_size=2e-3).mesh(BEARING)["inner_ring"]
+    assert mesh.volume() == pytest.approx(480e-9, rel=1e-9)
+    assert sum(mesh.facet_areas(name).sum() for name in mesh.facet_sets) == pytest.approx(376e-6, rel=1e-9)
+
+
+def test_a_step_ball_needs_subdivision(solids):
+    path = str(solids / "ball.step")
+    with pytest.raises(
+        MeshError, match="cannot be meshed with hexahedra by method = 'transfinite': .* tetrahedra.*'subdivision'"
+    ):
+        Gmsh(ball=path, element_size=2e-3).mesh(BEARING)
+    mesh = Gmsh(ball=path, element_size=1e-3, method="subdivision").mesh(BEARING)["ball_00"]
+    # Chords of half the tetrahedra's edge cut off a few percent of the sphere.
+    assert mesh.volume() == pytest.approx(4.0 / 3.0 * np.pi * 64e-9, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [(7e-3, "larger than the smallest extent of 'box.step', 0.006 m"), (1e-6, r"4\.8e\+11 elements and take .* GiB")],
+)
+def test_sizes_that_gmsh_shall_not_try(solids, size, words):
+    with pytest.raises(MeshError, match=words):
+        Gmsh(inner_ring=str(solids / "box.step"), element_size=size).mesh(BEARING)
+
+
+def test_step_files_that_are_none(solids, tmp_path):
+    (tmp_path / "bad.step").write_text("nothing of the kind")
+    for name, words in (("bad.step", "not a STEP file"), ("gone.step", "does not exist"), ("x.iges", "reads .step")):
+        with pytest.raises(MeshError, match=words):
+            Gmsh(ball=str(tmp_path / name)).mesh(BEARING)
+
+
+def test_without_gmsh_the_extra_is_named(solids, monkeypatch):
+    monkeypatch.setitem(sys.modules, "gmsh", None)
+    with pytest.raises(MeshError, match=r"pip install 'raceway\[gmsh\]'"):
+        Gmsh(inner_ring=str(solids / "box.step")).mesh(BEARING)

@@ -1,0 +1,170 @@
+"""Structured bearings against the exact solids: rates, contacts, sizes, and what is refused."""
+
+from math import pi
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway import load_scene, scene_from_dict
+from raceway.core.mesh import EDGES
+from raceway.core.mesh_quality import quality, refuse_bad_cells
+from raceway.core.mesh_summary import summary
+from raceway.core.meshing.ring import ring_mesh
+from raceway.core.meshing.spacing import graded, growing, halved
+from raceway.core.meshing.sphere import ball_cells, ball_mesh
+from raceway.errors import MeshError, SceneError
+from raceway.meshing import mesh_scene, scene_mesher
+from raceway.plugins.meshers.structured import Structured, ring_shape
+from tests.command_line import EXAMPLES
+
+BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
+COARSE = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)
+
+
+def rate(errors):
+    """Order between the two finest of three meshes, each half the size of the one before."""
+    return np.log2(abs(errors[-2]) / abs(errors[-1]))
+
+
+def test_spacings_reach_their_ends_and_keep_their_limits():
+    line = graded(-1.0, 1.0, -0.1, 0.2, 0.02, 0.15, 1.3)
+    steps = np.diff(line)
+    assert line[0] == -1.0 and line[-1] == 1.0 and (steps > 0).all()
+    assert steps.max() <= 0.15 * (1 + 1e-12)
+    inside = (line[:-1] > -0.1 - 1e-12) & (line[1:] < 0.2 + 1e-12)
+    assert steps[inside].max() <= 0.02 * (1 + 1e-12)
+    assert (steps[1:] / steps[:-1]).max() < 1.3 * (1 + 1e-9)
+    assert np.diff(growing(1.0, 0.3, 0.2, 1.3)) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("inner", [True, False])
+def test_a_ring_converges_at_order_2_to_the_solid_of_revolution(inner):
+    shape = ring_shape(BEARING, inner)
+    left, arc, right, layers, band = COARSE._ring_lines(BEARING, shape)
+    volume, area, divisions = [], [], 24
+    for _ in range(3):
+        mesh = ring_mesh(shape, left, arc, right, layers, divisions, band=band)
+        volume.append(mesh.volume() / shape.volume - 1.0)
+        area.append(mesh.facet_areas("raceway").sum() / shape.raceway_area - 1.0)
+        left, arc, right, layers, divisions = *map(halved, (left, arc, right, layers)), 2 * divisions
+    # Facets of curved surfaces: the error is a series in h^2, so that the rate of fine meshes is 2 to a few 0.01.
+    assert rate(volume) == pytest.approx(2.0, abs=0.05)
+    assert rate(area) == pytest.approx(2.0, abs=0.05)
+
+
+def test_a_ball_converges_at_order_2_to_the_sphere():
+    radius = 0.5 * BEARING.ball_diameter
+    u, v, w, layers, patch = COARSE._ball_lines(BEARING)
+    volume, area = [], []
+    for _ in range(3):
+        mesh = ball_mesh(radius, u, v, w, layers, patch)
+        assert len(mesh.cells) == ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1)
+        volume.append(mesh.volume() / (4.0 / 3.0 * pi * radius**3) - 1.0)
+        area.append(mesh.facet_areas("surface").sum() / (4.0 * pi * radius**2) - 1.0)
+        u, v, w, layers = map(halved, (u, v, w, layers))
+    assert rate(volume) == pytest.approx(2.0, abs=0.05)
+    assert rate(area) == pytest.approx(2.0, abs=0.05)
+
+
+def test_the_bearing_is_whole_good_and_predicted():
+    meshes = COARSE.mesh(BEARING)
+    assert list(meshes) == ["inner_ring", "outer_ring", *(f"ball_{i:02d}" for i in range(12))]
+    assert sum(len(mesh.cells) for mesh in meshes.values()) == COARSE.predict(BEARING).cells
+    for name, mesh in meshes.items():
+        assert refuse_bad_cells(mesh, name).scaled_jacobian.min() > 0.2
+        edges = np.linalg.norm(np.diff(mesh.points[mesh.cells[:, EDGES]], axis=2)[:, :, 0], axis=2)
+        assert edges.max() <= COARSE.element_size * (1 + 1e-9)
+        assert all(len(s) for s in (*mesh.node_sets.values(), *mesh.facet_sets.values()))
+
+
+@pytest.mark.parametrize("arrangement", ["single", "DB"])
+def test_balls_touch_their_grooves_where_the_geometry_says(arrangement):
+    bearing = attrs.evolve(BEARING, arrangement=arrangement, first_ball_azimuth_deg=10.0)
+    meshes = COARSE.mesh(bearing)
+    for row, (side, place) in enumerate(bearing.rows):
+        suffix = f"_row{row + 1}" if arrangement == "DB" else ""
+        ball = meshes["ball_03" + suffix]
+        psi = np.radians(10.0 + 90.0)
+        normal = np.array([side * np.sin(bearing.contact_angle), *(np.cos(bearing.contact_angle) * _radial(psi))])
+        centre = np.r_[place, 0.5 * bearing.pitch_diameter * _radial(psi)]
+        for word, sense in (("outer", 1.0), ("inner", -1.0)):
+            contact = centre + sense * 0.5 * bearing.ball_diameter * normal
+            patch = ball.points[ball.nodes(f"{word}_patch")]
+            # A node of the ball lies at the contact itself, and one of the raceway's band too: both are graded about it.
+            assert np.linalg.norm(patch - contact, axis=1).min() < 1e-9
+            ring = meshes[f"{word}_ring" + suffix]
+            band = ring.points[ring.nodes("band")]
+            assert np.linalg.norm(band - contact, axis=1).min() < 1e-9
+
+
+def _radial(psi):
+    return np.array([np.cos(psi), np.sin(psi)])
+
+
+def test_nodes_of_the_groove_bore_and_sides_lie_on_them():
+    shape = ring_shape(BEARING, True)
+    mesh = COARSE.mesh(BEARING)["inner_ring"]
+    groove, bore = mesh.points[mesh.nodes("raceway")], mesh.points[mesh.nodes("seat")]
+    radius = np.hypot(groove[:, 1], groove[:, 2])
+    assert np.hypot(groove[:, 0] - shape.centre_x, radius - shape.centre_r) == pytest.approx(shape.groove, rel=1e-12)
+    assert np.hypot(bore[:, 1], bore[:, 2]) == pytest.approx(0.5 * BEARING.bore, rel=1e-12)
+    assert mesh.points[mesh.nodes("face_positive"), 0] == pytest.approx(0.5 * BEARING.width)
+    assert mesh.facet_normals("raceway")[:, 1:].shape[1] == 2
+    outward = (mesh.facet_normals("seat")[:, 1:] * mesh.points[mesh.facet_nodes("seat")].mean(axis=1)[:, 1:]).sum(axis=1)
+    assert (outward < 0.0).all()
+
+
+def test_the_articles_mesh_has_its_size_and_is_good():
+    scene = load_scene(EXAMPLES / "b7206_article_mesh.toml")
+    meshes = mesh_scene(scene)
+    found = summary({name: meshes[name] for name in ("inner_ring", "outer_ring", "ball_00")})
+    cells = sum(len(mesh.cells) for mesh in meshes.values())
+    assert abs(cells / 1_061_016 - 1.0) < 0.02
+    assert found["scaled_jacobian"]["min"] > 0.2
+    assert found["element_size_m"]["max"] <= 0.5e-3
+    assert found["patch_size_m"]["short"]["min"] < 0.1 * found["element_size_m"]["max"]
+
+
+def test_the_ball_load_comes_from_the_scene():
+    tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "mesh": {"kind": "structured"}}
+    # 1000 N on 12 balls at 15 to 19 degrees: 256 to 322 N.
+    assert 250.0 < scene_mesher(scene_from_dict(tables)).ball_load < 330.0
+    with pytest.raises(SceneError, match="`mesh`"):
+        mesh_scene(scene_from_dict({"bearing": {"preset": "B7206C"}}))
+
+
+def test_a_scene_with_a_mesh_tells_all_its_keys():
+    scene = load_scene(EXAMPLES / "b7206_article_mesh.toml")
+    assert scene.as_dict()["mesh"]["growth"] == 1.35
+    assert scene_from_dict(scene.as_dict()).mesh == scene.mesh
+
+
+@pytest.mark.parametrize(
+    ("mesher", "change", "words"),
+    [
+        ({"element_size": 5e-3}, {}, r"0.005 m is larger than the wall of the inner ring under its groove, 0.0032\d* m"),
+        ({"element_size": 1e-5}, {}, r"`mesh.element_size` = 1e-05 would give about .*e\+10 elements and take .* GiB"),
+        ({"element_size": 2e-4, "azimuth_cells": 100_000}, {}, "elements and take .* GiB, above 4 GiB"),
+        ({}, {"bore": None}, "`bearing.bore` is missing"),
+        ({}, {"width": 6e-3}, "width of 6 mm does not hold the groove"),
+        ({}, {"shoulder_height": 6e-3}, "shoulder"),
+        ({}, {"shoulder_height": 1e-4}, "contact angle of 15 deg lies outside the groove"),
+    ],
+)
+def test_what_cannot_be_meshed_is_refused_with_numbers(mesher, change, words):
+    with pytest.raises(MeshError, match=words):
+        Structured(**mesher).mesh(attrs.evolve(BEARING, **change))
+
+
+@pytest.mark.parametrize("bearing", ["7206A", "DGB7-MASTA", "ACB21-HARRIS-MINDEL"])
+def test_other_bearings_of_the_catalogue(bearing):
+    chosen = scene_from_dict({"bearing": {"preset": bearing}}).bearing
+    missing = {"bore": 0.03, "outer_diameter": 0.062, "width": 0.016}
+    chosen = attrs.evolve(chosen, **{k: v for k, v in missing.items() if getattr(chosen, k) is None and bearing == "7206A"})
+    if None in (chosen.bore, chosen.outer_diameter, chosen.width):
+        with pytest.raises(MeshError, match="is missing"):
+            COARSE.mesh(chosen)
+    else:
+        for mesh in COARSE.mesh(chosen).values():
+            assert quality(mesh).scaled_jacobian.min() > 0.2
