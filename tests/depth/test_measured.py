@@ -44,7 +44,8 @@ def test_same_stiffness_as_the_formula(tmp_path, identifier):
         formula.identification.equivalent_stiffness, rel=1e-4
     )
     assert measured.identification.force_amplitude == pytest.approx(FORCE, rel=1e-4)
-    assert not measured.warnings
+    # What the identifier leaves unused may be told; nothing else.
+    assert not [text for text in measured.warnings if "has no effect" not in text]
 
 
 def test_a_record_that_is_run_through_once(tmp_path):
