@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import attrs
 import click
 
 from raceway.command_frame import attempt, common, plugin_files, registry_with, show
@@ -39,17 +40,20 @@ def mesh(
     folder = writable(out or Path("raceway-out") / slug(loaded.title))
     tell_faults(registry)
     with ProgressBar("meshing") as progress:
+        from raceway.meshing import mesh_scene
+
         start = time.perf_counter()
-        mesher = loaded.mesh if loaded.mesh is not None else registry.find("mesher", "structured").plugin()
+        if loaded.mesh is None:
+            loaded = attrs.evolve(loaded, mesh=registry.find("mesher", "structured").plugin())
         try:
-            meshes = mesher.mesh(loaded.bearing)
+            meshes = mesh_scene(loaded)
         except MemoryError:
             raise SceneError.at("mesh", None, "needs more memory than there is: choose larger elements") from None
         seconds = time.perf_counter() - start
         from raceway.core.mesh_summary import summary
 
         progress("judging the cells", 0, 0)
-        content: dict[str, Any] = {"title": loaded.title, "mesher": mesher.name, "seconds": seconds, **summary(meshes)}
+        content: dict[str, Any] = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
         files: list[str] = []
         failed = attempt(lambda: _write(registry.find("format", "vtu").plugin(), meshes, folder, progress), files)
         if picture and failed is None:
