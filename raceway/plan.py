@@ -13,6 +13,7 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.estimate import highest_frequency
+from raceway.mesh_plan import mesh_faults, predicted_mesh
 from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
@@ -47,6 +48,7 @@ class Plan:
     turns : turns that are integrated
     dofs : unknowns of the ring and of the balls
     time_step_s, predicted_wall_s : None in a static scene; predictions
+    mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
     """
 
     kept: tuple[Part, ...]
@@ -60,6 +62,7 @@ class Plan:
     time_step_s: float | None
     predicted_steps: int
     predicted_wall_s: float
+    mesh: dict[str, Any] | None = None
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -69,6 +72,7 @@ class Plan:
             "time_step_s": self.time_step_s,
             "predicted_steps": self.predicted_steps,
             "predicted_wall_s": self.predicted_wall_s,
+            "mesh": self.mesh,
         }
 
 
@@ -116,7 +120,8 @@ def make_plan(scene: Scene) -> Plan:
     decide(orbiting, "orbiting balls", "kinematics.orbiting at cage speed", "kinematics.orbiting is false")
     pair = f"bearing.arrangement is {scene.bearing.arrangement}"
     decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
-    decide(False, "elastic bodies and mesh", "", "bodies.kind is rigid: only contacts deform")
+    why = f"bodies.kind is {scene.bodies.kind}"
+    decide(scene.bodies.kind != "rigid", "elastic bodies and mesh", why, f"{why}: only contacts deform")
     rotor_moments = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
     decide(
         rotor_moments,
@@ -158,6 +163,7 @@ def make_plan(scene: Scene) -> Plan:
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
         predicted_wall_s=_START_S + 1.5 * steps * each,
+        mesh=predicted_mesh(scene),
     )
 
 
@@ -172,12 +178,13 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
     listed = " or ".join(f"'{kind}'" for kind in BODIES)
     refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
-    refuse(scene.mesh is not None, "mesh", None, "rigid bodies have no mesh: leave the table out")
+    faults += mesh_faults(scene)
+    rigid = scene.bodies.kind == "rigid"
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
-    elif contact.discretisation == "nodal":
+    elif rigid and contact.discretisation == "nodal":
         faults.append(Mistake("contact.discretisation", "nodal", "rigid bodies have no surface points: use 'resultant'"))
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
@@ -187,7 +194,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
     for seat in ("outer_seat", "inner_seat"):
         value = getattr(scene.supports, seat)
-        refuse(value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")
+        refuse(rigid and value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
     if scene.excitation is not None:

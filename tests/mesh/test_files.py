@@ -125,9 +125,9 @@ def test_files_of_no_use(tmp_path, path, words):
 
 
 def test_scenes_name_files_beside_them(given, tmp_path):
-    text = '[bearing]\npreset = "B7206C"\n[mesh]\nkind = "file"\ninner_ring = "body.inp"\n[mesh.sets.inner_ring]\nraceway = "outside"\n'
+    text = '[bearing]\npreset = "B7206C"\n[mesh]\nkind = "file"\nscale = 1e-2\ninner_ring = "body.inp"\n[mesh.sets.inner_ring]\nraceway = "outside"\n'
     (tmp_path / "scene.toml").write_text(text)
-    assert mesh_scene(load_scene(tmp_path / "scene.toml"))["inner_ring"].volume() == pytest.approx(6.0)
+    assert mesh_scene(load_scene(tmp_path / "scene.toml"))["inner_ring"].volume() == pytest.approx(6e-6)
     for mesh, words in (
         ({"kind": "file"}, "names no body"),
         ({"kind": "file", "ball": "b.inp", "sets": {"bal": {}}}, r"did you mean 'ball'"),
