@@ -239,7 +239,7 @@ def _mesh_rows(mesh: Mapping[str, Any]) -> list[Row]:
     ]
     for name, bodies in grouped({body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}):
         cells, size = bodies
-        rows.append((name, str(cells), f"{size / 2**20:.3g} MiB" + (" each" if "(" in name else "")))
+        rows.append((name, str(cells), f"{size / 2**20:.3g} MiB" + (" each" if name.startswith("balls (") else "")))
     return rows
 
 
