@@ -54,8 +54,8 @@ ITERATIONS = 60
 GOES_ON, SETTLED, FAILED = range(3)
 
 _FIRST_ROW = WORK_ROWS + 10
-DIRECTION, CENTRE, SPEED, TURNING, OWN, SLOPE, CURVE, STEP, LAST, INVERSE, INVERSE_2, NORM = range(
-    _FIRST_ROW, _FIRST_ROW + 12
+DIRECTION, CENTRE, SPEED, TURNING, OWN, SLOPE, CURVE, STEP, LAST, INVERSE, INVERSE_2, LOCAL, NORM = range(
+    _FIRST_ROW, _FIRST_ROW + 13
 )
 # Five rows each: contact forces by q and by v, the ring's force by w, by Q at fixed w, and weights of C Q in it.
 _BY_Q = NORM + 1
@@ -165,6 +165,22 @@ def _factorise(scalars, table, work):
     return True
 
 
+@jit(void(MATRIX, int64, int64, int64))
+def _gather(work, row, first, balls):
+    """The entries of one row of balls, inner contacts first, into LOCAL."""
+    z = work.shape[1] // 2
+    for j in range(balls):
+        work[LOCAL, j], work[LOCAL, balls + j] = work[row, first + j], work[row, z + first + j]
+
+
+@jit(void(MATRIX, int64, int64, int64))
+def _scatter(work, row, first, balls):
+    """The same back."""
+    z = work.shape[1] // 2
+    for j in range(balls):
+        work[row, first + j], work[row, z + first + j] = work[LOCAL, j], work[LOCAL, balls + j]
+
+
 @jit(void(VECTOR, MATRIX, int64))
 def _solve(scalars, work, row):
     """work[row] := (I - C S)^-1 work[row]."""
@@ -179,18 +195,18 @@ def _solve(scalars, work, row):
     n = 2 * balls
     for first in range(0, z, balls):
         base = _FACTOR + 2 * first
+        _gather(work, row, first, balls)
         for i in range(n):
-            c = first + i % balls + (i // balls) * z
-            total = work[row, c]
+            total = work[LOCAL, i]
             for j in range(i):
-                total -= work[base + i, j] * work[row, first + j % balls + (j // balls) * z]
-            work[row, c] = total
+                total -= work[base + i, j] * work[LOCAL, j]
+            work[LOCAL, i] = total
         for i in range(n - 1, -1, -1):
-            c = first + i % balls + (i // balls) * z
-            total = work[row, c]
+            total = work[LOCAL, i]
             for j in range(i + 1, n):
-                total -= work[base + i, j] * work[row, first + j % balls + (j // balls) * z]
-            work[row, c] = total / work[base + i, i]
+                total -= work[base + i, j] * work[LOCAL, j]
+            work[LOCAL, i] = total / work[base + i, i]
+        _scatter(work, row, first, balls)
 
 
 @jit(void(VECTOR, MATRIX, int64))
@@ -207,16 +223,17 @@ def _solve_transposed(scalars, work, row):
     n = 2 * balls
     for first in range(0, z, balls):
         base = _FACTOR + 2 * first
+        _gather(work, row, first, balls)
         for i in range(n):
-            c = first + i % balls + (i // balls) * z
-            value = work[row, c] / work[base + i, i]
-            work[row, c] = value
+            value = work[LOCAL, i] / work[base + i, i]
+            work[LOCAL, i] = value
             for j in range(i + 1, n):
-                work[row, first + j % balls + (j // balls) * z] -= value * work[base + i, j]
+                work[LOCAL, j] -= value * work[base + i, j]
         for i in range(n - 1, 0, -1):
-            value = work[row, first + i % balls + (i // balls) * z]
+            value = work[LOCAL, i]
             for j in range(i):
-                work[row, first + j % balls + (j // balls) * z] -= value * work[base + i, j]
+                work[LOCAL, j] -= value * work[base + i, j]
+        _scatter(work, row, first, balls)
 
 
 @jit(int64(VECTOR, MATRIX, MATRIX, MATRIX, VECTOR))
