@@ -21,7 +21,9 @@ _TERMS = 400
 _POINTS = 16
 
 
-def ball_compliance(radius: float, young: float, poisson: float, semi_major: float, semi_minor: float) -> tuple[float, float]:
+def ball_compliance(
+    radius: float, young: float, poisson: float, semi_major: float, semi_minor: float
+) -> tuple[float, float]:
     """(own, opposite) [m/N]: what a load adds to the approach of its own contact beyond Hertz, and to that of the opposite one.
 
     Parameters

@@ -43,6 +43,7 @@ class RingCompliance:
     angles : (n,) float, contact angles [rad], equidistant;  own : (n,) float, a contact on itself [m/N]
     across : (n, Z) float, on the contact k balls further round, on the same column of depths; entry 0 is not used [m/N]
     elements : hexahedra that the ring stands for;  depths : (COUNT,) float [m]
+    surface : distance of the nodes along the groove [m]
     """
 
     angles: np.ndarray
@@ -50,6 +51,7 @@ class RingCompliance:
     across: np.ndarray
     elements: int
     depths: np.ndarray
+    surface: float
 
 
 def reach(shape: RingShape, ball_diameter: float) -> float:
@@ -102,8 +104,11 @@ def ring_compliance(
         return {"compliance": raw}
 
     name = "inner" if shape.inner else "outer"
-    found = kept("structural", f"{name} ring, {divisions} x {len(profile.quads)} elements", inputs, SOURCES, make)["compliance"]
-    return RingCompliance(table, found[:, 0].copy(), found, len(profile.quads) * divisions, depths)
+    found = kept("structural", f"{name} ring, {divisions} x {len(profile.quads)} elements", inputs, SOURCES, make)[
+        "compliance"
+    ]
+    along = shape.groove * float(profile.angles[1] - profile.angles[0])
+    return RingCompliance(table, found[:, 0].copy(), found, len(profile.quads) * divisions, depths, along)
 
 
 def ring_section(shape: RingShape, ball_diameter: float, bulk: float | None = None, surface: float | None = None) -> Profile:
@@ -136,7 +141,9 @@ def _columns(
     even, _ = offset_weights(body.divisions, solved, offsets)
     harmonic = np.empty((len(solved), len(table)))
     for i, n in enumerate(solved):
-        factor = splu(body.harmonic(int(n)), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
+        factor = splu(
+            body.harmonic(int(n)), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
+        )
         harmonic[i] = np.einsum("ia,ia->a", seen, factor.solve(loads))
     return np.asarray((even @ harmonic).T)
 
