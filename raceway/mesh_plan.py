@@ -20,6 +20,8 @@ def mesh_faults(scene: Scene) -> list[Mistake]:
     if scene.bodies.kind == "rigid":
         why = "rigid bodies have no mesh: leave the table out, or give [bodies] a kind that deforms"
         return [Mistake("mesh", None, why)]
+    if scene.bodies.kind == "condensed":  # meshes of sections: a few thousand nodes
+        return []
     try:
         _prediction(scene)
     except MeshError as error:
@@ -34,7 +36,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
     -------
     dict or None
         ``bodies[{name, cells, bytes}]`` (what each mesh keeps), ``cells`` of all, ``bytes`` at the peak while they are
-        made; None for rigid bodies, without [mesh], and where the mesher cannot tell before it reads or meshes.
+        made; None for bodies without a mesh of their own, without [mesh], and where the mesher cannot tell before it reads or meshes.
 
     Raises
     ------
@@ -43,7 +45,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
     PluginError
         A mesher whose prediction is none.
     """
-    found = None if scene.mesh is None or scene.bodies.kind == "rigid" else _prediction(scene)
+    found = _prediction(scene) if scene.mesh is not None and scene.bodies.kind == "elastic" else None
     if found is None:
         return None
     from raceway.core.meshing.size import body_bytes
