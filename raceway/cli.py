@@ -188,10 +188,10 @@ def compare(
         try:
             comparison = study(tables, list(vary), registry, progress)
         except KeyboardInterrupt as stop:
-            comparison = getattr(stop, "partial", None)
-            if comparison is None or not comparison.rows:
+            partial = getattr(stop, "partial", None)
+            if partial is None or not partial.rows:
                 raise
-            stopped = stop  # what is finished is shown and written first
+            comparison, stopped = partial, stop  # what is finished is shown and written first
     content = comparison.as_dict()
     files: list[str] = []
     failed = attempt(lambda: [write_json(content, folder / "compare.json")], files)
