@@ -40,7 +40,7 @@ def test_the_prediction_is_the_mesh():
     assert found["bytes"] > kept
 
 
-@pytest.mark.parametrize("kind", ["elastic", "condensed"])
+@pytest.mark.parametrize("kind", ["elastic"])
 @pytest.mark.parametrize(
     ("mesh", "path", "words"),
     [
