@@ -2,8 +2,9 @@
 
 Notes
 -----
-With D = -A dp/dw the step solves (1/D + C) u = g + C f - w over the points with D > 0, then w moves by u / D: symmetric
-and positive definite for every law that grows with the approach.  The step is shortened while the residual grows.
+With D = -A dp/dw the loads change by t with (1/D + C) t = w - g - C f over the points with D > 0: symmetric and positive
+definite for every law that grows with the approach.  All gaps then become w = g + C (f + t).  The step is halved where the
+residual grew.
 """
 
 from __future__ import annotations
@@ -88,30 +89,22 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     w = np.minimum(start[near], 0.0)
     if not (w < 0.0).any():
         w = np.where(g < -0.5 * depth, 0.02 * g, 0.0)
-    residual = np.full(len(near), np.inf)
-    size = np.inf
+    before = np.inf
     for iteration in range(1, _LIMIT + 1):
         load, by_gap, by_rate = law(w, v)
-        residual = g + compliance @ load - w
-        # Points that carry nothing and stay open are in place.
-        idle = (load == 0.0) & (residual + w >= 0.0)
-        now = float(np.abs(np.where(idle, 0.0, residual)).max())
+        rest = g + compliance @ load - w
+        now = float(np.abs(rest).max())
         if now <= _TOLERANCE * depth:
             break
-        w = np.where(idle, np.maximum(residual + w, 0.0), w)
-        residual = np.where(idle, 0.0, residual)
-        stiff = np.where(idle, 0.0, -by_gap)
-        # A point that starts to touch has no stiffness yet where the law's slope vanishes at first touch.
-        stiff = np.where(~idle & (stiff <= 0.0), law.area * 1e-9 * depth**-1 + 1e-6 * max(stiff.max(), 1e-300), stiff)
-        active = np.flatnonzero(stiff > 0.0)
-        lower = _factor(compliance, active, stiff[active])
-        step = np.zeros(len(near))
-        step[active] = cho_solve(lower, residual[active], check_finite=False) / stiff[active]
-        rest = np.setdiff1d(np.arange(len(near)), active)
-        step[rest] = 0.0
-        part = 1.0 if now < 2.0 * size else 0.5
+        active = np.flatnonzero(by_gap < 0.0)
+        more = np.zeros(len(near))
+        if len(active):
+            lower = _factor(compliance, active, -by_gap[active])
+            more[active] = -cho_solve(lower, rest[active], check_finite=False)
+        step = rest + compliance @ more
+        part = 1.0 if now < before else 0.5
         w = w + part * step
-        size = now
+        before = now
     else:
         raise ConvergenceError(f"the contact law's pressures were not found after {_LIMIT} iterations")
     start[:] = 0.0

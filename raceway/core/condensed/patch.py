@@ -72,9 +72,9 @@ class Race:
     compliance : (columns, m, m) displacement of a row by a force on another one, so many columns apart, both along the
         normal [m/N]
     across : distance of neighbouring columns [m]
-    edge : (2,) contact angles at which the groove ends [rad]
-    crossing : (Z, 2, 2) displacement (axial, radial) at the middle of the groove's window by a force (axial, radial) at
-        the same place under the k-th next ball [m/N]; row 0, the ball itself, is zero
+    edge : angle from the groove's bottom to its edge [rad]
+    crossing : (Z, 2, 2) displacement (axial, radial) at the middle row by a force (axial, radial) at the same row under
+        the k-th next ball [m/N]; row 0, the ball itself, is zero
     """
 
     sense: float
@@ -83,7 +83,7 @@ class Race:
     angle: np.ndarray
     compliance: np.ndarray
     across: float
-    edge: np.ndarray
+    edge: float
     crossing: np.ndarray
 
     @property
@@ -98,8 +98,8 @@ class Race:
     @property
     def ends(self) -> tuple[bool, bool]:
         """Whether the first and the last row are the last ones before the groove's edges."""
-        step = self.angle[1] - self.angle[0]
-        return bool(self.angle[0] - step < self.edge[0]), bool(self.angle[-1] + step > self.edge[1])
+        reach = 1.5 * (self.angle[1] - self.angle[0])  # rows end half a step before the edge
+        return bool(self.angle[0] - reach < -self.edge), bool(self.angle[-1] + reach > self.edge)
 
 
 @attrs.frozen(eq=False)
