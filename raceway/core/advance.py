@@ -25,6 +25,7 @@ from raceway.core.stepping.protocol import SteppedSystem
 from raceway.core.system import System
 from raceway.errors import ConvergenceError, PluginError, StabilityError
 
+__all__ = ["OnChunk", "advance"]
 _CHUNK = 20_000
 
 

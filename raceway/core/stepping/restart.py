@@ -27,7 +27,7 @@ def save_motion(motion: Motion, path: Path) -> Path:
     path = path.with_suffix(".npz")
     partial = path.with_suffix(".part.npz")
     try:
-        np.savez(partial, **arrays)
+        np.savez(partial, **arrays)  # type: ignore[arg-type]
         partial.replace(path)  # a reader sees the old file or the whole new one
     except OSError as why:
         raise RacewayError(f"the state cannot be written to {path}: {why.strerror or why}") from why
