@@ -116,7 +116,9 @@ class Contact:
         zero = np.zeros((2, 2))
         return Pressed(np.zeros(2), zero, zero, _NONE, np.zeros(0))
 
-    def _derivatives(self, nodes: np.ndarray, load: np.ndarray, axial: float, radial: float) -> tuple[np.ndarray, np.ndarray]:
+    def _derivatives(
+        self, nodes: np.ndarray, load: np.ndarray, axial: float, radial: float
+    ) -> tuple[np.ndarray, np.ndarray]:
         patch = self.patch
         slope, curved = np.empty((len(nodes), 2)), np.empty(3)
         derivatives(

@@ -102,7 +102,9 @@ class Factor:
         matrix[np.diag_indices(len(nodes))] += self._extra
         self._lower, status = dpotrf(matrix, lower=1)
         if status != 0:
-            raise ConvergenceError("the compliance of a contact is not positive definite: its mesh is too coarse or distorted")
+            raise ConvergenceError(
+                "the compliance of a contact is not positive definite: its mesh is too coarse or distorted"
+            )
         self._base = nodes.copy()
         self._same = True
         self.factorisations += 1

@@ -46,7 +46,7 @@ def derivatives(axial, radial, geometry, meridian, parallel, nodes, load, slope,
     ----------
     nodes : (n,) numbers k * columns + i;  load : (n,)
     """
-    sense, groove, circle, ball = geometry[0], geometry[1], geometry[2], geometry[3]
+    sense, circle, ball = geometry[0], geometry[2], geometry[3]
     columns = parallel.shape[1]
     curved[0], curved[1], curved[2] = 0.0, 0.0, 0.0
     for n in range(nodes.size):

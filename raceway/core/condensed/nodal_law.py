@@ -90,7 +90,7 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     if not (w < 0.0).any():
         w = np.where(g < -0.5 * depth, 0.02 * g, 0.0)
     before = np.inf
-    for iteration in range(1, _LIMIT + 1):
+    for count in range(1, _LIMIT + 1):
         load, by_gap, by_rate = law(w, v)
         rest = g + compliance @ load - w
         now = float(np.abs(rest).max())
@@ -112,7 +112,7 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     active = np.flatnonzero((load > 0.0) & (by_gap < 0.0))
     stiff = -by_gap[active]
     lower = _factor(compliance, active, stiff) if len(active) else None
-    return LawState(near[active], load[active], w[active], lower, by_rate[active] / stiff, iteration)
+    return LawState(near[active], load[active], w[active], lower, by_rate[active] / stiff, count)
 
 
 def _factor(compliance: np.ndarray, active: np.ndarray, stiff: np.ndarray) -> Any:

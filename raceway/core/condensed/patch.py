@@ -50,7 +50,7 @@ class Spacing:
         """
         divisions = round(2.0 * pi * radius / (semi_axes[0] / nodes))
         divisions += divisions % 2  # the opposite pole is a point too
-        across = semi_axes[1] / nodes
+        across = float(semi_axes[1]) / nodes
         return cls(2.0 * pi * radius / divisions, across, divisions, ceil(widest / across))
 
 
