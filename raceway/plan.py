@@ -20,7 +20,7 @@ from raceway.scene import Scene
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
 _START_S = 0.6
 #: Kinds of bodies that this version can compute.
-BODIES = ("rigid",)
+BODIES = ("rigid", "condensed")
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
 #: Records above this are refused [bytes].
@@ -172,13 +172,15 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
     listed = " or ".join(f"'{kind}'" for kind in BODIES)
     refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
-    refuse(scene.mesh is not None, "mesh", None, "rigid bodies have no mesh: leave the table out")
+    rigid = scene.bodies.kind == "rigid"
+    refuse(rigid and scene.mesh is not None, "mesh", None, "rigid bodies have no mesh: leave the table out")
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal":
-        faults.append(Mistake("contact.discretisation", "nodal", "rigid bodies have no surface points: use 'resultant'"))
+        if rigid:
+            faults.append(Mistake("contact.discretisation", "nodal", "rigid bodies have no surface points: use 'resultant'"))
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
     alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
@@ -187,7 +189,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
     for seat in ("outer_seat", "inner_seat"):
         value = getattr(scene.supports, seat)
-        refuse(value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")
+        refuse(rigid and value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
     if scene.excitation is not None:

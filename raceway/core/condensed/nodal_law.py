@@ -89,8 +89,9 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     w = np.minimum(start[near], 0.0)
     if not (w < 0.0).any():
         w = np.where(g < -0.5 * depth, 0.02 * g, 0.0)
-    before = np.inf
-    for count in range(1, _LIMIT + 1):
+    before, count = np.inf, 0
+    while count < _LIMIT:
+        count += 1
         load, by_gap, by_rate = law(w, v)
         rest = g + compliance @ load - w
         now = float(np.abs(rest).max())

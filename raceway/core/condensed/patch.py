@@ -53,6 +53,10 @@ class Spacing:
         across = float(semi_axes[1]) / nodes
         return cls(2.0 * pi * radius / divisions, across, divisions, ceil(widest / across))
 
+    def holding(self, widest: float) -> Spacing:
+        """The same distances, with points for a minor semi-axis with margin [m]."""
+        return attrs.evolve(self, columns=max(self.columns, ceil(widest / self.across)))
+
 
 def race_divisions(centre_radius: float, groove: float, sense: float, angle: float, across: float, balls: int) -> int:
     """Points around a race so that they lie ``across`` [m] apart at a contact angle; a multiple of the balls."""

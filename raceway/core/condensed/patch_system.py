@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.core.bodies.ring import (
-    CAGE,
     CENTRIFUGAL,
     DAMPING,
     LEVER,
@@ -21,33 +19,13 @@ from raceway.core.bodies.ring import (
     place,
 )
 from raceway.core.condensed.balls import Balls, Linear
-from raceway.core.condensed.contact import BeyondPatch, Contact
-from raceway.core.condensed.nodal_law import PointLaw
-from raceway.core.condensed.patch import Patch
+from raceway.core.condensed.pool import STEP, Pool, Row
 from raceway.core.system import TOLERANCE, Evaluation, System
 from raceway.errors import ConvergenceError
 
 _LIMIT = 60
 #: Balls' residual over the largest contact force at which they are in equilibrium.
 _BALLS = 1e-11
-#: Largest step of a ball or the ring in an iteration, of the ball's diameter.
-_STEP = 5e-4
-
-
-@attrs.frozen(eq=False)
-class Patches:
-    """Patches of both races.
-
-    Attributes
-    ----------
-    inner, outer : Patch
-    """
-
-    inner: Patch
-    outer: Patch
-
-    def __iter__(self) -> Any:
-        return iter((self.inner, self.outer))
 
 
 @attrs.define(eq=False)
@@ -58,17 +36,10 @@ class PatchSystem(System):
 
     Attributes
     ----------
-    patches : Patches
-    point_laws : laws of inner and outer races at points; None for no penetration
-    wider : called with a ``BeyondPatch``, returns patches that reach further; None: contact that leaves is an error
+    pool : patches and solvers, shared by all copies of this system
     """
 
-    patches: Patches = attrs.field(kw_only=True)
-    point_laws: tuple[PointLaw | None, PointLaw | None] = attrs.field(kw_only=True, default=(None, None))
-    wider: Callable[[BeyondPatch], Patches] | None = attrs.field(kw_only=True, default=None)
-    _balls: Balls | None = attrs.field(init=False, default=None)
-    _force: np.ndarray = attrs.field(init=False, default=None)
-    _last: Linear | None = attrs.field(init=False, default=None)
+    pool: Pool = attrs.field(kw_only=True)
 
     @property
     def rigid(self) -> System:
@@ -98,19 +69,18 @@ class PatchSystem(System):
     ) -> Evaluation:
         q = np.asarray(q, dtype=float)
         v = np.zeros(5) if v is None else np.asarray(v, dtype=float)
-        return self._widened(lambda: self._evaluate(q, v, ball, ball_rate, t, ball_gain))
+        return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, ball_gain))
 
     def _evaluate(
         self, q: np.ndarray, v: np.ndarray, ball: np.ndarray | None, ball_rate: np.ndarray | None, t: float, gain: float
     ) -> Evaluation:
-        balls = self._ready()
+        row = self.pool.row(self.table)
         centre, jacobian, velocity = self._groove(q, v, t)
         where = self._places(centre, ball)
         moving = bool(v.any()) or ball_rate is not None
-        rate = self._rates(velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
-        where, self._force, now = balls.settle(centre, where, self._force, rate, _BALLS)
-        self._last = now
-        return self._answer(centre, jacobian, where, rate, now)
+        rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
+        where, row.force, row.last = row.balls.settle(centre, where, row.force, rate, _BALLS)
+        return self._answer(row.balls, centre, jacobian, where, rate, row.last)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
@@ -122,34 +92,45 @@ class PatchSystem(System):
         ConvergenceError
             With the last state.
         """
-        steps = 0
+        if ball is not None and np.any(ball):
+            try:
+                return self.pool.widened(lambda: self._newton(q, np.asarray(ball), self.load, tolerance))
+            except ConvergenceError:
+                pass  # from rigid bodies, then
         for parts in (1, 4, 16):
             try:
-                for part in range(1, parts + 1):
-                    load = self.load * (part / parts)
-                    if part == 1:
-                        start, ball_start, _ = attrs.evolve(self.rigid, load=load).settle(q)
-                        start, ball_start = np.array(start), np.array(ball_start)
-                    start, ball_start, count = self._widened(lambda: self._newton(start, ball_start, load, tolerance))  # noqa: B023
-                    steps += count
-                return start, ball_start, steps
+                return self._by_load(q, parts, tolerance)
             except ConvergenceError as why:
                 if parts == 16 or "nothing holds" in str(why):
                     raise
         raise AssertionError("unreachable")
 
+    def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
+        """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
+        first = attrs.evolve(self.rigid, load=self.load / parts)
+        place, ball, _ = first.settle(q)
+        if not self.table[:, CENTRIFUGAL].any():
+            ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
+        total = 0
+        for part in range(1, parts + 1):
+            load, start = self.load * (part / parts), (place, ball)
+            place, ball, count = self.pool.widened(lambda s=start, f=load: self._newton(*s, f, tolerance))
+            total += count
+        return place, ball, total
+
     def _newton(
         self, q: np.ndarray, ball: np.ndarray, load: np.ndarray, tolerance: float
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Ring and balls in one iteration."""
-        balls, none = self._ready(), np.zeros(5)
+        row, none = self.pool.row(self.table), np.zeros(5)
+        balls = row.balls
         still = np.zeros((2 * self.ball_count, 2))
         q = q.copy()
         centre, jacobian, _ = self._groove(q, none, 0.0)
         where, force = self._places(centre, ball), np.zeros((2 * self.ball_count, 2))
         now = balls.linear(centre, where, force, still)
         weight = np.array([1.0, 1.0, 1.0, 1.0 / self.arm, 1.0 / self.arm]) * self.free
-        limit = _STEP * self._diameter
+        limit = STEP * self.pool.diameter
         chosen = self.free > 0.0
         best = np.inf
         for iteration in range(1, _LIMIT + 1):
@@ -159,7 +140,7 @@ class PatchSystem(System):
             scale = float(np.abs(now.force[: self.ball_count]).sum() + np.abs(load * weight).sum())
             relative = size / max(scale, 1e-300)
             if relative <= tolerance or (relative <= 1e3 * tolerance and size >= best):
-                self._force, self._last = now.force, now
+                row.force, row.last = now.force, now
                 return q, where, iteration
             best = min(best, size)
             tangent = jacobian.T @ balls.tangent(now) @ jacobian + self.stiffness
@@ -189,12 +170,12 @@ class PatchSystem(System):
 
     def pressures(self) -> list[Any]:
         """Answers of all contacts (``raceway.core.condensed.contact.Pressed``), inner races first, at the last state."""
-        return [] if self._last is None else self._last.pressed
+        last = self.pool.row(self.table).last
+        return [] if last is None else last.pressed
 
     def _answer(
-        self, centre: np.ndarray, jacobian: np.ndarray, where: np.ndarray, rate: np.ndarray, now: Linear
+        self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, where: np.ndarray, rate: np.ndarray, now: Linear
     ) -> Evaluation:
-        balls = self._ready()
         force = np.array([one.force for one in now.pressed])
         size = np.hypot(force[:, 0], force[:, 1])
         viscous = np.zeros((4 * self.ball_count, 4 * self.ball_count))
@@ -222,52 +203,6 @@ class PatchSystem(System):
             self.law_state.copy(),
         )
 
-    def _widened(self, solve: Callable[[], Any]) -> Any:
-        """The solution, on patches that are made wider while the contact leaves them."""
-        for _ in range(20):
-            try:
-                return solve()
-            except BeyondPatch as left:
-                if self.wider is None:
-                    raise ConvergenceError(f"{left}: nothing makes them wider here") from left
-                self.patches = self.wider(left)
-                self._balls = None
-        raise ConvergenceError("the contacts run away from every patch: there is no equilibrium near the first guess")
-
-    def _ready(self) -> Balls:
-        """The balls' solver, made anew when patches or balls changed."""
-        if self._balls is None:
-            z = self.ball_count
-            contacts = [
-                Contact(patch, law) for patch, law in zip(self.patches, self.point_laws, strict=True) for _ in range(z)
-            ]
-            loads = np.zeros((z, 2))
-            loads[:, 1] = self.table[:, CENTRIFUGAL]
-            self._balls = Balls(contacts, self._coupling(), loads, _STEP * self._diameter)
-            self._force = np.zeros((2 * z, 2))
-            self._last = None
-        return self._balls
-
-    @property
-    def _diameter(self) -> float:
-        return 2.0 * self.patches.inner.ball.radius
-
-    def _coupling(self) -> np.ndarray:
-        """(4 Z, 4 Z) W: between the poles of a ball, and between the balls of a row through both rings."""
-        z = self.ball_count
-        row = len(self.patches.inner.race.crossing)
-        out = np.zeros((2, z, 2, 2, z, 2))
-        ball = np.arange(z)
-        for component in (0, 1):
-            for here, there in ((0, 1), (1, 0)):
-                out[here, ball, component, there, ball, component] = -self.patches.inner.ball.opposite
-        for race, patch in enumerate(self.patches):
-            for k in range(z):
-                first = k // row * row
-                for other in range(first, first + row):
-                    out[race, k, :, race, other, :] += patch.race.crossing[(k - other) % row]
-        return out.reshape(4 * z, 4 * z)
-
     def _groove(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(Z, 2) inner groove centres, (2 Z, 5) their derivatives by q, (Z, 2) their velocities."""
         work = np.zeros((3, 2 * self.ball_count))
@@ -292,20 +227,14 @@ class PatchSystem(System):
             out[unknown] = (share[:, None] * centre)[unknown]
         return out
 
-    def _rates(self, velocity: np.ndarray, where: np.ndarray, ball_rate: np.ndarray | None, gain: float) -> np.ndarray:
+    def _rates(
+        self, row: Row, velocity: np.ndarray, where: np.ndarray, ball_rate: np.ndarray | None, gain: float
+    ) -> np.ndarray:
         """(2 Z, 2) velocities of the balls seen from both grooves; balls follow the ring where no rate is given."""
         if ball_rate is not None:
             own = gain * where + ball_rate[:, :2]
-        elif self._last is not None and len(self._last.held) == 2 * self.ball_count:
-            own = (self._ready().follow(self._last) @ velocity.reshape(-1)).reshape(-1, 2)
+        elif row.last is not None:
+            own = (row.balls.follow(row.last) @ velocity.reshape(-1)).reshape(-1, 2)
         else:
             own = self.table[:, [OUTER_SHARE]] * velocity
         return np.concatenate([own - velocity, own])
-
-    def without(self, *entries: int) -> PatchSystem:
-        scalars = self.scalars.copy()
-        scalars[list(entries)] = 0.0
-        other = attrs.evolve(self, scalars=scalars)
-        if CAGE in entries and self._balls is not None:
-            other._balls, other._force, other._last = self._balls, self._force, self._last
-        return other
