@@ -1,0 +1,4 @@
+"""Bodies whose every node is a degree of freedom.
+
+friction    Coulomb friction at the points of a contact
+"""
