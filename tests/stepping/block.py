@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as solvers
 
-from raceway.core.elastic.friction import Friction
+from raceway.core.elastic.friction import CoulombFriction
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.record import Motion
 from raceway.core.stepping.protocol import Observation, State
@@ -39,7 +39,7 @@ class Block:
         symmetric: bool = True,
     ) -> None:
         points, cells = elastic.block(sides, counts)
-        self.points, self.symmetric = points, symmetric
+        self.points = points
         self.operator = HexOperator(points, cells, YOUNG, POISSON, DENSITY, "full")
         self.matrix = sp.csr_matrix(self.operator.stiffness())
         self.lumped = self.operator.lumped_mass()
@@ -49,7 +49,7 @@ class Block:
         self.base = np.flatnonzero(points[:, 2] < 1e-9)
         share = _tributary(points[self.base], sides, counts)
         self.area = share * sides[0] * sides[1]
-        self.friction = Friction(coefficient, np.full(len(self.base), stick), self.area) if coefficient else None
+        self.friction = CoulombFriction(coefficient, np.full(len(self.base), stick), symmetric) if coefficient else None
         self.normal = np.tile([0.0, 0.0, 1.0], (len(self.base), 1))
 
     def begin(self, motion: Motion) -> State:
@@ -104,8 +104,8 @@ class Block:
         push = -pressure[:, None] * self.normal
         self._blocks = -d_gap[:, None, None] * (self.normal[:, :, None] * self.normal[:, None, :])
         if self.friction is not None:
-            push = push + self.friction.press(u.reshape(-1, 3)[self.base], self.normal, pressure, d_gap)
-            self._blocks = self._blocks + self.friction.tangent(self.symmetric)
+            traction, tangent = self.friction.evaluate(u.reshape(-1, 3)[self.base], self.normal, pressure, d_gap)
+            push, self._blocks = push - traction, self._blocks + tangent
         force[self.base] += self.area[:, None] * push
         return force.ravel()
 
@@ -152,8 +152,8 @@ class Block:
             "elastic": self.operator.energy(u),
             "kinetic": float(0.5 * self.masses @ v**2),
             "contact": float(0.5 * self.penalty * self.area @ np.minimum(self._gap, 0.0) ** 2)
-            + (friction.stored() if friction else 0.0),
-            "friction": friction.lost if friction else 0.0,
+            + (float(self.area @ friction.stored()) if friction else 0.0),
+            "friction": float(self.area @ friction.dissipated) if friction else 0.0,
         }
         return Observation(self._mean(u), self._mean(v), np.zeros(0), np.zeros(0), np.zeros((0, 2)), energies)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.friction import Friction
+from raceway.core.elastic.friction import CoulombFriction
 from raceway.core.record import Schedule
 from raceway.core.stepping.energy import drift
 from raceway.core.stepping.restart import load_motion, save_motion
@@ -21,7 +21,7 @@ def points(count: int = 40, seed: int = 1):
     rng = np.random.default_rng(seed)
     normal = rng.normal(size=(count, 3))
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    friction = Friction(0.2, rng.uniform(1e12, 3e12, count), np.full(count, 1e-9))
+    friction = CoulombFriction(0.2, rng.uniform(1e12, 3e12, count), symmetric=False)
     return rng, normal, friction
 
 
@@ -29,14 +29,14 @@ def test_points_stick_below_the_limit_and_slip_on_it():
     rng, normal, friction = points()
     shift = 1e-5 * rng.normal(size=(40, 3))
     pressure = np.full(40, 5e7)
-    found = friction.press(shift, normal, pressure, np.full(40, -1e13))
+    found, _ = friction.evaluate(shift, normal, pressure, np.full(40, -1e13))
     tangential = shift - (shift * normal).sum(axis=1, keepdims=True) * normal
     trial = friction.stick[:, None] * tangential
     size = np.linalg.norm(trial, axis=1)
     assert (friction.slipping == (size > 1e7)).all()
     assert 0 < friction.slipping.sum() < 40
     wanted = np.where((size > 1e7)[:, None], 1e7 * trial / size[:, None], trial)
-    assert np.abs(found - wanted).max() < 1e-12 * 1e7
+    assert np.abs(found + wanted).max() < 1e-12 * 1e7
     assert np.abs((found * normal).sum(axis=1)).max() < 1e-9 * 1e7
 
 
@@ -45,70 +45,70 @@ def test_tangent_is_the_derivative():
     rng, normal, friction = points()
     shift, stiffness, h = 1e-5 * rng.normal(size=(40, 3)), 1e13, 1e-11
 
-    def at(s: np.ndarray) -> np.ndarray:
+    def at(s: np.ndarray):
         opened = (s * normal).sum(axis=1)
-        return friction.press(s, normal, 5e7 - stiffness * opened * 1e-3, np.full(40, -stiffness * 1e-3))
+        return friction.evaluate(s, normal, 5e7 - stiffness * opened * 1e-3, np.full(40, -stiffness * 1e-3))
 
-    at(shift)
-    tangent = friction.tangent(symmetric=False)
+    _, tangent = at(shift)
     for axis in range(3):
         step = np.zeros(3)
         step[axis] = h
-        wanted = (at(shift + step) - at(shift - step)) / (2.0 * h)
+        wanted = -(at(shift + step)[0] - at(shift - step)[0]) / (2.0 * h)
         # (h / shift)^2 = 1e-12 of truncation, 1e-16 * 1e7 / (1e-11 * 1e12) = 1e-10 of rounding.
         assert np.abs(tangent[:, :, axis] - wanted).max() < 1e-7 * np.abs(tangent).max()
-    symmetric = friction.tangent()
+    friction.symmetric = True
+    _, symmetric = at(shift)
     assert np.abs(symmetric - np.swapaxes(symmetric, 1, 2)).max() < 1e-12 * np.abs(symmetric).max()
 
 
 def test_history_is_committed_only_when_told():
     _, normal, friction = points()
     shift = np.full((40, 3), 1e-6)
-    first = friction.press(shift, normal, np.full(40, 1e9), np.zeros(40))
-    assert (friction.press(np.zeros((40, 3)), normal, np.full(40, 1e9), np.zeros(40)) == 0.0).all()
-    friction.press(shift, normal, np.full(40, 1e9), np.zeros(40))
+    first, _ = friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
+    assert (friction.evaluate(np.zeros((40, 3)), normal, np.full(40, 1e9), np.zeros(40))[0] == 0.0).all()
+    friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
     friction.commit()
-    again = friction.press(shift, normal, np.full(40, 1e9), np.zeros(40))
+    again, _ = friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
     assert np.abs(again - first).max() < 1e-12 * np.abs(first).max()
-    assert friction.press(2 * shift, normal, np.full(40, 1e9), np.zeros(40)) == pytest.approx(2 * first, rel=1e-12)
+    assert friction.evaluate(2 * shift, normal, np.full(40, 1e9), np.zeros(40))[0] == pytest.approx(2 * first, rel=1e-12)
 
 
 def test_an_open_point_carries_nothing():
     _, normal, friction = points()
-    friction.press(np.full((40, 3), 1e-6), normal, np.full(40, 1e9), np.zeros(40))
+    friction.evaluate(np.full((40, 3), 1e-6), normal, np.full(40, 1e9), np.zeros(40))
     friction.commit()
-    assert (friction.press(np.full((40, 3), 1e-6), normal, np.zeros(40), np.zeros(40)) == 0.0).all()
+    assert (friction.evaluate(np.full((40, 3), 1e-6), normal, np.zeros(40), np.zeros(40))[0] == 0.0).all()
 
 
 def test_closed_cycles_lose_four_times_the_amplitude():
     """Sliding to and fro between -A and A: mu p * 4 A a cycle less the springs' part, 4 mu p * (mu p / k)."""
-    friction = Friction(0.2, np.array([1e12]), np.array([1e-6]))
+    friction = CoulombFriction(0.2, np.array([1e12]))
     amplitude, limit = 1e-4, 0.2 * 1e7
     normal, pressure = np.array([[0.0, 0.0, 1.0]]), np.array([1e7])
     path = amplitude * np.sin(np.linspace(0.0, 6.0 * np.pi, 6001))
     lost = []
     for x in path:
-        friction.press(np.array([[x, 0.0, 0.0]]), normal, pressure, np.zeros(1))
+        friction.evaluate(np.array([[x, 0.0, 0.0]]), normal, pressure, np.zeros(1))
         friction.commit()
-        lost.append(friction.lost)
+        lost.append(friction.dissipated[0])
     cycle = lost[5500] - lost[3500]
-    assert cycle == pytest.approx(1e-6 * limit * 4.0 * (amplitude - limit / 1e12), rel=1e-3)
+    assert cycle == pytest.approx(limit * 4.0 * (amplitude - limit / 1e12), rel=1e-3)
 
 
 def test_block_sticks_below_the_limit():
-    """Pulled with 0.5 mu N and let go: it moves by F / (k A), rocks on the springs beneath, and comes back."""
+    """Pulled with 0.3 mu N and let go: it moves by F / (k A), rocks on the springs beneath, and comes back."""
 
     def pull(t: float) -> float:
-        return 0.5 * MU * WEIGHT * np.sin(np.pi * min(t / 4e-3, 1.0)) ** 2
+        return 0.3 * MU * WEIGHT * np.sin(np.pi * min(t / 4e-3, 1.0)) ** 2
 
     block = Block(WEIGHT, MU, pull, stick=1e11)
     record = Newmark().advance(block, block.at_rest(), Schedule(4e-5, 125, 1))
-    x, sticking = record.displacement[:, 0], 0.5 * MU * WEIGHT / (1e11 * block.area.sum())
-    rocking = 0.5 * MU * WEIGHT * 1e-3**2 / (1e12 * 3e-3 * 4e-3**3 / 12.0)
+    x, sticking = record.displacement[:, 0], 0.3 * MU * WEIGHT / (1e11 * block.area.sum())
+    rocking = 0.3 * MU * WEIGHT * 1e-3**2 / (1e12 * 3e-3 * 4e-3**3 / 12.0)
     # The block's own shear, F h / (2 G A) = 3e-9 m, and its vibration are left: 1.5 %.
     assert x.max() == pytest.approx(sticking + rocking, rel=0.03)
     assert np.abs(x[record.time > 4e-3]).max() < 0.03 * sticking
-    assert record.energies["friction"][-1] < 0.01 * MU * WEIGHT * sticking
+    assert record.energies["friction"][-1] == 0.0
 
 
 def test_block_slips_above_the_limit():

@@ -20,6 +20,8 @@ Wriggers: Computational Contact Mechanics (2006), section 5.2.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numba import float64, void
 
@@ -82,8 +84,8 @@ def return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resis
         lost[i] = given / k
 
 
-class Friction:
-    """Coulomb friction of n points against their partners.
+class CoulombFriction:
+    """Coulomb friction of n points against the other surface.
 
     Parameters
     ----------
@@ -91,61 +93,72 @@ class Friction:
         mu > 0.
     stick : (n,) float
         Stiffness of sticking points [N/m3].
-    area : (n,) float
-        Of the points [m2].
+    symmetric : bool
+        Whether tangents leave the coupling with the pressure out, for solvers of symmetric systems.
 
     Attributes
     ----------
-    committed, place : (n, 3) resistances [Pa] and relative places [m] at the last commit
-    lost : energy that was lost up to the last commit [J]
+    committed, place : (n, 3) resistances [Pa] and displacements [m] at the last commit
+    dissipated : (n,) energy lost up to the last commit [J/m2]
     """
 
-    def __init__(self, coefficient: float, stick: np.ndarray, area: np.ndarray) -> None:
-        n = len(stick)
-        self.coefficient, self.area = float(coefficient), np.ascontiguousarray(area, dtype=float)
+    def __init__(self, coefficient: float, stick: np.ndarray, symmetric: bool = True) -> None:
+        self.coefficient, self.symmetric = float(coefficient), symmetric
         self.stick = np.ascontiguousarray(stick, dtype=float)
-        self.committed, self.place, self.lost = np.zeros((n, 3)), np.zeros((n, 3)), 0.0
+        n = len(self.stick)
+        self.committed, self.place, self.dissipated = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros(n)
         self._trial, self._direction, self._factors = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
-        self._normal, self._place, self._lost = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros(n)
+        self._place, self._lost = np.zeros((n, 3)), np.zeros(n)
 
-    def press(self, place: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray) -> np.ndarray:
-        """(n, 3) resistance [Pa] at relative places (n, 3) [m]: it acts against the points, with them on their partners."""
-        self._normal, self._place = np.ascontiguousarray(normal), np.array(place)
+    def evaluate(
+        self, moved: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Traction on the points (n, 3) [Pa] and minus its derivative by ``moved`` (n, 3, 3) [N/m3].
+
+        Parameters
+        ----------
+        moved : (n, 3) displacement of the points against the other surface [m]
+        normal : (n, 3);  pressure : (n,) [Pa];  d_gap : (n,) its derivative by the gap [N/m3]
+        """
+        self._place = np.array(moved)
         return_map(
-            pressure, d_gap, self._normal, self._place - self.place, self.committed, self.coefficient, self.stick,
+            pressure, d_gap, normal, self._place - self.place, self.committed, self.coefficient, self.stick,
             self._trial, self._direction, self._factors, self._lost,
         )  # fmt: skip
-        return self._trial.copy()
-
-    def tangent(self, symmetric: bool = True) -> np.ndarray:
-        """(n, 3, 3) Derivatives of the last resistance by the place [N/m3]; ``symmetric`` leaves the coupling out."""
-        n, tau = self._normal, self._direction
+        tau = self._direction
         across, along, coupling = (self._factors[:, c, None, None] for c in (ACROSS, ALONG, COUPLING))
-        slip, press = tau[:, :, None] * tau[:, None, :], n[:, :, None] * n[:, None, :]
-        out = across * (np.eye(3) - press - slip) + along * slip
-        if not symmetric:
-            out = out + coupling * tau[:, :, None] * n[:, None, :]
-        return np.asarray(out)
+        slip, press = tau[:, :, None] * tau[:, None, :], normal[:, :, None] * normal[:, None, :]
+        tangent = across * (np.eye(3) - press - slip) + along * slip
+        if not self.symmetric:
+            tangent = tangent + coupling * tau[:, :, None] * normal[:, None, :]
+        return -self._trial, np.asarray(tangent)
 
     @property
     def slipping(self) -> np.ndarray:
         """(n,) whether a point slips at the last place, or is open."""
         return np.asarray(self._factors[:, ALONG] == 0.0)
 
-    def stored(self) -> float:
-        """Energy [J] in the sticking springs at the last place."""
-        return float(0.5 * (self.area / self.stick * (self._trial**2).sum(axis=1)).sum())
+    def stored(self) -> np.ndarray:
+        """(n,) energy in the sticking springs at the last place [J/m2]."""
+        return np.asarray(0.5 * (self._trial**2).sum(axis=1) / self.stick)
 
     def commit(self) -> None:
         """The last place becomes history."""
         self.committed, self.place = self._trial.copy(), self._place.copy()
-        self.lost += float(self.area @ self._lost)
+        self.dissipated = self.dissipated + self._lost
+
+    def rollback(self) -> None:
+        """Trials leave no trace: nothing to undo."""
 
     def state(self) -> dict[str, np.ndarray]:
         """The history as arrays by name."""
-        return {"friction": self.committed.copy(), "friction_place": self.place.copy(), "friction_lost": np.array(self.lost)}
+        return {
+            "friction": self.committed.copy(),
+            "friction_place": self.place.copy(),
+            "friction_dissipated": self.dissipated.copy(),
+        }
 
-    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+    def restore(self, arrays: Mapping[str, np.ndarray]) -> None:
         """Set the history to what ``state`` gave."""
         self.committed, self.place = arrays["friction"].copy(), arrays["friction_place"].copy()
-        self.lost = float(arrays["friction_lost"])
+        self.dissipated = arrays["friction_dissipated"].copy()
