@@ -42,7 +42,8 @@ def advance(
     Parameters
     ----------
     loop : kernel with the signature ``raceway.core.signatures.LOOP``
-    system : compiled, or one that is stepped from Python by the loop of the same name in ``raceway.core.stepping``
+    system : compiled, or one that is stepped from Python by the loop of the same name in ``raceway.core.stepping``: a
+        ``SteppedSystem``, or one of the ring's five coordinates that is no compiled one (its ``companion`` is another)
     coefficients : (k,) the method's own numbers
 
     Raises
@@ -50,7 +51,7 @@ def advance(
     ConvergenceError, StabilityError
         With the reason, the time and the last good motion in ``state``.
     """
-    if not isinstance(system, System):
+    if not isinstance(system, System) or system.companion is not system:
         return _step(loop, system, start, schedule, coefficients, on_chunk)
     z = system.ball_count
     rows = np.zeros((schedule.steps // schedule.stride, 16))
@@ -99,7 +100,7 @@ def advance(
 
 
 def _step(
-    loop: Any, system: SteppedSystem, start: Motion, schedule: Schedule, coefficients: np.ndarray, on_chunk: OnChunk | None
+    loop: Any, system: Any, start: Motion, schedule: Schedule, coefficients: np.ndarray, on_chunk: OnChunk | None
 ) -> Record:
     from raceway.core.integrators.central_difference import central_difference
     from raceway.core.integrators.implicit import implicit
@@ -107,6 +108,7 @@ def _step(
     from raceway.core.stepping import central_difference as explicit_loop
     from raceway.core.stepping import implicit as implicit_loop
     from raceway.core.stepping import quasi_static as static_loop
+    from raceway.core.stepping.bearing import SteppedBearing
     from raceway.core.stepping.recorder import Recorder
 
     known = [
@@ -116,8 +118,9 @@ def _step(
     ]
     for compiled, stepped in known:
         if loop is compiled:
-            recorder = Recorder(system, system.begin(start), schedule, on_chunk)
-            stepped(system, recorder, coefficients)
+            stepper: SteppedSystem = SteppedBearing(system) if isinstance(system, System) else system
+            recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
+            stepped(stepper, recorder, coefficients)
             return recorder.record()
     raise PluginError(
         f"loop `{loop.__name__}` has no counterpart for bodies that are stepped from Python: use a built-in one"

@@ -16,7 +16,7 @@ class SteppedBearing:
     Parameters
     ----------
     system : object
-        Offers ``ball_count``, ``ball_columns``, ``conservative``, ``arm``, ``mass``, ``damping``, ``stiffness`` (5, 5), ``free``, ``load``
+        Offers ``ball_count``, ``ball_columns``, ``rated_columns``, ``conservative``, ``arm``, ``mass``, ``damping``, ``stiffness`` (5, 5), ``free``, ``load``
         (5,), ``law_state``, ``outer_force(t)``, ``critical_time_step(tangent)``, ``stopped(t)`` (a copy whose balls stand
         where they are at t), and ``evaluate(q, v, ball, ball_rate, t, dt=, ball_gain=, memory=)``, an ``Evaluation``.
 
@@ -57,15 +57,15 @@ class SteppedBearing:
 
     def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         system, rate, gain = self.system, np.zeros_like(self._ball), 0.0
-        extrapolated = self._ball.copy()
+        guess, rated = self._ball.copy(), system.rated_columns
         if dt > 0.0:
             gain = 1.5 / dt
-            rate[:, :2] = (0.5 * self._before[:, :2] - 2.0 * self._ball[:, :2]) / dt
-            extrapolated[:, :2] = 2.0 * self._ball[:, :2] - self._before[:, :2]
+            rate[:, rated] = (0.5 * self._before[:, rated] - 2.0 * self._ball[:, rated]) / dt
+            guess[:, rated] = 2.0 * self._ball[:, rated] - self._before[:, rated]
         else:
             system = system.stopped(t)
-        guess = extrapolated if self._guess is None else self._guess
-        guess[:, 2:] = self._ball[:, 2:]
+        if self._guess is not None:  # what is not rated, slips, is handed over as it was committed
+            guess[:, rated] = self._guess[:, rated]
         self._now = system.evaluate(u, v, guess, rate, t, dt=dt, ball_gain=gain, memory=self._memory)
         self._guess = self._now.ball.copy()
         return np.asarray(self._now.force + system.damping @ v + system.stiffness @ u)

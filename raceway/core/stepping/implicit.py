@@ -10,6 +10,8 @@ from raceway.errors import ConvergenceError
 
 NEWTON_LIMIT = 40
 HALVINGS = 8
+#: Iterations after which a step that does not shrink the residual is shortened too: contacts may change to and fro.
+PATIENCE = 10
 #: A force that is none [N]: a motion that has died out is not resolved further.
 NOTHING = 1e-30
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
@@ -54,7 +56,7 @@ def _step(system: SteppedSystem, recorder: Recorder, t: float, coefficients: np.
             if np.abs(u).max() >= BOUND:
                 raise recorder.unbounded()
             return State(u, v, a, rest)
-        if norm > 2.0 * norm_before and halvings < HALVINGS:
+        if norm > (2.0 if len(history) < PATIENCE else 0.999) * norm_before and halvings < HALVINGS:
             halvings += 1
             du *= 0.5
             u = u - du

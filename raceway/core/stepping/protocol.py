@@ -38,7 +38,9 @@ class Observation:
     displacement, velocity : (5,) of the ring's reference point
     gap, contact_force : (2 Z,) inner races first [m, N]
     ball : (Z, 2 or 4) positions (and slips) of the balls [m]
-    energies : name -> [J]; the same names at every step, none where the system does not tell
+    energies : name -> [J]; the same names at every step, none where the system does not tell.  "elastic", "kinetic" and
+        "contact" are stored (sticking friction's springs in "contact"), "friction" and "damping" lost since the beginning,
+        "hourglass" is a part of "elastic"; the recorder adds "external", the work of all outer forces
     """
 
     displacement: np.ndarray

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.stepping.implicit import BOUND, HALVINGS, NEWTON_LIMIT, NOTHING
+from raceway.core.stepping.implicit import BOUND, HALVINGS, NEWTON_LIMIT, NOTHING, PATIENCE
 from raceway.core.stepping.protocol import State, SteppedSystem
 from raceway.core.stepping.recorder import Recorder
 from raceway.errors import ConvergenceError
@@ -45,7 +45,7 @@ def equilibrium(
             raise recorder.unbounded()
         if norm <= tolerance * max(system.contacts()[2], load) + NOTHING:
             return u, rest
-        if norm > 1.5 * norm_before and halvings < HALVINGS:
+        if norm > (1.5 if len(history) < PATIENCE else 0.999) * norm_before and halvings < HALVINGS:
             halvings += 1
             du *= 0.5
             u = u - du

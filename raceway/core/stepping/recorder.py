@@ -41,7 +41,8 @@ class Recorder:
         self._on_chunk, self._reported = on_chunk, time.perf_counter()
         self._done = 0
         self._rows: list[tuple[float, Observation]] = []
-        self._penetration = self._peak = 0.0
+        self._penetration = self._peak = self._work = 0.0
+        self._outer = self.load(self.time_of(0))
 
     def time_of(self, step: int) -> float:
         """Time [s] at the end of a step, counted from 1."""
@@ -59,6 +60,9 @@ class Recorder:
         velocity : (size,) what the record shows; None for ``state.v``
         """
         system, schedule = self.system, self.schedule
+        outer = self.load(self.time_of(self._done + 1))
+        self._work += float(0.5 * (self._outer + outer) @ (state.u - self.state.u))
+        self._outer = outer
         penetration, peak, _ = system.contacts()
         self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
         system.commit()
@@ -66,7 +70,10 @@ class Recorder:
         self._done += 1
         if (schedule.first + self._done) % schedule.stride == 0:
             t = self.time_of(self._done)
-            self._rows.append((t, system.observe(state.u, state.v if velocity is None else velocity)))
+            seen = system.observe(state.u, state.v if velocity is None else velocity)
+            if seen.energies:
+                seen.energies["external"] = self._work
+            self._rows.append((t, seen))
         now = time.perf_counter()
         if self._on_chunk is not None and (now - self._reported > _REPORT_S or self._done == schedule.steps):
             self._reported = now
