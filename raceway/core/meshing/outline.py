@@ -116,10 +116,10 @@ def _chains(key: str, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         faces.append(on)
     for first in faces[0]:
         step = 1 if (first + 1) % count not in faces[0] else -1
-        line = [first]
-        while line[-1] not in faces[1]:
-            line.append((line[-1] + step) % count)
-        lines.append(points[line])
+        walk = [int(first)]
+        while walk[-1] not in faces[1]:
+            walk.append((walk[-1] + step) % count)
+        lines.append(points[walk])
     for line in lines:
         bad = np.flatnonzero(np.diff(line[:, 0]) <= 1e-9 * size)
         if len(bad):

@@ -36,7 +36,7 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
     )
 
 
-def _groove(bearing: Any, inner: bool) -> dict[str, float]:
+def _groove(bearing: Any, inner: bool) -> dict[str, Any]:
     alpha, sense = bearing.contact_angle, 1.0 if inner else -1.0
     conformity = bearing.conformity_inner if inner else bearing.conformity_outer
     offset = sense * (conformity - 0.5) * bearing.ball_diameter
