@@ -18,6 +18,7 @@ from raceway.core.bodies.ring import (
     SIDE,
     TILT_ARM,
     place,
+    stop,
 )
 from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.core.root import find_root
@@ -38,6 +39,7 @@ class Evaluation:
     stiffness, damping : (5, 5) its derivatives by displacement and velocity
     gap, contact_force : (2 Z,) inner races first, then outer [m, N]
     ball : (Z, 2, 4 or 6) positions of the balls in their meridian planes, slips, structural approaches [m]
+    memory : (2 Z, m) what the law would remember
     """
 
     force: np.ndarray
@@ -46,6 +48,7 @@ class Evaluation:
     gap: np.ndarray
     contact_force: np.ndarray
     ball: np.ndarray
+    memory: np.ndarray
 
 
 @attrs.define(eq=False)
@@ -95,6 +98,11 @@ class System:
         return self.base_kernel is self.kernel
 
     @property
+    def companion(self) -> System:
+        """A compiled system of the same ring: this one; another, near it, where this one is stepped from Python."""
+        return self
+
+    @property
     def ball_columns(self) -> int:
         return (2 if self.conservative else 4) + (2 if self.condensed else 0)
 
@@ -133,8 +141,18 @@ class System:
         ball: np.ndarray | None = None,
         ball_rate: np.ndarray | None = None,
         t: float = 0.0,
+        *,
+        dt: float = 0.0,
+        ball_gain: float = 0.0,
+        memory: np.ndarray | None = None,
     ) -> Evaluation:
         """Contact forces and tangents at displacement q (5,) and velocity v (5,).
+
+        Parameters
+        ----------
+        ball : (Z, 2 or 4) a first guess, and the slips that were committed last
+        ball_rate, ball_gain : the rate of a ball is ball_gain * ball + ball_rate [m/s]
+        dt : step since the law's ``memory`` (2 Z, m) was committed [s]; None for ``law_state``
 
         Raises
         ------
@@ -156,13 +174,21 @@ class System:
         v = np.zeros(5) if v is None else np.ascontiguousarray(v, dtype=float)
         work = self._work()
         f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
+        old = self.law_state if memory is None else memory
+        new = old.copy()
         status = self.kernel(
-            t, 0.0, np.ascontiguousarray(q, dtype=float), v, ball, 0.0, rate, self.law, self.law_params,
-            self.law_state, self.law_state.copy(), scalars, self.table, work, f, K, C,
+            t, dt, np.ascontiguousarray(q, dtype=float), v, ball, ball_gain, rate, self.law, self.law_params,
+            old, new, scalars, self.table, work, f, K, C,
         )  # fmt: skip
         if status != 0:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
-        return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball)
+        return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball, new)
+
+    def stopped(self, t: float) -> System:
+        """A copy whose orbiting balls stand still where they are at a time."""
+        scalars, table = self.scalars.copy(), self.table.copy()
+        stop(float(t), scalars, table)
+        return attrs.evolve(self, scalars=scalars, table=table)
 
     def without(self, *entries: int) -> System:
         """A copy with some ``scalars`` (FRICTION, GYROSCOPIC, CAGE of ``raceway.core.bodies.ring``) set to zero."""

@@ -1,4 +1,4 @@
-"""force = params[:, 0] * max(-gap, 0) ** exponent, for the two exponents that the built-in laws need."""
+"""force = params[:, 0] * max(-gap, 0) ** exponent, for the three exponents that the built-in laws need."""
 
 import numpy as np
 
@@ -25,4 +25,15 @@ def square(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate
         slope = params[i, 0] * approach
         force[i] = slope * approach
         d_gap[i] = -2.0 * slope
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """A nodal penalty: p = k_n delta."""
+    for i in range(gap.size):
+        closed = gap[i] < 0.0
+        slope = params[i, 0] if closed else 0.0
+        force[i] = -slope * gap[i]
+        d_gap[i] = -slope
         d_rate[i] = 0.0

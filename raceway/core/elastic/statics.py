@@ -1,0 +1,95 @@
+"""Equilibrium of elastic bodies in contact: Newton's method on the active set, with a line search and load steps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import ConvergenceError
+
+#: Iterations of one load step, halvings of one line search, halvings of the load.
+NEWTON_LIMIT, HALVINGS, SMALLEST_PART = 40, 8, 1.0 / 16.0
+#: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
+TOLERANCE, LOOSE, TIGHT = 1e-8, 1e-2, 1e-4
+
+
+@attrs.frozen(eq=False)
+class Settled:
+    """An equilibrium.
+
+    Attributes
+    ----------
+    y : (size,) unknowns
+    iterations : of Newton;  linear_iterations : of all linear solves
+    residuals : list of relative residuals, in order
+    """
+
+    y: np.ndarray
+    iterations: int
+    linear_iterations: int
+    residuals: list[float]
+
+
+def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
+    """The state at which contact forces and elasticity balance ``system.load``, near a guess (size,).
+
+    Raises
+    ------
+    ConvergenceError
+        Nothing found; ``state`` holds the last good state ``y``, the part of the load that it carries, and ``residuals``.
+    """
+    load, history = system.load.copy(), []
+    good, part, step, count, before = guess.copy(), 0.0, 1.0, 0, system.solver.iterations
+    try:
+        while True:
+            goal = min(1.0, part + step)
+            system.load = goal * load
+            try:
+                # Only the first state is an overlap that nothing has deformed yet.
+                y, used = _newton(system, good, tolerance, history, 0.5 if part == 0.0 else 0.0)
+            except ConvergenceError as why:
+                step *= 0.5
+                if step < SMALLEST_PART:
+                    raise ConvergenceError(
+                        f"no equilibrium: {why} Last good state: {100 * part:.3g} % of the load, {len(history)} iterations in all",
+                        {"y": good, "load_part": part, "residuals": history},
+                    ) from why
+                continue
+            good, part, count = y, goal, count + used
+            if goal >= 1.0:
+                return Settled(y, count, system.solver.iterations - before, history)
+    finally:
+        system.load = load
+
+
+def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[float], share: float) -> tuple[np.ndarray, int]:
+    y = guess.copy()
+    rest = system.load - system.static_internal(y, share)
+    forcing, previous = LOOSE, np.inf
+    for done in range(NEWTON_LIMIT):
+        scale = system.force_scale()
+        size = system.measure(rest)
+        relative = size / scale if scale > 0.0 else np.inf
+        history.append(float(relative))
+        if not np.isfinite(size):
+            raise ConvergenceError("forces are not finite.")
+        if relative <= tolerance and (done > 0 or share == 0.0):
+            return y, done
+        if done > 1:
+            forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous))
+        previous = size
+        step = system.solve(1.0, 0.0, 0.0, rest, tolerance=forcing)
+        slope = float(step @ rest)
+        part = 1.0
+        for _ in range(HALVINGS):
+            trial = y + part * step
+            rest = system.load - system.static_internal(trial)
+            now = float(step @ rest)
+            # The slope of the potential along the step: as long as it has not grown against the step, go on.
+            if done == 0 and share > 0.0 or abs(now) <= 0.9 * abs(slope) or system.measure(rest) <= tolerance * scale:
+                break
+            part *= 0.5 if now > 0.0 or slope - now <= 0.0 else min(max(slope / (slope - now), 0.1), 0.8)
+        y = trial
+    raise ConvergenceError(f"Newton's residual stands at {history[-1]:.1e} of the load after {NEWTON_LIMIT} iterations.")

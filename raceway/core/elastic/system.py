@@ -1,0 +1,208 @@
+"""Elastic bodies in nodal contact as one system: settled, or stepped in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from raceway.core.elastic.assembly import Assembly
+from raceway.core.elastic.contact import NodalContact
+from raceway.core.elastic.solver import LinearSolver
+from raceway.core.elastic.statics import Settled, settle
+from raceway.errors import ConvergenceError, MeshError
+
+#: Relative residual of the linear solves of a time step.
+LINEAR_TOLERANCE = 1e-6
+
+
+class ElasticSystem:
+    """M a + C v + f(y) = load + scale * excitation(t) for the unknowns of an assembly.
+
+    Parameters
+    ----------
+    assembly : Assembly;  contact : NodalContact | None
+    modulus : E* of the contacts [Pa]
+    load : (size,) constant forces [N, N m]
+    excitation : function of t -> (frame unknowns,) forces on the first frame's motions, or None
+    """
+
+    conservative = True
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        contact: NodalContact | None,
+        modulus: float,
+        load: np.ndarray,
+        excitation: Callable[[float], np.ndarray] | None = None,
+    ) -> None:
+        self.assembly, self.contact, self.load = assembly, contact, np.array(load, dtype=float)
+        self.excitation = excitation
+        self.solver = LinearSolver(assembly, contact, modulus)
+        self.size = assembly.size
+        m = assembly.frame_size
+        arm = max(float(np.abs(assembly.carried[:, k]).max()) for k in range(m)) if m else 1.0
+        # Moments count as the force at the arm of the rotations: columns of rotations hold lengths, of translations ones.
+        reach = np.abs(assembly.carried).max(axis=0) if m else np.zeros(0)
+        del arm
+        self._weight = np.concatenate([np.where(reach > 0.0, 1.0 / np.maximum(reach, 1e-30), 0.0), np.ones(self.size - m)])
+        self._weight *= assembly.unknown
+        self._inverse_frame = np.linalg.pinv(assembly.frame_mass) if m else np.zeros((0, 0))
+        self._u = np.zeros(3 * assembly.nodes)
+        self._y = np.zeros(self.size)
+        self._element_step: float | None = None
+        self._external = self.load.copy()
+        self._refuse_overlap()
+
+    # Forces
+
+    def outer_force(self, t: float) -> np.ndarray:
+        """The excitation on the first frame's motions."""
+        return np.zeros(self.assembly.frame_size) if self.excitation is None else np.asarray(self.excitation(t))
+
+    def external(self, t: float, scale: float) -> np.ndarray:
+        out = self.load.copy()
+        force = self.outer_force(t)
+        out[: len(force)] += scale * force
+        return out
+
+    def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        a = self.assembly
+        y = np.ascontiguousarray(u)
+        self._y, self._u = y.copy(), a.nodal(y)
+        out = a.internal(y, self._u)
+        if self.contact is not None:
+            self.contact.update(self.contact.place + (self.contact.move @ self._u).reshape(-1, 3))
+            out += a.reduced(self.contact.evaluate(dt, self._u, a.nodal(np.ascontiguousarray(v)) if dt > 0.0 else None))
+        m = a.frame_size
+        out[:m] += a.frame_damping @ v[:m]
+        return out
+
+    def static_internal(self, y: np.ndarray, share: float = 0.0) -> np.ndarray:
+        """(size,) internal forces at rest; ``share``: see ``NodalContact.evaluate``."""
+        a = self.assembly
+        self._y, self._u = y.copy(), a.nodal(y)
+        out = a.internal(y, self._u)
+        if self.contact is not None:
+            out += a.reduced(self.contact.evaluate(0.0, self._u, None, share))
+        return out
+
+    def solve(
+        self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = LINEAR_TOLERANCE
+    ) -> np.ndarray:
+        return self.solver.solve(c_k, c_c, c_m, right, tolerance)
+
+    def mass_times(self, a: np.ndarray) -> np.ndarray:
+        m = self.assembly.frame_size
+        return np.concatenate([self.assembly.frame_mass @ a[:m], self.assembly.free_mass * a[m:]])
+
+    def damping_times(self, v: np.ndarray) -> np.ndarray:
+        m = self.assembly.frame_size
+        return np.concatenate([self.assembly.frame_damping @ v[:m], np.zeros(self.size - m)])
+
+    def divide_mass(self, r: np.ndarray, c: float = 0.0) -> np.ndarray:
+        a = self.assembly
+        m = a.frame_size
+        out = np.concatenate([np.zeros(m), r[m:] / a.free_mass])
+        if m:
+            free = a.frame_free
+            matrix = (a.frame_mass + c * a.frame_damping)[np.ix_(free, free)]
+            out[:m][free] = np.linalg.solve(matrix, r[:m][free])
+        return out
+
+    def measure(self, r: np.ndarray) -> float:
+        """Euclidean norm of nodal forces and of the frames' forces; moments over their arm [N]."""
+        return float(np.linalg.norm(r * self._weight))
+
+    def force_scale(self) -> float:
+        """Norm of the forces that have to balance at the last ``internal`` [N]."""
+        nodal = 0.0
+        if self.contact is not None:
+            nodal = self.measure(self.assembly.reduced(self.contact.move.T @ self.contact.force.reshape(-1)))
+        return max(nodal, self.measure(self.load))
+
+    def contacts(self) -> tuple[float, float, float]:
+        if self.contact is None:
+            return 0.0, 0.0, 0.0
+        force = np.linalg.norm(self.contact.resultants(), axis=1)
+        return max(-float(self.contact.gap.min()), 0.0), float(force.max()), float(force.sum())
+
+    def stable_step(self) -> float:
+        """Of elements and contacts together: 1/dt^2 adds up, as the largest eigenvalues at most do [s]."""
+        if self._element_step is None:
+            self._element_step = min(body.operator.stable_step() for body in self.assembly.bodies)
+        mine = np.inf if self.contact is None else self.contact.stable_step(self.assembly.node_mass)
+        return float(1.0 / np.sqrt(1.0 / self._element_step**2 + 1.0 / mine**2))
+
+    def commit(self) -> None:
+        if self.contact is not None:
+            self.contact.commit()
+
+    def rollback(self) -> None:
+        if self.contact is not None:
+            self.contact.rollback()
+
+    # Statics
+
+    def settle(self, guess: np.ndarray, tolerance: float = 1e-8) -> Settled:
+        """Equilibrium under ``load``; places on the second surfaces are looked up anew until they stay.
+
+        Raises
+        ------
+        ConvergenceError
+            A rigid motion that nothing holds, by name, or no equilibrium: with the last good state and the residuals.
+        """
+        touching = []
+        if self.contact is not None:
+            touching = [self._bodies_of(index) for index in range(len(self.contact.pairs))]
+        loose = self.assembly.loose_motions(touching)
+        if loose:
+            raise ConvergenceError("nothing holds " + "; ".join(loose))
+        y, found, steps, linear, history = np.array(guess, dtype=float), None, 0, 0, []
+        for _ in range(6):
+            if self.contact is not None:
+                moved = self.contact.move @ self.assembly.nodal(y)
+                if not self.contact.update(self.contact.place + moved.reshape(-1, 3)) and found is not None:
+                    break
+            elif found is not None:
+                break
+            found = settle(self, y, tolerance)
+            y, steps, linear = found.y, steps + found.iterations, linear + found.linear_iterations
+            history += found.residuals
+        self.static_internal(y)
+        return Settled(y, steps, linear, history)
+
+    def energies(self, y: np.ndarray, v: np.ndarray) -> dict[str, float]:
+        """Energies [J] at the last ``internal``."""
+        a, m = self.assembly, self.assembly.frame_size
+        u = a.nodal(y)
+        elastic = a.elastic_energy(y, u)
+        return {
+            "elastic": elastic,
+            "kinetic": float(0.5 * v @ self.mass_times(v)) if m or len(v) else 0.0,
+            "contact": 0.0 if self.contact is None else self.contact.energy(),
+            "friction": 0.0 if self.contact is None else self.contact.friction_energy(),
+            "hourglass": a.hourglass_energy(u),
+        }
+
+    def _bodies_of(self, pair: int) -> tuple[int, int]:
+        assert self.contact is not None
+        p = self.contact.pairs[pair]
+        first = int(np.searchsorted(self.assembly.starts, p.points.nodes[0, 0], side="right") - 1)
+        return first, int(np.searchsorted(self.assembly.starts, p.first_node, side="right") - 1)
+
+    def _refuse_overlap(self) -> None:
+        """Surfaces that overlap by more than an element before anything has moved were put in the wrong place."""
+        if self.contact is None:
+            return
+        self.contact.evaluate(0.0, self._u)
+        for index, pair in enumerate(self.contact.pairs):
+            depth = -float(self.contact.gap[self.contact.pair == index].min())
+            size = float(np.sqrt(4.0 * pair.points.area.max()))
+            if depth > size:
+                raise MeshError(
+                    f"{pair.name}: the surfaces overlap by {1e6 * depth:.3g} um before anything is loaded, more than an "
+                    f"element there ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance and preload"
+                )
