@@ -57,7 +57,8 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     ConvergenceError
         No equilibrium under the axial load whose displacement is to be held.
     """
-    built: Built = import_module(f"raceway.bodies.{scene.bodies.kind}").build(scene, plan)
+    kind = "patches" if scene.contact.discretisation == "nodal" and scene.bodies.kind == "condensed" else scene.bodies.kind
+    built: Built = import_module(f"raceway.bodies.{kind}").build(scene, plan)
     basis = built.basis
     return Model(
         scene, plan, basis.geometry, basis.inner, basis.outer, basis.azimuth, built.system, built.guess, built.bodies

@@ -4,8 +4,10 @@ profile        Profile: nodes and quadrilaterals of a section, its race and its 
 ring_profile   sections of rings: graded to a contact, or coarse
 ball_profile   section of a ball about its rolling direction
 sector         matrices of one sector, harmonic by harmonic
+factor         sparse factorisation, and condensation by it
 harmonics      which harmonics are solved, and the weights with which their compliances add up at an offset
 body           Revolution: compliances between nodes, natural frequencies
+kept           compliances through the cache on disk
 ball           the floating ball: one dimensionless compliance for all balls
 
 References

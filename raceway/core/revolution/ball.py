@@ -55,7 +55,7 @@ def free_ball(
     offsets: np.ndarray,
     components: tuple[int, ...] = (0, 2),
     formulation: str = "incompatible",
-    harmonics: str = "sampled",
+    harmonics: str = "all",
 ) -> FreeBall:
     """The floating ball of a mesh, from the cache where it is there.
 
@@ -70,6 +70,8 @@ def free_ball(
         First layer below the surface, and elements far from it [m].
     offsets : (o,) int
         Sectors from the loaded to the observed meridian; the opposite pole lies divisions / 2 away.
+    harmonics : str
+        A ball has but some hundred harmonics, and it is coarsest around its equator, where sampling is least exact.
     """
     sizes = [round(length / radius, _DIGITS) for length in (lateral_step, half_width, depth_step, bulk)]
     profile: Profile = ball_profile(1.0, *sizes)

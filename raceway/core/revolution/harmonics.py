@@ -1,16 +1,18 @@
 """Which harmonics are solved, and with which weights their compliances add up to the compliance at an offset.
 
 A unit force at azimuth 0 is the sum of all harmonics with weight 1/N, N the number of sectors.  The compliance C(n) is a
-smooth function of n, so it is solved at few n; (1 + n) C as a function of log(1 + n/8) is interpolated by a cubic spline.
-The spline is linear in its data, so that sum over n of C(n) cos(2 pi n k / N) is a sum over the solved harmonics alone.
+smooth function of n, so it is solved at few n; (1 + n) C as a function of log(1 + n/8) is interpolated by a spline of degree
+5.  The spline is linear in its data, so that sum over n of C(n) cos(2 pi n k / N) is a sum over the solved harmonics alone.
+Harmonics 0 and 1, which differ from the others where a body can move rigidly, take no part in the spline.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-#: All harmonics up to the first number are solved, beyond it each is at most this ratio above the one before.
-DENSE, RATIO = 24, 1.12
+#: All harmonics up to DENSE are solved.  Beyond, each is at most RATIO times the one before, and at most N / 2 / STEPS above
+#: it: towards N / 2, where elements are half a wave long, C(n) varies with n / N and not with log n.
+DENSE, RATIO, STEPS = 12, 1.2, 24
 
 
 def solved_harmonics(divisions: int, harmonics: str) -> np.ndarray:
@@ -22,7 +24,8 @@ def solved_harmonics(divisions: int, harmonics: str) -> np.ndarray:
         raise ValueError(f"harmonics {harmonics!r} is neither 'sampled' nor 'all'")
     chosen = list(range(min(DENSE, last) + 1))
     while chosen[-1] < last:
-        chosen.append(min(last, max(chosen[-1] + 1, int(chosen[-1] * RATIO))))
+        step = int(min((RATIO - 1.0) * chosen[-1], last / STEPS))
+        chosen.append(min(last, chosen[-1] + max(step, 1)))
     return np.array(chosen)
 
 
@@ -44,8 +47,15 @@ def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> t
     even, odd = share * np.cos(phase), share * np.sin(phase)
     if len(solved) == len(n):
         return even, odd
-    from scipy.interpolate import CubicSpline
+    spread = np.zeros((len(n), len(solved)))
+    spread[n[: DENSE + 1], n[: DENSE + 1]] = 1.0
+    spread[DENSE + 1 :, 2:] = _spline(solved[2:], n[DENSE + 1 :])
+    return even @ spread, odd @ spread
 
-    spline = CubicSpline(np.log1p(solved / 8.0), np.eye(len(solved)))(np.log1p(n / 8.0))
-    spline *= (1.0 + solved)[None, :] / (1.0 + n)[:, None]
-    return even @ spline, odd @ spline
+
+def _spline(solved: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """(wanted, solved) Values of the interpolating spline for unit data."""
+    from scipy.interpolate import make_interp_spline
+
+    unit = make_interp_spline(np.log1p(solved / 8.0), np.eye(len(solved)), k=5)(np.log1p(wanted / 8.0))
+    return np.asarray(unit * (1.0 + solved)[None, :] / (1.0 + wanted)[:, None])

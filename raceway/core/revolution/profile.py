@@ -49,10 +49,10 @@ class Profile:
         if len(self.angles) != len(self.race):
             raise MeshError(f"{len(self.race)} race nodes with {len(self.angles)} angles")
         r, x = self.points[self.quads, 0], self.points[self.quads, 1]
-        area = 0.5 * ((x[:, 2] - x[:, 0]) * (r[:, 3] - r[:, 1]) - (r[:, 2] - r[:, 0]) * (x[:, 3] - x[:, 1]))
-        turned = np.where((area < 0.0)[:, None], self.quads[:, ::-1], self.quads)
+        area = (x[:, 2] - x[:, 0]) * (r[:, 3] - r[:, 1]) - (r[:, 2] - r[:, 0]) * (x[:, 3] - x[:, 1])
+        turned = self.quads[:, ::-1] if area.sum() < 0.0 else self.quads
         object.__setattr__(self, "quads", np.ascontiguousarray(turned))
-        corner = self._corner_areas()
+        corner = corner_areas(self.points, turned)
         if not (corner > 0.0).all():
             bad = int(np.argmin(corner.min(axis=1)))
             at = self.points[self.quads[bad]].mean(axis=0)
@@ -61,11 +61,14 @@ class Profile:
                 "its outline too jagged for a mesh of quadrilaterals there"
             )
 
-    def _corner_areas(self) -> np.ndarray:
-        """(M, 4) Cross products of the edges that meet at each corner [m2]: positive where the corner is convex."""
-        p = self.points[self.quads]
-        onward, back = np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p
-        return np.asarray(onward[..., 1] * back[..., 0] - onward[..., 0] * back[..., 1])
+
+def corner_areas(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
+    """(M, 4) Cross products of the edges that meet at each corner [m2]: positive where the corner is convex."""
+    p = points[quads]
+    onward, back = np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p
+    area = onward[..., 1] * back[..., 0] - onward[..., 0] * back[..., 1]
+    # Quadrilaterals that all run the other way are as good: the profile turns them.
+    return np.asarray(area if area.sum() > 0.0 else -area)
 
 
 def dofs(nodes: np.ndarray, components: tuple[int, ...] = (0, 2)) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, pi, sin
+from math import ceil, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -156,14 +156,12 @@ class Structured:
         from raceway.core.meshing.spacing import graded, growing
 
         major, _ = self._semi_axes(bearing, shape.inner)
-        size, edge = self.element_size, shape.edge
+        size, (low, high) = self.element_size, shape.edges
         half = self.patch * major / shape.groove
-        band = max(shape.contact - half, -0.98 * edge), min(shape.contact + half, 0.98 * edge)
+        band = max(shape.contact - half, 0.98 * low), min(shape.contact + half, 0.98 * high)
         fine = major / self.nodes_per_semi_axis
-        arc = graded(-edge, edge, *band, fine / shape.groove, size / shape.groove, self.growth)
-        reach = shape.groove * sin(edge)
-        lands = [0.5 * shape.width + s * shape.centre_x - reach for s in (1.0, -1.0)]
-        left, right = (growing(1.0, size / land, size / land, self.growth) for land in lands)
+        arc = graded(low, high, *band, fine / shape.groove, size / shape.groove, self.growth)
+        left, right = (shape.outline.shares(side, size) for side in ("left", "right"))
         # As fine in depth as along the groove: the uniform azimuth does not follow the minor semi-axis.
         thickness = shape.thickness
         layers = growing(1.0, min(fine, size) / thickness, size / thickness, self.growth)
