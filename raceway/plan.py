@@ -13,6 +13,7 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.estimate import highest_frequency
+from raceway.patch_plan import patch_cost, patch_faults
 from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
@@ -124,8 +125,18 @@ def make_plan(scene: Scene) -> Plan:
     condensed = scene.bodies.kind == "condensed"
     why = "bodies.kind is condensed: finite elements of rings and balls, reduced to structural compliances"
     decide(condensed, "elastic rings and balls", why, "bodies.kind is rigid: only contacts deform")
-    coupled = condensed and _balls_meet(scene)
-    if condensed:
+    nodal = condensed and scene.contact.discretisation == "nodal"
+    coupled = condensed and _balls_meet(scene) and not nodal
+    if nodal:
+        patches = patch_cost(scene)
+        why = (
+            f"contact.discretisation is nodal: some {patches.points} points carry a contact, {patches.bytes / 2**20:.0f} MiB"
+        )
+        kept.append(Part("pressures at surface points", why))
+        left_out.append(
+            Part("inertia of the balls along the groove", "their slowest mode lies at some kHz: they follow at once")
+        )
+    elif condensed:
         why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
         decide(coupled, "effect of balls on each other through the rings", "soft seats or thick rings", why_not)
     rotor_moments = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
@@ -158,6 +169,8 @@ def make_plan(scene: Scene) -> Plan:
     each = _STEP_S[balls]
     if condensed:
         each = _CONDENSED_STEP_S[balls] + (_BETWEEN_S * (scene.bearing.ball_count / 12.0) ** 2 if coupled else 0.0)
+    if nodal:
+        each = 12.0 / count * patches.step_s
     each *= count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
     period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
     return Plan(
@@ -172,8 +185,19 @@ def make_plan(scene: Scene) -> Plan:
         dofs=sum(free) + count * (1 if balls == "weightless" else 2),
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
-        predicted_wall_s=_START_S + (_RINGS_S if condensed else 0.0) + 1.5 * steps * each,
+        predicted_wall_s=_START_S + _bodies_seconds(scene) + 1.5 * steps * each,
     )
+
+
+def _bodies_seconds(scene: Scene) -> float:
+    """Time [s] that deforming bodies take before the first step, nothing kept from before."""
+    if scene.bodies.kind != "condensed":
+        return 0.0
+    if scene.contact.discretisation != "nodal":
+        return _RINGS_S
+    patches = patch_cost(scene)
+    orbit = 150.0 * patches.step_s if scene.excitation is not None else 0.0
+    return patches.setup_s + 3.0 * patches.equilibrium_s + orbit
 
 
 def refuse_what_cannot_run(scene: Scene) -> None:

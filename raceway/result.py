@@ -133,6 +133,9 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         columns[f"peak_pressure_{race}_pa"] = ellipse.peak_pressure(load)
         columns[f"semi_major_{race}_m"] = a
         columns[f"semi_minor_{race}_m"] = b
+    more = getattr(model.bodies, "ball_columns", None)
+    if more is not None:
+        columns |= more(model, equilibrium)
     return {
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),

@@ -99,7 +99,11 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
         bodies=None if model.bodies is None else model.bodies.report(model, equilibrium),
-        warnings=tuple(dict.fromkeys([*unused(scene), *equilibrium.warnings, *_motion_warnings(motions)])),
+        warnings=tuple(
+            dict.fromkeys(
+                [*unused(scene), *equilibrium.warnings, *_bodies_warnings(model, equilibrium), *_motion_warnings(motions)]
+            )
+        ),
     )
     registry.notify("raceway_run_finished", result=result)
     return result
@@ -115,6 +119,12 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
         wanted |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, wanted)
+
+
+def _bodies_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
+    """What the bodies have to say of the equilibrium."""
+    say = getattr(model.bodies, "warnings", None)
+    return [] if say is None else say(model, equilibrium)
 
 
 def _motion_warnings(motions: list[tuple[Model, Simulation]]) -> list[str]:
@@ -192,6 +202,8 @@ def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
 
 def _drift(model: Model, simulation: Simulation) -> float | None:
     """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
+    if model.scene.contact.discretisation == "nodal":
+        return None  # the energy that points store is not told by the gap of the pair
     law = model.scene.contact.law
     potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
     steady = simulation.start != "ramp" and not model.scene.kinematics.orbiting

@@ -13,6 +13,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, Built, made_by, make_basis
+from raceway.bodies.patch_report import PatchBodies
 from raceway.bodies.rigid import place_ring, probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.contracts import ContactPairs
@@ -29,31 +30,15 @@ from raceway.core.orbit import steady_orbit
 from raceway.core.plugin_kernel import plugin_kernel
 from raceway.core.signatures import LAW
 from raceway.core.system import System
-from raceway.errors import ConvergenceError, SceneError
+from raceway.errors import ConvergenceError
+from raceway.patch_plan import nodes_of
 from raceway.plan import Plan
 from raceway.scene import Scene
 
-#: Points along each semi-axis, and size of elements far from the contacts [m], where the scene says nothing.
-NODES, BULK = 4, 0.8e-3
+#: Size of elements far from the contacts [m] where the scene says nothing.
+BULK = 0.8e-3
 #: Contacts that are laid out may carry this much more than rigid bodies say before patches are made anew.
 _ROOM = 1.2
-
-
-@attrs.frozen(eq=False)
-class PatchBodies:
-    """What a result tells of the patches.
-
-    Attributes
-    ----------
-    nodes : points along each semi-axis at ``load`` [N] on the inner race
-    spacing : Spacing
-    pool : the patches as they are now
-    """
-
-    nodes: float
-    load: float
-    spacing: Spacing
-    pool: Pool
 
 
 def build(scene: Scene, plan: Plan) -> Built:
@@ -72,14 +57,29 @@ def build(scene: Scene, plan: Plan) -> Built:
     guess = place_ring(as_rigid, basis, rigid)
     reach = _first_reach(scene, basis, rigid, guess)
     nodes, load = _layout(scene, reach)
+    system, spacing = _system(scene, basis, rigid, reach, nodes, load)
+    beside = guess
+    if scene.bearing.preload > 0.0 or scene.supports.axial == "displacement":
+        rigid = attrs.evolve(rigid, table=rigid.table.copy())
+        guess = place_ring(as_rigid, basis, system)
+
+    def coarser() -> System:
+        coarse, _ = _system(scene, basis, system, reach, 0.5 * nodes, load)
+        return coarse
+
+    bodies = PatchBodies(nodes, load, spacing, system.pool, rigid, beside, coarser if nodes >= 2.0 else None)
+    return Built(basis, system, guess, bodies)
+
+
+def _system(
+    scene: Scene, basis: Basis, like: System, reach: Reach, nodes: float, load: float
+) -> tuple[PatchSystem, Spacing]:
+    """A ring like another one, on patches with so many points along the semi-axes at a load [N]."""
     spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
     make = _maker(scene, spacing)
-    pool = Pool(make(reach), _point_laws(scene, basis, spacing), _widening(basis, reach, spacing, make))
-    fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
-    system = PatchSystem(**fields, pool=pool)
-    if scene.bearing.preload > 0.0 or scene.supports.axial == "displacement":
-        guess = place_ring(as_rigid, basis, system)
-    return Built(basis, system, guess, PatchBodies(nodes, load, spacing, pool))
+    pool = Pool(make(reach), _point_laws(scene, basis, spacing), _widening(basis, reach, make))
+    fields = {f.name: getattr(like, f.name) for f in attrs.fields(System)}
+    return PatchSystem(**{**fields, "table": like.table.copy()}, pool=pool), spacing
 
 
 def _semi_axes(ellipse: Any, load: float) -> tuple[float, float]:
@@ -117,7 +117,7 @@ def _first_reach(scene: Scene, basis: Basis, rigid: System, guess: np.ndarray) -
 
 def _layout(scene: Scene, reach: Reach) -> tuple[float, float]:
     """Points per semi-axis, and the load [N] at which they count: the mesh's, or the mean of the balls that carry."""
-    nodes = float(getattr(scene.mesh, "nodes_per_semi_axis", NODES))
+    nodes = float(nodes_of(scene))
     load = getattr(scene.mesh, "ball_load", None)
     return nodes, float(load) if load is not None else reach.mean_load
 
@@ -147,7 +147,7 @@ def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Pat
 
 
 def _widening(
-    basis: Basis, reach: Reach, spacing: Spacing, make: Callable[[Reach], tuple[Patch, Patch]]
+    basis: Basis, reach: Reach, make: Callable[[Reach], tuple[Patch, Patch]]
 ) -> Callable[[BeyondPatch], tuple[Patch, Patch]]:
     """What a pool calls when a contact leaves its patch."""
     now = [reach]
@@ -161,23 +161,10 @@ def _widening(
 
 
 def _point_laws(scene: Scene, basis: Basis, spacing: Spacing) -> tuple[PointLaw | None, PointLaw | None]:
-    """Laws of the inner and the outer race's points.
-
-    Raises
-    ------
-    SceneError
-        A law that remembers: its points travel with the patch.
-    """
+    """Laws of the inner and the outer race's points; the plan has refused those that remember."""
     law = scene.contact.law
     if getattr(law, "constraint", False):
         return None, None
-    if law.state_size > 0:
-        raise SceneError.at(
-            "contact.kind",
-            scene.contact.kind,
-            "remembers what a contact did, but the surface points of condensed bodies travel with the contact: use "
-            "discretisation = 'resultant'",
-        )
     both = [basis.inner, basis.outer]
     pairs = ContactPairs(
         curvature_a=np.array([e.curvatures[0] for e in both]),

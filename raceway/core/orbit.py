@@ -24,6 +24,10 @@ from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, SYSTEM_POINTER, V
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
 
+#: Times of a period, and residual, of systems that are evaluated from Python: each takes a millisecond or a hundred, and
+#: pressures at points make forces that are smooth to 1e-5 only.
+_SAMPLES_PYTHON, _TOLERANCE_PYTHON = 17, 1e-7
+
 
 @jit(
     int64(
@@ -98,6 +102,12 @@ def steady_orbit(
     ConvergenceError
         With the last residual.
     """
+    if system.companion is not system:
+        samples = min(samples, _SAMPLES_PYTHON)
+        # The nearest start is the compiled companion's orbit, moved to this system's equilibrium.
+        near = steady_orbit(system.companion, period, start, samples, inertial)
+        at_rest = near.displacement - near.displacement.mean(axis=0) + start
+        return _solve(system, period, at_rest, samples, inertial, max(tolerance, _TOLERANCE_PYTHON))
     if inertial:
         try:
             slow = steady_orbit(system, period, start, samples, inertial=False)
@@ -137,7 +147,10 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
-        done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
+        if system.companion is system:
+            done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
+        else:
+            done = _evaluate_each(system, times, q, v, ball, f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:
             imbalance += v @ system.damping.T + (second @ q) @ system.mass.T
@@ -165,6 +178,26 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
             f"no periodic orbit found after {iterations} iterations, relative residual {residual:.1e}", {"q": q}
         )
     return Orbit(period, q, first @ q, second @ q, force, ball, K, residual, iterations)
+
+
+def _evaluate_each(
+    system: System,
+    times: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
+    ball: np.ndarray,
+    f: np.ndarray,
+    K: np.ndarray,
+    C: np.ndarray,
+) -> int:
+    """``evaluate_many`` for a system that is evaluated from Python; its balls follow the ring."""
+    for i, t in enumerate(times):
+        try:
+            now = system.evaluate(q[i], v[i], ball[i] if ball[i].any() else None, None, float(t))
+        except ConvergenceError:
+            return i
+        f[i], K[i], C[i], ball[i] = now.force, now.stiffness, now.damping, now.ball
+    return len(times)
 
 
 def at_time(values: np.ndarray, period: float, t: float) -> np.ndarray:

@@ -19,6 +19,7 @@ factor       a Cholesky factor that follows a changing set of points
 unilateral   pressures without penetration, by an active set
 nodal_law    pressures by a contact law at every point, by Newton
 contact      one ball against one race: forces, tangent, pressure field
+field        the pressures of a contact over its points
 balls        all balls between both races: places and resultants that are in equilibrium
 pool         patches and solvers, shared by all copies of a system
 patch_system the ring on such balls, with the interface of ``raceway.core.system.System``

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import attrs
@@ -42,7 +43,7 @@ class PatchSystem(System):
     pool: Pool = attrs.field(kw_only=True)
 
     @property
-    def rigid(self) -> System:
+    def companion(self) -> System:
         """The same ring with rigid bodies and Hertz's contacts, compiled."""
         fields = [f.name for f in attrs.fields(System)]
         return System(**{name: getattr(self, name) for name in fields})
@@ -107,14 +108,14 @@ class PatchSystem(System):
 
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
-        first = attrs.evolve(self.rigid, load=self.load / parts)
+        first = attrs.evolve(self.companion, load=self.load / parts)
         place, ball, _ = first.settle(q)
         if not self.table[:, CENTRIFUGAL].any():
             ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
         total = 0
         for part in range(1, parts + 1):
-            load, start = self.load * (part / parts), (place, ball)
-            place, ball, count = self.pool.widened(lambda s=start, f=load: self._newton(*s, f, tolerance))
+            task = partial(self._newton, place, ball, self.load * (part / parts), tolerance)
+            place, ball, count = self.pool.widened(task)
             total += count
         return place, ball, total
 
