@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway import __version__
+from raceway.cache_command import cache
 from raceway.command_frame import attempt, common, plugin_files, registry_with, show, show_progress
 from raceway.command_inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
 from raceway.console import Commands, print_json
@@ -227,35 +228,6 @@ def verify(only: str | None, every: bool, as_json: bool) -> int:
     return 0 if verification.passed else 1
 
 
-@main.command(short_help="See or clear the compiled kernels.")
-@click.option("--clear", is_flag=True, help="Remove all compiled kernels; the next run compiles again.")
-@common
-def cache(clear: bool, as_json: bool) -> int:
-    """Say where compiled kernels are kept (RACEWAY_CACHE_DIR overrides it), how many and how large, and clear them.
-
-    \b
-    Example:
-      raceway cache --clear
-    """
-    import attrs
-
-    from raceway import cache_folder
-
-    if clear:
-        cache_folder.clear()
-    folders = [attrs.asdict(folder) for folder in cache_folder.kernel_folders()]
-    content = {
-        "root": str(cache_folder.cache_root() / "kernels"),
-        "current": cache_folder.source_key(),
-        "folders": folders,
-        "kernels": sum(f["kernels"] for f in folders),
-        "bytes": sum(f["bytes"] for f in folders),
-        "cleared": clear,
-    }
-    show(content, as_json, None, lambda screen: screen.cache_screen(content))
-    return 0
-
-
 def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     """Write the last good state of a run that failed, and say so in the error."""
     from raceway.failure import save_failure
@@ -270,5 +242,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (mesh, plugins, check_plugin, new_plugin, schema):
+for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema):
     main.add_command(_command)

@@ -29,6 +29,9 @@ class ContactLaw(Protocol):
     3. ``build(pairs)``: parameters, an array (n, k) of float64, from ``ContactPairs``.
     4. ``kernel()``: a function compiled with ``@jit(LAW)``: zero force for gap >= 0, never negative, monotonic in the
        approach, derivatives exact, ``state_old`` untouched, outputs overwritten whole, no allocation.
+    5. A law for both discretisations tells them apart by ``pairs.area``, which is None for resultants.
+    6. ``constraint`` = True, if it is there, says that the law stands for no penetration at all: condensed bodies then hold
+       the gap exactly and do not call the kernel.
     """
 
     name: ClassVar[str]
@@ -50,7 +53,7 @@ class ContactPairs:
     contact_modulus : E* [Pa]
     hertz_factor : K of Q = K delta^1.5 [N/m^1.5]
     reference_load : load of a ball under the axial load alone [N]
-    area : nodal only, area of a surface point [m2]
+    area : area of a surface point [m2], None for resultants; each row then stands for the points of a contact
     """
 
     curvature_a: np.ndarray

@@ -18,9 +18,12 @@ from raceway.scene import Scene
 
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
+#: The same for condensed bodies, what the matrices between balls add, and their rings when they are not kept from before.
+_CONDENSED_STEP_S = {"weightless": 10.5e-6, "inertial": 13.5e-6, "tangential": 22.0e-6}
+_BETWEEN_S, _RINGS_S = 23.0e-6, 1.5
 _START_S = 0.6
 #: Kinds of bodies that this version can compute.
-BODIES = ("rigid",)
+BODIES = ("rigid", "condensed")
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
 #: Records above this are refused [bytes].
@@ -43,6 +46,7 @@ class Plan:
     ----------
     balls : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
     centrifugal, gyroscopic : whether the balls have these loads
+    coupled : whether condensed rings let balls act on each other
     free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
     turns : turns that are integrated
     dofs : unknowns of the ring and of the balls
@@ -54,6 +58,7 @@ class Plan:
     balls: str
     centrifugal: bool
     gyroscopic: bool
+    coupled: bool
     free: tuple[int, ...]
     turns: int
     dofs: int
@@ -116,7 +121,13 @@ def make_plan(scene: Scene) -> Plan:
     decide(orbiting, "orbiting balls", "kinematics.orbiting at cage speed", "kinematics.orbiting is false")
     pair = f"bearing.arrangement is {scene.bearing.arrangement}"
     decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
-    decide(False, "elastic bodies and mesh", "", "bodies.kind is rigid: only contacts deform")
+    condensed = scene.bodies.kind == "condensed"
+    why = "bodies.kind is condensed: finite elements of rings and balls, reduced to structural compliances"
+    decide(condensed, "elastic rings and balls", why, "bodies.kind is rigid: only contacts deform")
+    coupled = condensed and _balls_meet(scene)
+    if condensed:
+        why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
+        decide(coupled, "effect of balls on each other through the rings", "soft seats or thick rings", why_not)
     rotor_moments = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
     decide(
         rotor_moments,
@@ -144,7 +155,10 @@ def make_plan(scene: Scene) -> Plan:
     count = scene.bearing.ball_count * len(scene.bearing.rows)
     if uses_record:
         _refuse_memory(scene, turns, steps_per_turn, count)
-    each = _STEP_S[balls] * count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
+    each = _STEP_S[balls]
+    if condensed:
+        each = _CONDENSED_STEP_S[balls] + (_BETWEEN_S * (scene.bearing.ball_count / 12.0) ** 2 if coupled else 0.0)
+    each *= count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
     period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
     return Plan(
         kept=tuple(kept),
@@ -152,12 +166,13 @@ def make_plan(scene: Scene) -> Plan:
         balls=balls,
         centrifugal=inertia,
         gyroscopic=moments,
+        coupled=coupled,
         free=free,
         turns=turns,
         dofs=sum(free) + count * (1 if balls == "weightless" else 2),
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
-        predicted_wall_s=_START_S + 1.5 * steps * each,
+        predicted_wall_s=_START_S + (_RINGS_S if condensed else 0.0) + 1.5 * steps * each,
     )
 
 
@@ -172,13 +187,20 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
     listed = " or ".join(f"'{kind}'" for kind in BODIES)
     refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
-    refuse(scene.mesh is not None, "mesh", None, "rigid bodies have no mesh: leave the table out")
+    condensed = scene.bodies.kind == "condensed"
+    refuse(scene.mesh is not None and not condensed, "mesh", None, "rigid bodies have no mesh: leave the table out")
+    if condensed:
+        _refuse_condensed(scene, refuse)
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal":
-        faults.append(Mistake("contact.discretisation", "nodal", "rigid bodies have no surface points: use 'resultant'"))
+        if condensed:
+            faults += patch_faults(scene)
+        else:
+            why = "rigid bodies have no surface points: use 'resultant'"
+            faults.append(Mistake("contact.discretisation", "nodal", why))
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
     alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
@@ -187,7 +209,8 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
     for seat in ("outer_seat", "inner_seat"):
         value = getattr(scene.supports, seat)
-        refuse(value != "rigid", f"supports.{seat}", value, "rigid rings have rigid seats: leave it out")
+        stiff = value != "rigid" and not condensed
+        refuse(stiff, f"supports.{seat}", value, "rigid rings have rigid seats: leave it out, or bodies.kind = 'condensed'")
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
     if scene.excitation is not None:
@@ -202,6 +225,32 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake("rotor.transverse_inertia", scene.rotor.transverse_inertia, why))
     if faults:
         raise SceneError(faults)
+
+
+def _refuse_condensed(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+    """What condensed rings need: dimensions of bodies of revolution, and the elements of the structured mesher."""
+    if scene.mesh is not None:
+        why = "condensed bodies are bodies of revolution, swept from their sections: use mesh.kind = 'structured'"
+        refuse(scene.mesh.name != "structured", "mesh.kind", scene.mesh.name, why)
+    for key in ("bore", "outer_diameter", "width"):
+        value = getattr(scene.bearing, key)
+        refuse(value is None, f"bearing.{key}", value, "is needed by elastic rings: give it, or take bodies.kind = 'rigid'")
+
+
+def _balls_meet(scene: Scene) -> bool:
+    """Whether one ball's load reaches the next one through a ring.
+
+    Notes
+    -----
+    On a rigid seat at depth t below the groove the field of a load falls off within t: 2e-4 of a contact's compliance is left
+    at 3.7 t (B7206C).
+    """
+    b = scene.bearing
+    if scene.supports.inner_seat != "rigid" or scene.supports.outer_seat != "rigid":
+        return True
+    walls = [0.5 * (b.pitch_diameter - b.ball_diameter - (b.bore or 0.0))]
+    walls.append(0.5 * ((b.outer_diameter or 0.0) - b.pitch_diameter - b.ball_diameter))
+    return bool(pi * (b.pitch_diameter - b.ball_diameter) / b.ball_count < 2.5 * max(walls))
 
 
 def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:

@@ -29,6 +29,7 @@ class Result:
     ----------
     identification, simulation : None in a static scene (simulation also where the identifier needs no motion)
     error, cost, stability, environment : the tables of result.json
+    bodies : the table ``model``: what elastic bodies change against rigid ones; None for rigid bodies
     lines : spectral lines of the motion, empty where it was not recorded or its speed changes
     """
 
@@ -42,6 +43,7 @@ class Result:
     environment: dict[str, Any]
     lines: list[Line]
     warnings: tuple[str, ...]
+    bodies: dict[str, Any] | None = None
 
     @property
     def title(self) -> str:
@@ -56,6 +58,7 @@ class Result:
                 "plan": self.model.plan.as_dict(),
                 "equilibrium": equilibrium_table(self.model, self.equilibrium),
                 "identification": self._identification(),
+                "model": self.bodies,
                 "error": self.error,
                 "cost": self.cost,
                 "stability": self.stability,

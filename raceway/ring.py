@@ -12,9 +12,16 @@ def ring_inertia(scene: Scene) -> tuple[float, float]:
 
     Notes
     -----
-    A hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h), less the groove's circular segment.
+    A hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h), less the groove's circular segment; with
+    ``bearing.inner_profile`` that section, exactly.
     """
     b = scene.bearing
+    places = [place for _, place in b.rows]
+    if b.inner_profile is not None:
+        from raceway.core.meshing.ring_shape import ring_shape
+
+        mass, transverse = (b.rings.density * moment for moment in ring_shape(b, True).moments)
+        return mass * len(places), sum(transverse + mass * place**2 for place in places)
     if b.bore is None or b.width is None:
         return 0.0, 0.0
     d, depth = b.ball_diameter, shoulder_height(scene)
@@ -28,7 +35,6 @@ def ring_inertia(scene: Scene) -> tuple[float, float]:
     mass = solid - cut
     inner, outer = b.bore / 2.0, land / 2.0
     transverse = mass * (3.0 * (inner**2 + outer**2) + b.width**2) / 12.0
-    places = [place for _, place in b.rows]
     return mass * len(places), sum(transverse + mass * place**2 for place in places)
 
 

@@ -70,6 +70,8 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     identification: Identification | None = None
     motions: list[tuple[Model, Simulation]] = []
     error = _no_error("the scene is static: nothing is identified")
+    if model.bodies is not None:
+        error["mesh"], error["how"]["mesh"] = model.bodies.mesh_error(model, equilibrium)
     if scene.excitation is not None:
         method = scene.identifier.method
         records = []
@@ -96,6 +98,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         stability=_stability(motions),
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
+        bodies=None if model.bodies is None else model.bodies.report(model, equilibrium),
         warnings=tuple(dict.fromkeys([*unused(scene), *equilibrium.warnings, *_motion_warnings(motions)])),
     )
     registry.notify("raceway_run_finished", result=result)
@@ -133,6 +136,8 @@ def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | Non
     error = _no_error("")
     how: dict[str, str] = error["how"]
     how["mesh"] = "rigid bodies have no mesh"
+    if model.bodies is not None:
+        error["mesh"], how["mesh"] = model.bodies.mesh_error(model, equilibrium)
     how["contact"] = "the law is taken as exact: its own model error is not estimated"
     if simulation is None:
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
@@ -150,7 +155,7 @@ def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | Non
         for name, value in (("transient", found.spread), ("identification", found.window)):
             if value is None and error[name] is None:
                 how[name] = f"identifier '{model.scene.identifier.kind}' gives no estimate"
-    parts = [error[name] for name in ("time_step", "transient", "identification") if error[name] is not None]
+    parts = [error[name] for name in ("time_step", "transient", "identification", "mesh") if error[name] is not None]
     error["total"] = float(sum(parts)) if parts else None
     how["total"] = "sum of the estimates that are not null"
     return error

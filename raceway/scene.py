@@ -11,6 +11,7 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import MeshError
 from raceway.options import (
     at_least,
     between,
@@ -48,6 +49,12 @@ class Bearing:
     shoulder_height: float | None = option(
         None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(positive())
     )
+    inner_profile: tuple[tuple[float, float], ...] | None = option(
+        None, unit="m", help="section of the inner ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+    )
+    outer_profile: tuple[tuple[float, float], ...] | None = option(
+        None, unit="m", help="section of the outer ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+    )
     first_ball_azimuth_deg: float = option(0.0, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=finite())
     tilt_arm: str = option(
         "groove",
@@ -84,6 +91,17 @@ class Bearing:
             )
         self._check_clearance()
         self._check_pair()
+        self._check_profiles()
+
+    def _check_profiles(self) -> None:
+        for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
+            if profile is not None:
+                from raceway.core.meshing.ring_shape import ring_shape
+
+                try:
+                    ring_shape(self, inner)
+                except MeshError as why:
+                    raise ValueError(str(why)) from None
 
     def _check_pair(self) -> None:
         if self.preload > 0.0 and self.arrangement not in ("DB", "DF"):
@@ -284,5 +302,9 @@ def _plain(part: Any) -> dict[str, Any]:
         elif attrs.has(type(value)):
             out[field.name] = _plain(value)
         elif value is not None:
-            out[field.name] = list(value) if isinstance(value, tuple) else value
+            out[field.name] = _lists(value)
     return out
+
+
+def _lists(value: Any) -> Any:
+    return [_lists(part) for part in value] if isinstance(value, tuple) else value

@@ -111,6 +111,9 @@ def _members(kind: Any) -> list[Any]:
 
 
 def _form(kind: Any, limits: dict[str, float]) -> dict[str, Any]:
+    if get_origin(kind) is tuple and get_args(kind)[-1] is Ellipsis:
+        item = get_args(kind)[0]
+        return {"type": "array", "items": _form(item, limits)}
     if get_origin(kind) is tuple:
         count = len(get_args(kind))
         return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime
 from math import acos, degrees, pi
 from typing import TYPE_CHECKING, Any
 
@@ -307,6 +308,14 @@ def cache_screen(found: Mapping[str, Any]) -> RenderableType:
         rows.append((folder["name"], size, f"{folder['kernels']} kernels{', current' if folder['current'] else ''}"))
     if not any(folder["current"] for folder in found["folders"]):
         rows.append((found["current"], "empty", "current: the next run compiles, which takes some ten seconds"))
+    total, most = found["arrays_bytes"] / 2**20, found["arrays_limit_bytes"] / 2**20
+    rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {found['arrays_root']}"))
+    for entry in found["arrays"]:
+        used = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
+        remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {used}"
+        rows.append((entry["kind"], f"{entry['bytes'] / 2**20:.2f} MiB", remark))
+    if not found["arrays"]:
+        rows.append(("none", "empty", "a condensed bearing makes them in seconds"))
     return sections(rows)
 
 

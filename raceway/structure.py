@@ -71,6 +71,14 @@ def _numbers(value: Any, _type: Any = None) -> tuple[float, ...]:
     return tuple(_number(v) for v in value)
 
 
+def _points(value: Any, _type: Any = None) -> tuple[tuple[float, float], ...] | None:
+    if value is None:
+        return None
+    if not isinstance(value, list | tuple) or not all(isinstance(p, list | tuple) and len(p) == 2 for p in value):
+        raise ValueError("must be a list of points, each a list of two numbers: [[0.0, 0.015], [0.008, 0.015], ...]")
+    return tuple((_number(p[0]), _number(p[1])) for p in value)
+
+
 def _number_or_word(value: Any, _type: Any = None) -> Any:
     return value if isinstance(value, str) else _number(value)
 
@@ -90,6 +98,7 @@ _HOOKS: dict[Any, Any] = {
     bool: _switch,
     tuple[float, float]: _numbers,
     tuple[float, ...]: _numbers,
+    tuple[tuple[float, float], ...] | None: _points,
     float | str: _number_or_word,
     str | float: _number_or_word,
     int | str: _integer_or_word,

@@ -78,9 +78,10 @@ def _rates() -> list[Row]:
     """Orders between the two finest of three meshes, each half the size of the one before."""
     from raceway import load_scene
     from raceway.core.meshing.ring import ring_mesh
+    from raceway.core.meshing.ring_shape import ring_shape
     from raceway.core.meshing.spacing import halved
     from raceway.core.meshing.sphere import ball_mesh
-    from raceway.plugins.meshers.structured import Structured, ring_shape
+    from raceway.plugins.meshers.structured import Structured
 
     bearing = load_scene(ROOT / SCENE).bearing
     coarse = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)

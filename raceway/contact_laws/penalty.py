@@ -1,4 +1,4 @@
-"""The nodal penalty of general finite-element programs, integrated over the overlap ellipse of each contact."""
+"""The penalty of general finite-element programs, at surface points or integrated over the overlap ellipse of a contact."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
+from raceway.contact_laws.stiffness import point_stiffness
 from raceway.options import option, optional, positive
 
 if TYPE_CHECKING:
@@ -16,16 +17,17 @@ if TYPE_CHECKING:
 
 @attrs.frozen
 class Penalty:
-    """p = k_n max(-g, 0): Q = pi k_n delta^2 / (2 sqrt(A B)) for a contact of curvatures A and B.
+    """p = k_n max(-g, 0); of rigid bodies Q = pi k_n delta^2 / (2 sqrt(A B)) for a contact of curvatures A and B.
 
     Notes
     -----
-    Without ``stiffness`` the penalty is scaled so that, at ``calibrate_at`` (by default the ball load under the axial load
-    alone), the approach equals Hertz's; at other loads it does not.
+    Without ``stiffness`` the penalty is scaled at ``calibrate_at`` (by default the ball load under the axial load alone):
+    as a resultant so that the approach equals Hertz's there (at other loads it does not), at surface points, where the
+    bodies deform, so that its penetration is 1 % of Hertz's approach.
     """
 
     name: ClassVar[str] = "penalty"
-    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant"})
+    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant", "nodal"})
     state_size: ClassVar[int] = 0
     dissipative: ClassVar[bool] = False
 
@@ -33,7 +35,10 @@ class Penalty:
         None, unit="N/m3", help="pressure per penetration k_n; excludes calibrate_at", rule=optional(positive())
     )
     calibrate_at: float | None = option(
-        None, unit="N", help="ball load at which the approach equals Hertz's", rule=optional(positive())
+        None,
+        unit="N",
+        help="ball load at which the approach equals Hertz's, at points: is 1 % of it",
+        rule=optional(positive()),
     )
 
     @classmethod
@@ -48,14 +53,18 @@ class Penalty:
     def build(self, pairs: ContactPairs) -> np.ndarray:
         import numpy as np
 
+        none = np.zeros_like(pairs.hertz_factor)
+        load = pairs.reference_load if self.calibrate_at is None else np.full_like(none, self.calibrate_at)
+        if pairs.area is not None:
+            fixed = self.stiffness is not None
+            return np.column_stack([none, none + self.stiffness if fixed else point_stiffness(pairs, load)])
         if self.stiffness is not None:
             factor = np.pi * self.stiffness / (2.0 * np.sqrt(pairs.curvature_a * pairs.curvature_b))
         else:
-            load = pairs.reference_load if self.calibrate_at is None else np.full_like(pairs.hertz_factor, self.calibrate_at)
             factor = load / np.cbrt(load / pairs.hertz_factor) ** 4
-        return factor[:, None].copy()
+        return np.column_stack([factor, none])
 
     def kernel(self) -> Any:
-        from raceway.core.contact_laws.power import square
+        from raceway.core.contact_laws.point_or_pair import square_or_linear
 
-        return square
+        return square_or_linear

@@ -1,8 +1,10 @@
-"""Drives one compiled loop in chunks, so that progress can be shown and a stop is honoured."""
+"""Takes the steps of a schedule: compiled systems by a compiled loop, in chunks; others step by step from Python.
+
+Progress can be shown between chunks, and a stop is honoured.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,18 +20,18 @@ from raceway.core.integrators import (
     ROWS,
     UNBOUNDED,
 )
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.record import Motion, OnChunk, Record, Schedule
+from raceway.core.stepping.protocol import SteppedSystem
 from raceway.core.system import System
-from raceway.errors import ConvergenceError, StabilityError
+from raceway.errors import ConvergenceError, PluginError, StabilityError
 
-#: Called between chunks with the steps done and the steps in all.
-OnChunk = Callable[[int, int], None]
+__all__ = ["OnChunk", "advance"]
 _CHUNK = 20_000
 
 
 def advance(
     loop: Any,
-    system: System,
+    system: System | SteppedSystem,
     start: Motion,
     schedule: Schedule,
     coefficients: np.ndarray,
@@ -40,6 +42,8 @@ def advance(
     Parameters
     ----------
     loop : kernel with the signature ``raceway.core.signatures.LOOP``
+    system : compiled, or one that is stepped from Python by the loop of the same name in ``raceway.core.stepping``: a
+        ``SteppedSystem``, or one of the ring's five coordinates that is no compiled one (its ``companion`` is another)
     coefficients : (k,) the method's own numbers
 
     Raises
@@ -47,6 +51,8 @@ def advance(
     ConvergenceError, StabilityError
         With the reason, the time and the last good motion in ``state``.
     """
+    if not isinstance(system, System) or system.companion is not system:
+        return _step(loop, system, start, schedule, coefficients, on_chunk)
     z = system.ball_count
     rows = np.zeros((schedule.steps // schedule.stride, 16))
     probes = np.zeros((len(rows), 2 + system.ball_columns // 2, 2 * z))
@@ -57,9 +63,9 @@ def advance(
     ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
     if start.memory is not None:
         memory[:] = start.memory
-    done = 0
-    while done < schedule.steps:
-        count = min(_CHUNK, schedule.steps - done)
+    done, last = schedule.first, schedule.first + schedule.steps
+    while done < last:
+        count = min(_CHUNK, last - done)
         taken = loop(
             system.kernel, system.law, system.force, system.law_params, system.scalars, system.table,
             system.force_params, system.mass, system.damping, system.stiffness, system.free, system.load,
@@ -70,7 +76,7 @@ def advance(
         if taken < count:
             raise _failure(system, schedule, done, motion, ball, counters)
         if on_chunk is not None:
-            on_chunk(done, schedule.steps)
+            on_chunk(done - schedule.first, schedule.steps)
     kept = int(counters[ROWS])
     rows, probes = rows[:kept], probes[:kept]
     places = [part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
@@ -93,11 +99,39 @@ def advance(
     )
 
 
+def _step(
+    loop: Any, system: Any, start: Motion, schedule: Schedule, coefficients: np.ndarray, on_chunk: OnChunk | None
+) -> Record:
+    from raceway.core.integrators.central_difference import central_difference
+    from raceway.core.integrators.implicit import implicit
+    from raceway.core.integrators.quasi_static import quasi_static
+    from raceway.core.stepping import central_difference as explicit_loop
+    from raceway.core.stepping import implicit as implicit_loop
+    from raceway.core.stepping import quasi_static as static_loop
+    from raceway.core.stepping.bearing import SteppedBearing
+    from raceway.core.stepping.recorder import Recorder
+
+    known = [
+        (implicit, implicit_loop.implicit),
+        (central_difference, explicit_loop.central_difference),
+        (quasi_static, static_loop.quasi_static),
+    ]
+    for compiled, stepped in known:
+        if loop is compiled:
+            stepper: SteppedSystem = SteppedBearing(system) if isinstance(system, System) else system
+            recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
+            stepped(stepper, recorder, coefficients)
+            return recorder.record()
+    raise PluginError(
+        f"loop `{loop.__name__}` has no counterpart for bodies that are stepped from Python: use a built-in one"
+    )
+
+
 def _failure(
     system: System, schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
 ) -> ConvergenceError:
     turn = done // schedule.steps_per_turn + 1
-    when = f"after {done} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
+    when = f"after {done - schedule.first} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
     state = {"t": done * schedule.dt, "q": motion[0].copy(), "v": motion[1].copy(), "a": motion[2].copy(), "ball": ball}
     if counters[REASON] == UNBOUNDED:
         limit = system.critical_time_step(system.evaluate(motion[0]).stiffness) if np.isfinite(motion).all() else None

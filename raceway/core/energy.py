@@ -47,6 +47,8 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     stored = energy.reshape(n, pairs).sum(axis=1)
     stored -= (record.ball[:, :, 1] * system.table[:, CENTRIFUGAL]).sum(axis=1)
     stored += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
+    if system.condensed:
+        stored += 0.5 * np.einsum("nc,nc->n", record.contact_force, system.structural_approach(record.ball))
     friction = friction_energy(system, record)
     stored += friction.stored
     kinetic = 0.5 * np.einsum("ni,ij,nj->n", v, system.mass, v)

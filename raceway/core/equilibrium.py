@@ -4,7 +4,8 @@ Notes
 -----
 With rigid rings, no friction and laws whose force grows with the approach, the potential is convex: the length of
 e - p and of p are convex in (q, p), the contact energies grow and are convex in those lengths, and a minimum over the
-balls p keeps convexity.  So a trust-region Newton iteration finds the one minimum from anywhere.  Tilts are scaled by
+balls p keeps convexity.  The compliance of elastic bodies keeps it as long as the contacts are softer than what it takes
+off them, which the kernels see to.  So a trust-region Newton iteration finds the one minimum from anywhere.  Tilts are scaled by
 the arm R so that all unknowns are lengths.
 
 References
@@ -15,6 +16,7 @@ More, Sorensen: Computing a trust region step, SIAM J. Sci. Stat. Comput. 4 (198
 import numpy as np
 from numba import float64, int64
 
+from raceway.core.bodies import STORED
 from raceway.core.bodies.ring import CAGE, CENTRIFUGAL, TILT_ARM, stop
 from raceway.core.contact import stored_energy
 from raceway.core.dense import cholesky_solve
@@ -29,12 +31,12 @@ _LIMIT = 300
 
 @jit(float64(LAW_POINTER, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR))
 def contact_energy(law, law_params, law_old, law_new, table, ball, work, energy):
-    """Energy [J] stored in all contacts at the gaps in work[0], less the work of the centrifugal forces."""
+    """Energy [J] stored in all contacts at the gaps in work[0] and in the bodies, less the work of the centrifugal forces."""
     scratch = work[8:14]
     stored_energy(law, law_params, law_old, law_new, work[0], scratch, energy)
     total = 0.0
     for i in range(energy.size):
-        total += energy[i]
+        total += energy[i] + work[STORED, i]
     for k in range(table.shape[0]):
         if table[k, CENTRIFUGAL] != 0.0:
             total -= table[k, CENTRIFUGAL] * ball[k, 1]
@@ -162,7 +164,8 @@ def settle(
                 total += 0.5 * H[i, j] * rhs[j]
             predicted -= rhs[i] * total
         for k in range(ball.shape[0]):
-            ball_new[k, 0], ball_new[k, 1] = ball[k, 0], ball[k, 1]
+            for c in range(ball.shape[1]):
+                ball_new[k, c] = ball[k, c]
         if np.isnan(potential):
             potential = contact_energy(law, law_params, law_state, law_new, table, ball, work, energy_rows)
             for i in range(5):
@@ -221,5 +224,6 @@ def settle(
                 for j in range(5):
                     K[i, j] = K_new[i, j]
             for k in range(ball.shape[0]):
-                ball[k, 0], ball[k, 1] = ball_new[k, 0], ball_new[k, 1]
+                for c in range(ball.shape[1]):
+                    ball[k, c] = ball_new[k, c]
     return CONVERGED if relative <= 1e3 * tolerance else NOT_CONVERGED

@@ -42,9 +42,9 @@ class FrictionEnergy:
 def friction_energy(system: System, record: Record) -> FrictionEnergy:
     """Energies of friction along a record; zeros where the system has none."""
     n = len(record.time)
-    if record.ball.shape[2] < 4 or system.scalars[STICK] == 0.0:
+    if system.conservative or system.scalars[STICK] == 0.0:
         return FrictionEnergy(np.zeros(n), np.zeros(n))
-    slip = record.ball[:, :, 2:]
+    slip = record.ball[:, :, 2:4]
     force = system.scalars[STICK] * (_place(system, record) - slip)
     lost = np.zeros(n)
     lost[1:] = np.cumsum((force[1:] * np.diff(slip, axis=0)).sum(axis=(1, 2)))

@@ -18,7 +18,7 @@ import attrs
 import numpy as np
 from numba import int64
 
-from raceway.core.bodies import WORK_ROWS
+from raceway.core.bodies.columns import work_rows
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
 from raceway.core.system import System
@@ -33,7 +33,7 @@ from raceway.errors import ConvergenceError
 )
 def evaluate_many(system, law, law_params, scalars, table, law_state, times, q, v, ball, ball_rate, f, K, C):
     """Contact forces (n, 5) and tangents (n, 5, 5) at n states; the index of the first that fails, or n."""
-    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
+    work = np.zeros((work_rows(scalars, table), 2 * table.shape[0]))
     law_new = law_state.copy()
     for i in range(times.size):
         status = system(
@@ -122,6 +122,7 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
     q = start.copy()
     ball = np.zeros((samples, z, system.ball_columns))
     rate = np.zeros_like(ball)
+    rated = system.rated_columns
     f, K, C = np.empty((samples, 5)), np.empty((samples, 5, 5)), np.empty((samples, 5, 5))
     scale = max(np.abs(force).max(), np.abs(system.load).max(), 1e-300)
     linear = np.zeros((samples, n, samples, n))
@@ -135,7 +136,7 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
     for iterations in range(1, 61):
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
-            rate[:, :, :2] = np.einsum("ij,jkc->ikc", first, ball[:, :, :2])
+            rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
         done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:

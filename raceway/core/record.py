@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import attrs
 import numpy as np
+
+#: Called between chunks with the steps done and the steps in all.
+OnChunk = Callable[[int, int], None]
 
 
 @attrs.frozen(eq=False)
@@ -19,6 +23,7 @@ class Motion:
     memory : (2 Z, m) of the contact law; None for a law that remembers nothing yet
     rest : (5,) internal less outer forces [N, N m]; None where it is -M a: of generalised-alpha it is not, and a run that
         goes on from another's final motion needs it
+    whole : arrays by name, all unknowns and all memory of a system of more than the ring's five coordinates; None for others
     """
 
     q: np.ndarray
@@ -28,17 +33,19 @@ class Motion:
     ball_before: np.ndarray
     rest: np.ndarray | None = None
     memory: np.ndarray | None = None
+    whole: Mapping[str, np.ndarray] | None = None
 
 
 @attrs.frozen(eq=False)
 class Schedule:
-    """Times of an integration: ``steps`` steps of ``dt`` [s], every ``stride``-th recorded, from time zero.
+    """Times of an integration: ``steps`` steps of ``dt`` [s], every ``stride``-th recorded, from step ``first`` on.
 
     Attributes
     ----------
     steps_per_turn : int
     turns : int
     ramp : float, the excitation grows smoothly over this time [s]
+    first : steps that were taken before: a run that goes on from another's final motion keeps its clock
     """
 
     dt: float
@@ -46,6 +53,7 @@ class Schedule:
     turns: int
     stride: int = 1
     ramp: float = 0.0
+    first: int = 0
 
     @property
     def steps(self) -> int:
@@ -63,6 +71,7 @@ class Record:
     gap, contact_force : (n, 2 Z) inner races first [m, N];  ball : (n, Z, 2 or 4) positions and slips [m]
     final : Motion
     counts : dict with steps, evaluations, max_penetration_m, peak_contact_force_n
+    energies : name -> (n,) [J], of systems that tell them
     """
 
     time: np.ndarray
@@ -75,10 +84,12 @@ class Record:
     final: Motion
     schedule: Schedule
     counts: dict[str, Any]
+    energies: dict[str, np.ndarray] = attrs.field(factory=dict)
 
     def last(self, turns: int) -> Record:
         """The part that belongs to the last turns."""
-        first = self.schedule.steps - turns * self.schedule.steps_per_turn
+        first = self.schedule.first + self.schedule.steps - turns * self.schedule.steps_per_turn
         keep = self.time > (first + 0.5 * self.schedule.stride) * self.schedule.dt
         names = ("time", "displacement", "velocity", "force", "gap", "contact_force", "ball")
-        return attrs.evolve(self, **{name: getattr(self, name)[keep] for name in names})
+        energies = {name: values[keep] for name, values in self.energies.items()}
+        return attrs.evolve(self, energies=energies, **{name: getattr(self, name)[keep] for name in names})

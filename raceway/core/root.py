@@ -7,6 +7,7 @@ It starts near the solution: from the equilibrium without those forces, or from 
 
 import numpy as np
 
+from raceway.core.bodies.columns import keep_slips
 from raceway.core.bodies.ring import CAGE, TILT_ARM, stop
 from raceway.core.dense import solve
 from raceway.core.jit import jit
@@ -26,9 +27,7 @@ def find_root(
         stop(t, scalars, table)
     arm = scalars[TILT_ARM]
     rest, zeros = np.zeros(5), np.zeros_like(ball)
-    for k in range(ball.shape[0]):
-        for c in range(2, ball.shape[1]):
-            zeros[k, c] = ball[k, c]
+    keep_slips(scalars, ball, zeros)
     law_new = law_state.copy()
     C, J, r, step = np.empty((5, 5)), np.empty((5, 5)), np.empty(5), np.zeros(5)
     weight = np.ones(5)

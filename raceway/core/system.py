@@ -7,7 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.bodies import WORK_ROWS
+from raceway.core.bodies.columns import are_condensed, work_rows
 from raceway.core.bodies.ring import (
     CAGE,
     DIAMETER,
@@ -18,6 +18,7 @@ from raceway.core.bodies.ring import (
     SIDE,
     TILT_ARM,
     place,
+    stop,
 )
 from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.core.root import find_root
@@ -37,7 +38,8 @@ class Evaluation:
     force : (5,) internal force of the contacts [N, N m]
     stiffness, damping : (5, 5) its derivatives by displacement and velocity
     gap, contact_force : (2 Z,) inner races first, then outer [m, N]
-    ball : (Z, 2) positions of the balls in their meridian planes [m]
+    ball : (Z, 2, 4 or 6) positions of the balls in their meridian planes, slips, structural approaches [m]
+    memory : (2 Z, m) what the law would remember
     """
 
     force: np.ndarray
@@ -46,6 +48,7 @@ class Evaluation:
     gap: np.ndarray
     contact_force: np.ndarray
     ball: np.ndarray
+    memory: np.ndarray
 
 
 @attrs.define(eq=False)
@@ -95,8 +98,30 @@ class System:
         return self.base_kernel is self.kernel
 
     @property
+    def companion(self) -> System:
+        """A compiled system of the same ring: this one; another, near it, where this one is stepped from Python."""
+        return self
+
+    @property
     def ball_columns(self) -> int:
-        return 2 if self.conservative else 4
+        return (2 if self.conservative else 4) + (2 if self.condensed else 0)
+
+    @property
+    def condensed(self) -> bool:
+        """Whether rings and balls are elastic: ``ball`` then ends with both contacts' structural approach."""
+        return bool(are_condensed(self.scalars))
+
+    @property
+    def rated_columns(self) -> list[int]:
+        """Columns of ``ball`` that have rates: positions and structural approaches, not slips."""
+        return [0, 1, *([self.ball_columns - 2, self.ball_columns - 1] if self.condensed else [])]
+
+    def structural_approach(self, ball: np.ndarray) -> np.ndarray:
+        """(..., 2 Z) what the elasticity of the bodies adds to the approach of each contact [m], from ball (..., Z, k)."""
+        return np.concatenate([ball[..., -2], ball[..., -1]], axis=-1)
+
+    def _work(self) -> np.ndarray:
+        return np.zeros((work_rows(self.scalars, self.table), 2 * self.ball_count))
 
     @property
     def model(self) -> tuple[Any, ...]:
@@ -116,8 +141,18 @@ class System:
         ball: np.ndarray | None = None,
         ball_rate: np.ndarray | None = None,
         t: float = 0.0,
+        *,
+        dt: float = 0.0,
+        ball_gain: float = 0.0,
+        memory: np.ndarray | None = None,
     ) -> Evaluation:
         """Contact forces and tangents at displacement q (5,) and velocity v (5,).
+
+        Parameters
+        ----------
+        ball : (Z, 2 or 4) a first guess, and the slips that were committed last
+        ball_rate, ball_gain : the rate of a ball is ball_gain * ball + ball_rate [m/s]
+        dt : step since the law's ``memory`` (2 Z, m) was committed [s]; None for ``law_state``
 
         Raises
         ------
@@ -132,19 +167,28 @@ class System:
             ball, scalars = np.zeros((z, self.ball_columns)), self.without(FRICTION).scalars
         else:
             ball = np.array(ball, dtype=float)
-            rate[:, 2:] = ball[:, 2:]
+            if not self.conservative:
+                rate[:, 2:4] = ball[:, 2:4]
         if ball_rate is not None:
-            rate[:, :2] = ball_rate[:, :2]
+            rate[:, self.rated_columns] = ball_rate[:, self.rated_columns]
         v = np.zeros(5) if v is None else np.ascontiguousarray(v, dtype=float)
-        work = np.zeros((WORK_ROWS, 2 * z))
+        work = self._work()
         f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
+        old = self.law_state if memory is None else memory
+        new = old.copy()
         status = self.kernel(
-            t, 0.0, np.ascontiguousarray(q, dtype=float), v, ball, 0.0, rate, self.law, self.law_params,
-            self.law_state, self.law_state.copy(), scalars, self.table, work, f, K, C,
+            t, dt, np.ascontiguousarray(q, dtype=float), v, ball, ball_gain, rate, self.law, self.law_params,
+            old, new, scalars, self.table, work, f, K, C,
         )  # fmt: skip
         if status != 0:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
-        return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball)
+        return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball, new)
+
+    def stopped(self, t: float) -> System:
+        """A copy whose orbiting balls stand still where they are at a time."""
+        scalars, table = self.scalars.copy(), self.table.copy()
+        stop(float(t), scalars, table)
+        return attrs.evolve(self, scalars=scalars, table=table)
 
     def without(self, *entries: int) -> System:
         """A copy with some ``scalars`` (FRICTION, GYROSCOPIC, CAGE of ``raceway.core.bodies.ring``) set to zero."""
@@ -174,12 +218,12 @@ class System:
         if self.conservative:
             return q_now, ball_now, total
         whole = self.without(FRICTION, CAGE)
-        guess = np.zeros((self.ball_count, 4))
+        guess = np.zeros((self.ball_count, self.ball_columns))
         if self.scalars[GYROSCOPIC] != 0.0:
             q_now, guess, more = whole._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
             total += more
         guess = whole.evaluate(q_now, ball=guess).ball
-        guess[:, 2:] = self.rolled_in(q_now, guess)
+        guess[:, 2:4] = self.rolled_in(q_now, guess)
         return q_now, guess, total
 
     def _by_parts(
@@ -200,8 +244,7 @@ class System:
                     now = load * (part / count)
                 status = solver(
                     self.kernel, self.law, self.law_params, scalars, self.table, self.stiffness, self.free, now,
-                    tolerance, 0.0, q_now, ball_now, self.law_state, np.zeros((WORK_ROWS, 2 * self.ball_count)), np.empty(5),
-                    np.empty((5, 5)), report,
+                    tolerance, 0.0, q_now, ball_now, self.law_state, self._work(), np.empty(5), np.empty((5, 5)), report,
                 )  # fmt: skip
                 total += int(report[0]) + 1
                 if status != CONVERGED:

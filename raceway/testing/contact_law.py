@@ -16,11 +16,22 @@ _CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA = 5.0, 130.0, 1.16e1
 _PAIR_FIELDS = tuple(attrs.fields_dict(ContactPairs))
 
 
-def example_pairs(n: int, seed: int = 1) -> ContactPairs:
-    """n contacts, each within a factor two of those of a bearing of 30 mm bore."""
+def example_pairs(n: int, seed: int = 1, nodal: bool = True) -> ContactPairs:
+    """n contacts, each within a factor two of those of a bearing of 30 mm bore; resultants have no ``area``."""
     spread = np.random.default_rng(seed).uniform(0.7, 1.4, (6, n))
     values = (_CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA)
-    return ContactPairs(*(value * row for value, row in zip(values, spread, strict=True)))
+    pairs = ContactPairs(*(value * row for value, row in zip(values, spread, strict=True)))
+    return pairs if nodal else attrs.evolve(pairs, area=None)
+
+
+def _given(pairs: ContactPairs) -> list[str]:
+    """Names of the arrays that a law gets."""
+    return [name for name in _PAIR_FIELDS if getattr(pairs, name) is not None]
+
+
+def discretisation_of(law: Any) -> str:
+    """What the suite drives a law as: resultants where it knows them."""
+    return "resultant" if "resultant" in law.discretisations else "nodal"
 
 
 @attrs.define(eq=False)
@@ -49,9 +60,10 @@ class Driven:
         return force, d_gap, d_rate, new
 
 
-def drive(law: Any, n: int) -> Driven:
+def drive(law: Any, n: int, discretisation: str = "") -> Driven:
     """A law built for n example contacts."""
-    return Driven(law, law.kernel(), np.ascontiguousarray(law.build(example_pairs(n)), dtype=float))
+    pairs = example_pairs(n, nodal=(discretisation or discretisation_of(law)) == "nodal")
+    return Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))
 
 
 class ContactLawSuite(Suite):
@@ -78,12 +90,12 @@ class ContactLawSuite(Suite):
 
     @duty("build(pairs) returns (n, k) finite parameters, a row for each contact")
     def test_parameters(self, law: Any) -> None:
-        pairs = example_pairs(7)
+        pairs = example_pairs(7, nodal=discretisation_of(law) == "nodal")
         params = np.asarray(law.build(pairs))
         require(params.ndim == 2 and len(params) == 7, f"build() of 7 contacts returns shape {params.shape}, not (7, k)")
         require(params.dtype == np.float64, f"build() returns {params.dtype}, not float64")
         require(np.isfinite(params).all(), "build() returns values that are not finite")
-        one = attrs.evolve(pairs, **{f.name: getattr(pairs, f.name)[2:3] for f in attrs.fields(ContactPairs)})
+        one = attrs.evolve(pairs, **{name: getattr(pairs, name)[2:3] for name in _given(pairs)})
         require(np.array_equal(np.asarray(law.build(one))[0], params[2]), "a contact's row depends on the other contacts")
 
     @duty("kernel() is compiled with @jit(LAW)")
@@ -189,6 +201,25 @@ class ContactLawSuite(Suite):
             largest = max(largest, float(lost.max()))
         return f"loses up to {100.0 * largest:.3g} % a cycle" if law.dissipative else ""
 
+    @duty("a law of both discretisations is a pressure where it gets an area: zero outside, growing, derivative exact")
+    def test_pressures(self, law: Any) -> str:
+        if law.discretisations != {"resultant", "nodal"}:
+            return "one discretisation"
+        driven, h = drive(law, 64, "nodal"), 1e-6 * self.depth
+        approaches = np.linspace(0.01, 1.0, 100) * self.depth
+        outside = driven(1e-9)
+        require(not outside[0].any() and not outside[1].any(), "a pressure or a derivative outside contact")
+        pressures = np.array([driven(-a)[0] for a in approaches])
+        require((pressures >= 0.0).all() and (np.diff(pressures, axis=0) >= 0.0).all(), "the pressure falls or is negative")
+        require(pressures[-1].min() > 0.0, f"no pressure at an approach of {self.depth:g} m")
+        for a in approaches[::10]:
+            slope = (driven(-a + h)[0] - driven(-a - h)[0]) / (2.0 * h)
+            given = driven(-a)[1]
+            # Truncation of the differences: (h / approach)^2, at most 1e-8.
+            worst = np.abs(slope - given).max() / max(np.abs(given).max(), 1e-300)
+            require(worst < 1e-5, f"d_gap is off by {worst:.2g} at an approach of {a:.3g} m")
+        return ""
+
     @duty("empty and long arrays; a contact does not depend on its neighbours")
     def test_array_lengths(self, law: Any) -> None:
         for n in (0, 1, 100_000):
@@ -261,10 +292,10 @@ class ContactLawSuite(Suite):
             other = attrs.evolve(law, **options)
         except ValueError as why:
             return f"not checked: the options' own rules refuse other units ({why})"
-        pairs = example_pairs(64)
-        units = ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2")
+        pairs = example_pairs(64, nodal=discretisation_of(law) == "nodal")
+        units = dict(zip(_PAIR_FIELDS, ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2"), strict=True))
         scaled = ContactPairs(
-            *(getattr(pairs, f) * scale_of(unit, length, force, time) for f, unit in zip(_PAIR_FIELDS, units, strict=True))
+            **{name: getattr(pairs, name) * scale_of(units[name], length, force, time) for name in _given(pairs)}
         )
         a = Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))
         b = Driven(other, other.kernel(), np.ascontiguousarray(other.build(scaled), dtype=float))

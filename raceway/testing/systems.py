@@ -22,8 +22,8 @@ from raceway.core.record import Motion
 from raceway.core.system import System
 from raceway.testing.compiled import counting, one_contact
 
-#: The entry of ``scalars`` after those of the bearing's kernels: the gap at x = 0 [m].
-CLEARANCE = SCALARS
+#: The last entry of ``scalars``, a diameter that no ball here has: the gap at x = 0 [m].
+CLEARANCE = SCALARS - 1
 _OPEN = 1.0
 
 MASS, STIFFNESS, DASHPOT, GYROSCOPIC = 2.0, 2e8, 600.0, 800.0
@@ -42,7 +42,7 @@ def counting_system() -> System:
 
 
 def _system(free: list[float], **parts: Any) -> System:
-    scalars = np.zeros(SCALARS + 1)
+    scalars = np.zeros(SCALARS)
     # The first trust radius of an equilibrium is taken from it: a typical approach.
     scalars[REST_AXIAL], scalars[TILT_ARM] = 1e-4, 1.0
     scalars[CLEARANCE] = parts.pop("clearance", 0.0)

@@ -11,11 +11,12 @@ from raceway.core.mesh import EDGES
 from raceway.core.mesh_quality import quality, refuse_bad_cells
 from raceway.core.mesh_summary import summary
 from raceway.core.meshing.ring import ring_mesh
+from raceway.core.meshing.ring_shape import ring_shape
 from raceway.core.meshing.spacing import graded, growing, halved
 from raceway.core.meshing.sphere import ball_cells, ball_mesh
 from raceway.errors import MeshError, SceneError
 from raceway.meshing import mesh_scene, scene_mesher
-from raceway.plugins.meshers.structured import Structured, ring_shape
+from raceway.plugins.meshers.structured import Structured
 from tests.command_line import EXAMPLES
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing

@@ -6,14 +6,16 @@ Every kernel has the signature ``raceway.core.signatures.SYSTEM``::
            scalars, table, work, f, K, C) -> status
 
     q, v (5,)            displacement [m, rad] and velocity of the reference point: x, y, z, tilt_y, tilt_z
-    ball (Z, 2 or 4)     in: a first guess; out: the position of each ball in its meridian plane [m], then the slip
-                         of its inner and outer contact where there is friction [m]
-    ball_gain [1/s], ball_known (Z, 2 or 4) [m/s]   rate of a ball = ball_gain * ball + ball_known: an integrator
-                         states its difference formula with them; 0 and zeros at rest.  Columns 2 and 3 hold the slips
-                         that were committed last [m]
+    ball (Z, 2, 4 or 6)  in: a first guess; out: the position of each ball in its meridian plane [m], then the slip
+                         of its inner and outer contact where there is friction [m], and of condensed bodies at last
+                         the structural approach of both contacts [m]
+    ball_gain [1/s], ball_known (like ball) [m/s]   rate of a ball = ball_gain * ball + ball_known: an integrator
+                         states its difference formula with them; 0 and zeros at rest.  The columns of slips hold those
+                         that were committed last [m]; see ``raceway.core.bodies.columns``
     law_params (2 Z, k), law_old, law_new (2 Z, m)   the law's parameters and memory: inner races first, then outer
     scalars, table       constants of the model, laid out in ``raceway.core.bodies.ring``
-    work (WORK_ROWS, 2 Z)   on return rows 0 and 2 hold gap [m] and force [N] of every contact
+    work (rows, 2 Z)     ``columns.work_rows`` tells how many; on return rows 0 and 2 hold gap [m] and force [N] of every
+                         contact
     f (5,), K, C (5, 5)  internal force [N, N m] and its derivatives by q and by v; a caller that needs no tangents gives
                          K and C of shape (0, 0), which are left alone
 
@@ -23,8 +25,18 @@ outer loads are linear and belong to ``raceway.core.system``.  Z counts the ball
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
 rigid_tangential   the same with gyroscopic moments or friction: no potential
+condensed_*        the same three kernels on elastic rings and balls: see ``structural``
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """
 
-#: Rows of ``work``: gap, gap rate, force, d_gap, d_rate, then scratch of the ball solvers.
-WORK_ROWS = 24
+#: Rows of ``work``: gap, gap rate, force, d_gap, d_rate, then scratch of the ball solvers (5 to 25), then what the bodies'
+#: elasticity adds to each gap [m], its rate [m/s] and the energy it stores [J]: zeros for rigid bodies.
+WORK_ROWS = 29
+SHIFT, SHIFT_RATE, STORED = 26, 27, 28
+#: Rows that condensed bodies have beyond these; kernels fill them with the derivatives of both contact forces of a ball by
+#: the vector e, its velocity, the shifts (own and the other contact's) and the turn of the section; of its force on the
+#: ring, and of its couple, by the shifts.
+(
+    BY_AXIAL, BY_RADIAL, BY_AXIAL_SPEED, BY_RADIAL_SPEED, BY_OWN, BY_OTHER, BY_TURN,
+    AXIAL_BY_SHIFT, RADIAL_BY_SHIFT, COUPLE_BY_SHIFT,
+) = range(WORK_ROWS, WORK_ROWS + 10)  # fmt: skip

@@ -10,6 +10,19 @@ acceleration in its meridian plane is left out: its slowest mode, along the groo
 
 import numpy as np
 
+from raceway.core.bodies import (
+    AXIAL_BY_SHIFT,
+    BY_AXIAL,
+    BY_AXIAL_SPEED,
+    BY_OTHER,
+    BY_OWN,
+    BY_RADIAL,
+    BY_RADIAL_SPEED,
+    RADIAL_BY_SHIFT,
+    SHIFT,
+    SHIFT_RATE,
+    WORK_ROWS,
+)
 from raceway.core.bodies.ring import (
     CENTRIFUGAL,
     DAMPING,
@@ -72,12 +85,14 @@ def rigid_inertial(
                 work[INNER, k], work[INNER, z + k] = xa / work[LENGTH, k], xr / work[LENGTH, k]
             else:
                 work[INNER, k], work[INNER, z + k] = work[OUTER, k], work[OUTER, z + k]
-            gap[k] = li - work[LENGTH, k]
-            gap[z + k] = lo - work[LENGTH, z + k]
+            gap[k] = li - work[LENGTH, k] + work[SHIFT, k]
+            gap[z + k] = lo - work[LENGTH, z + k] + work[SHIFT, z + k]
             own_a = ball_gain * pa + ball_known[k, 0]
             own_r = ball_gain * pr + ball_known[k, 1]
             rate[k] = -(work[INNER, k] * (work[VELOCITY, k] - own_a) + work[INNER, z + k] * (work[VELOCITY, z + k] - own_r))
             rate[z + k] = -(work[OUTER, k] * own_a + work[OUTER, z + k] * own_r)
+            rate[k] += work[SHIFT_RATE, k]
+            rate[z + k] += work[SHIFT_RATE, z + k]
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
         for k in range(z):
@@ -156,9 +171,13 @@ def rigid_inertial(
         force[k], force[z + k] = fi, fo
         work[CARRIED, k], work[CARRIED, z + k] = fi * work[15, k], fi * work[15, z + k]
     ring_force(table, arm, work, DIRECTION, CARRIED, f)
-    if K.size == 0:
+    elastic_bodies = work.shape[0] > WORK_ROWS
+    if K.size == 0 and not elastic_bodies:
         return 0
     for k in range(z):
+        if elastic_bodies:
+            for row in range(WORK_ROWS, WORK_ROWS + 10):
+                work[row, k], work[row, z + k] = 0.0, 0.0
         if force[k] == 0.0 and work[13, k] == 0.0:
             work[STIFF, k], work[STIFF, z + k], work[STIFF + 1, k], work[STIFF + 1, z + k] = 0.0, 0.0, 0.0, 0.0
             work[VISCOUS, k], work[VISCOUS, z + k], work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = 0.0, 0.0, 0.0, 0.0
@@ -186,6 +205,25 @@ def rigid_inertial(
         work[STIFF + 1, k], work[STIFF + 1, z + k] = ear - tra * eaa - trr * ear, err - tra * ear - trr * err
         work[VISCOUS, k], work[VISCOUS, z + k] = maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr
         work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr
+        if not elastic_bodies:
+            continue
+        # dp = -H^-1 (ki ni dw_i - ko no dw_o) + H^-1 E de;  rows g of dQ = g (...): ki ni^T H^-1 and -ko no^T H^-1.
+        oa, orr = work[OUTER, k], work[OUTER, z + k]
+        gia, gir = ki * (na * hrr - nr * har) * inverse, ki * (nr * haa - na * har) * inverse
+        goa, gor = -ko * (oa * hrr - orr * har) * inverse, -ko * (orr * haa - oa * har) * inverse
+        work[BY_AXIAL, k] = elastic * na - gia * eaa - gir * ear
+        work[BY_RADIAL, k] = elastic * nr - gia * ear - gir * err
+        work[BY_AXIAL, z + k], work[BY_RADIAL, z + k] = -goa * eaa - gor * ear, -goa * ear - gor * err
+        work[BY_AXIAL_SPEED, k] = viscous * na - gia * maa - gir * mar
+        work[BY_RADIAL_SPEED, k] = viscous * nr - gia * mar - gir * mrr
+        work[BY_AXIAL_SPEED, z + k], work[BY_RADIAL_SPEED, z + k] = -goa * maa - gor * mar, -goa * mar - gor * mrr
+        wia, wir, woa, wor = -ki * na, -ki * nr, ko * oa, ko * orr
+        work[BY_OWN, k], work[BY_OTHER, k] = -ki - gia * wia - gir * wir, -gia * woa - gir * wor
+        work[BY_OTHER, z + k], work[BY_OWN, z + k] = -goa * wia - gor * wir, -ko - goa * woa - gor * wor
+        work[AXIAL_BY_SHIFT, k], work[RADIAL_BY_SHIFT, k] = wia - taa * wia - tar * wir, wir - tra * wia - trr * wir
+        work[AXIAL_BY_SHIFT, z + k], work[RADIAL_BY_SHIFT, z + k] = -taa * woa - tar * wor, -tra * woa - trr * wor
+    if K.size == 0:
+        return 0
     ring_tangent(table, arm, work, DIRECTION, STIFF, K)
     ring_tangent(table, arm, work, DIRECTION, VISCOUS, C)
     return 0

@@ -27,6 +27,21 @@ Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 
 import numpy as np
 from numba import float64, types
 
+from raceway.core.bodies import (
+    AXIAL_BY_SHIFT,
+    BY_AXIAL,
+    BY_AXIAL_SPEED,
+    BY_OTHER,
+    BY_OWN,
+    BY_RADIAL,
+    BY_RADIAL_SPEED,
+    BY_TURN,
+    COUPLE_BY_SHIFT,
+    RADIAL_BY_SHIFT,
+    SHIFT,
+    SHIFT_RATE,
+    WORK_ROWS,
+)
 from raceway.core.bodies.ring import (
     BALL_OVER_PITCH,
     CENTRIFUGAL,
@@ -99,6 +114,10 @@ def rigid_tangential(
     cross_i, cross_o = work[19][:z], work[19][z:]
     couple, m_s, m_a, m_o, m_t, h_t = work[20][:z], work[20][z:], work[21][:z], work[21][z:], work[22][:z], work[22][z:]
     cross_s, merit = work[23][:z], work[23][z:]
+    # Derivatives of tangential forces and couple by the bodies' shifts of the gaps.
+    h_w, couple_w = work[24], work[25][:z]
+    given, given_rate = work[SHIFT], work[SHIFT_RATE]
+    elastic_bodies = work.shape[0] > WORK_ROWS
     for i in range(5):
         f[i] = 0.0
         if K.size > 0:
@@ -111,9 +130,10 @@ def rigid_tangential(
         slope[k], merit[k], done[k], da[k], dr[k] = 0.0, np.inf, 0.0, 0.0, 0.0
         centrifugal = table[k, CENTRIFUGAL]
         length = np.sqrt(ea[k] * ea[k] + er[k] * er[k])
-        if centrifugal == 0.0 and length <= li + lo:
+        room = li + lo + given[k] + given[z + k]
+        if centrifugal == 0.0 and length <= room:
             # Nothing presses this ball on either race: midway, without forces.
-            scale = (lo + 0.5 * (length - li - lo)) / length
+            scale = (lo + given[z + k] + 0.5 * (length - room)) / length
             ball[k, 0], ball[k, 1] = scale * ea[k], scale * er[k]
             angle = np.arctan2(ea[k], er[k])
             ball[k, 2] = li * angle - groove * table[k, SIDE] * (q[3] * sine[k] - q[4] * cosine[k])
@@ -142,20 +162,22 @@ def rigid_tangential(
             si[k] = np.sqrt(xa * xa + xr * xr)
             no_a[k], no_r[k] = pa / so[k], pr / so[k]
             ni_a[k], ni_r[k] = (xa / si[k], xr / si[k]) if si[k] > 0.0 else (no_a[k], no_r[k])
-            gap[k], gap[z + k] = li - si[k], lo - so[k]
+            gap[k], gap[z + k] = li - si[k] + given[k], lo - so[k] + given[z + k]
             own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
             rate[k] = -(ni_a[k] * (va[k] - own_a) + ni_r[k] * (vr[k] - own_r))
             rate[z + k] = -(no_a[k] * own_a + no_r[k] * own_r)
+            rate[k] += given_rate[k]
+            rate[z + k] += given_rate[z + k]
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
         for k in range(z):
             if done[k] != 0.0:
                 continue
             # Tangential forces h and their derivatives by the contact's length (h_s) and angle (h_a).
-            couple[k], m_s[k], m_a[k], m_o[k], m_t[k], h_t[k] = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            couple[k], m_s[k], m_a[k], m_o[k], m_t[k], h_t[k], couple_w[k] = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for side in range(2):
                 c = k + side * z
-                h[c], h_s[c], h_a[c] = 0.0, 0.0, 0.0
+                h[c], h_s[c], h_a[c], h_w[c] = 0.0, 0.0, 0.0, 0.0
                 if mu == 0.0:
                     continue
                 if side == 0:
@@ -174,10 +196,12 @@ def rigid_tangential(
                 else:
                     sign = 1.0 if tau > 0.0 else -1.0
                     h[c] = sign * limit
-                    h_s[c] = -sign * mu * (d_gap[c] + ball_gain * d_rate[c])
+                    h_w[c] = sign * mu * (d_gap[c] + ball_gain * d_rate[c])
+                    h_s[c] = -h_w[c]
                     u = h[c] / (stick * lever)
                     if side == 0:
                         m_s[k] = -groove * (h_s[c] / lever + h[c] / reach)
+                        couple_w[k] = -groove * h_w[c] / lever
                 ball[k, 2 + side] = place_now - u
                 if side == 0:
                     couple[k] = -groove * stick * u
@@ -200,6 +224,8 @@ def rigid_tangential(
                     h[z + k] += carried
                 h[k] -= carried
                 h_s[k] -= grows
+                h_w[k] += grows
+                couple_w[k] -= groove * grows
                 h_a[k] -= share_i * by_i
                 h[z + k] -= share_o * moment
                 h_a[z + k] -= share_o * by_o
@@ -265,6 +291,9 @@ def rigid_tangential(
     if remaining > 0:
         return 1
     for k in range(z):
+        if elastic_bodies:
+            for row in range(WORK_ROWS, WORK_ROWS + 10):
+                work[row, k], work[row, z + k] = 0.0, 0.0
         if done[k] == 2.0:
             force[k], force[z + k] = 0.0, 0.0
             continue
@@ -305,6 +334,27 @@ def rigid_tangential(
             ca - ua * xaa - ur * xra, cr - ua * xar - ur * xrr, m_t[k] - ua * ha - ur * hr, f, K,
         )  # fmt: skip
         maa, mar, mrr = viscous * ni_a[k] ** 2, viscous * ni_a[k] * ni_r[k], viscous * ni_r[k] ** 2
+        if elastic_bodies:
+            # dp = -J^-1 (dR/de de + dR/dw dw + dR/dturn dturn);  rows g = dQ/dp J^-1 of both contacts.
+            gia, gir = -ki * (ni_a[k] * jrr - ni_r[k] * jra) / det, -ki * (ni_r[k] * jaa - ni_a[k] * jar) / det
+            goa, gor = ko * (no_a[k] * jrr - no_r[k] * jra) / det, ko * (no_r[k] * jaa - no_a[k] * jar) / det
+            work[BY_AXIAL, k] = elastic * ni_a[k] - gia * xaa - gir * xra
+            work[BY_RADIAL, k] = elastic * ni_r[k] - gia * xar - gir * xrr
+            work[BY_AXIAL, z + k], work[BY_RADIAL, z + k] = -goa * xaa - gor * xra, -goa * xar - gor * xrr
+            work[BY_AXIAL_SPEED, k] = viscous * ni_a[k] - gia * maa - gir * mar
+            work[BY_RADIAL_SPEED, k] = viscous * ni_r[k] - gia * mar - gir * mrr
+            work[BY_AXIAL_SPEED, z + k], work[BY_RADIAL_SPEED, z + k] = -goa * maa - gor * mar, -goa * mar - gor * mrr
+            fia, fir = -ki * ni_a[k] + h_w[k] * ti_a, -ki * ni_r[k] + h_w[k] * ti_r
+            wia, wir = fia + cross_s[k] * to_a, fir + cross_s[k] * to_r
+            woa, wor = ko * no_a[k] - h_w[z + k] * to_a, ko * no_r[k] - h_w[z + k] * to_r
+            work[BY_OWN, k], work[BY_OTHER, k] = -ki - gia * wia - gir * wir, -gia * woa - gir * wor
+            work[BY_OTHER, z + k], work[BY_OWN, z + k] = -goa * wia - gor * wir, -ko - goa * woa - gor * wor
+            work[BY_TURN, k], work[BY_TURN, z + k] = -gia * ha - gir * hr, -goa * ha - gor * hr
+            work[AXIAL_BY_SHIFT, k], work[RADIAL_BY_SHIFT, k] = fia - taa * wia - tar * wir, fir - tra * wia - trr * wir
+            work[AXIAL_BY_SHIFT, z + k] = -taa * woa - tar * wor
+            work[RADIAL_BY_SHIFT, z + k] = -tra * woa - trr * wor
+            work[COUPLE_BY_SHIFT, k] = couple_w[k] - ua * wia - ur * wir
+            work[COUPLE_BY_SHIFT, z + k] = -ua * woa - ur * wor
         add_ball(
             cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER],
             fi * ni_a[k] + h[k] * ti_a, fi * ni_r[k] + h[k] * ti_r,

@@ -9,6 +9,19 @@ offsets at first touch.  A ball that carries nothing sits midway between the rac
 
 import numpy as np
 
+from raceway.core.bodies import (
+    AXIAL_BY_SHIFT,
+    BY_AXIAL,
+    BY_AXIAL_SPEED,
+    BY_OTHER,
+    BY_OWN,
+    BY_RADIAL,
+    BY_RADIAL_SPEED,
+    RADIAL_BY_SHIFT,
+    SHIFT,
+    SHIFT_RATE,
+    WORK_ROWS,
+)
 from raceway.core.bodies.ring import (
     DAMPING,
     OFFSET_INNER,
@@ -46,7 +59,7 @@ def rigid_weightless(
         inverse = 1.0 / max(work[LENGTH, k], 1e-300)
         work[NORMAL, k], work[NORMAL, z + k] = a * inverse, r * inverse
         work[SPEED, k] = work[VELOCITY, k] * work[NORMAL, k] + work[VELOCITY, z + k] * work[NORMAL, z + k]
-        work[APPROACH, z + k] = work[LENGTH, k] - li - lo
+        work[APPROACH, z + k] = work[LENGTH, k] - li - lo - work[SHIFT, k] - work[SHIFT, z + k]
         work[BRACKET, k], work[BRACKET, z + k] = 0.0, max(work[APPROACH, z + k], 0.0)
         share = table[k, OUTER_SHARE] if work[APPROACH, z + k] > 0.0 else 0.5
         work[OUTER, z + k] = share * work[APPROACH, z + k]
@@ -54,11 +67,11 @@ def rigid_weightless(
     moving = 1
     for _ in range(_ITERATIONS):
         for k in range(z):
-            own = ball_gain * (lo + work[OUTER, z + k]) + ball_known[k, 0]
+            own = ball_gain * (lo + work[SHIFT, z + k] + work[OUTER, z + k]) + ball_known[k, 0]
             gap[k] = work[OUTER, z + k] - work[APPROACH, z + k]
             gap[z + k] = -work[OUTER, z + k]
-            rate[k] = own - work[SPEED, k]
-            rate[z + k] = -own
+            rate[k] = own - work[SPEED, k] + work[SHIFT_RATE, k]
+            rate[z + k] = -own + work[SHIFT_RATE, z + k]
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
         moving = 0
@@ -90,9 +103,21 @@ def rigid_weightless(
         closed = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
         force[k] *= closed
         force[z + k] *= closed
-        ball[k, 0] = lo + work[OUTER, z + k]
+        ball[k, 0] = lo + work[SHIFT, z + k] + work[OUTER, z + k]
         work[CARRIED, k], work[CARRIED, z + k] = force[k] * work[NORMAL, k], force[k] * work[NORMAL, z + k]
     ring_force(table, arm, work, DIRECTION, CARRIED, f)
+    if work.shape[0] > WORK_ROWS:
+        # Both contacts carry the same force, and feel both shifts alike.
+        for k in range(z):
+            ki, ko = -d_gap[k] - ball_gain * d_rate[k], -d_gap[z + k] - ball_gain * d_rate[z + k]
+            closed = 1.0 if work[APPROACH, z + k] > 0.0 and ki + ko > 0.0 else 0.0
+            share = closed * ko / max(ki + ko, 1e-300)
+            na, nr = work[NORMAL, k], work[NORMAL, z + k]
+            for c in (k, z + k):
+                work[BY_AXIAL, c], work[BY_RADIAL, c] = -d_gap[k] * share * na, -d_gap[k] * share * nr
+                work[BY_AXIAL_SPEED, c], work[BY_RADIAL_SPEED, c] = -d_rate[k] * share * na, -d_rate[k] * share * nr
+                work[BY_OWN, c] = work[BY_OTHER, c] = -ki * share
+                work[AXIAL_BY_SHIFT, c], work[RADIAL_BY_SHIFT, c] = -ki * share * na, -ki * share * nr
     if K.size > 0:
         for k in range(z):
             stiff = -d_gap[k] - d_gap[z + k] - ball_gain * (d_rate[k] + d_rate[z + k])

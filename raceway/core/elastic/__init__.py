@@ -6,6 +6,7 @@ cage        what holds a ball that nothing else holds: at its azimuth, without t
 surface     quadrature points of a contacting surface, on the exact sphere where it is one
 facets      where on a meshed surface a point lies: facet and weights
 contact     gap, normal, pressure and friction at the points; nodal forces and their tangent
+friction    Coulomb friction at the points, by return mapping
 penalty     stiffness of the penalty from the bodies' own
 solver      conjugate gradients with multigrid and the rigid frames' own coordinates
 statics     Newton's method with a line search; the last good state is kept

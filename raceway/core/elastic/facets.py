@@ -34,7 +34,9 @@ def _walk(where, points, quads, neighbours, facet, weights, outside):  # type: i
                 ss, st, tt, rs, rt = 0.0, 0.0, 0.0, 0.0, 0.0
                 for k in range(3):
                     pa, pb, pc, pd = points[a, k], points[b, k], points[c, k], points[d, k]
-                    x = 0.25 * ((1 - s) * (1 - t) * pa + (1 + s) * (1 - t) * pb + (1 + s) * (1 + t) * pc + (1 - s) * (1 + t) * pd)
+                    x = 0.25 * (
+                        (1 - s) * (1 - t) * pa + (1 + s) * (1 - t) * pb + (1 + s) * (1 + t) * pc + (1 - s) * (1 + t) * pd
+                    )
                     xs = 0.25 * ((1 - t) * (pb - pa) + (1 + t) * (pc - pd))
                     xt = 0.25 * ((1 - s) * (pd - pa) + (1 + s) * (pc - pb))
                     r = where[i, k] - x

@@ -46,9 +46,10 @@ class LinearSolver:
         a = self.assembly
         ratio = c_m / c_k
         stale = self._multigrid is None or self.last_iterations > MANY_ITERATIONS and not self._fresh
-        other = abs(np.log((ratio + 1e-300) / (self._built[1] + 1e-300))) > np.log(_OTHER_MASS) and max(
-            ratio, self._built[1]
-        ) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
+        other = (
+            abs(np.log((ratio + 1e-300) / (self._built[1] + 1e-300))) > np.log(_OTHER_MASS)
+            and max(ratio, self._built[1]) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
+        )
         if stale or other:
             self._make(c_k, c_m)
         wanted = np.where(a.unknown, right, 0.0)

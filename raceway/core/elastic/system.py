@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -74,7 +73,6 @@ class ElasticSystem:
         self._y, self._u = y.copy(), a.nodal(y)
         out = a.internal(y, self._u)
         if self.contact is not None:
-            self.contact.update(self.contact.place + (self.contact.move @ self._u).reshape(-1, 3))
             out += a.reduced(self.contact.evaluate(dt, self._u, a.nodal(np.ascontiguousarray(v)) if dt > 0.0 else None))
         m = a.frame_size
         out[:m] += a.frame_damping @ v[:m]
@@ -89,7 +87,9 @@ class ElasticSystem:
             out += a.reduced(self.contact.evaluate(0.0, self._u, None, share))
         return out
 
-    def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = LINEAR_TOLERANCE) -> np.ndarray:
+    def solve(
+        self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = LINEAR_TOLERANCE
+    ) -> np.ndarray:
         return self.solver.solve(c_k, c_c, c_m, right, tolerance)
 
     def mass_times(self, a: np.ndarray) -> np.ndarray:
@@ -137,6 +137,8 @@ class ElasticSystem:
     def commit(self) -> None:
         if self.contact is not None:
             self.contact.commit()
+            # Between steps only: within one, places that jump would keep Newton from converging.
+            self.contact.update(self.contact.place + (self.contact.move @ self._u).reshape(-1, 3))
 
     def rollback(self) -> None:
         if self.contact is not None:

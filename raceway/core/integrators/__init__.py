@@ -12,9 +12,9 @@ Every loop has the signature ``raceway.core.signatures.LOOP``::
     dt, first, count    step [s]; number of the step that the motion stands at; steps to take
     ramp [s]            time over which the excitation grows smoothly from zero; 0 for none
     motion (4, 5)       q, v, a and the rest force at step ``first``; moved on in place, only by accepted steps
-    ball, ball_before (Z, 2 or 4), law_state (2 Z, m)   committed with the motion
-    stride, rows (n, 16), probes (n, 3 or 4, 2 Z)   every ``stride``-th step: t, q, v, outer force; gaps, contact
-                        forces, ball positions, slips
+    ball, ball_before (Z, 2, 4 or 6), law_state (2 Z, m)   committed with the motion
+    stride, rows (n, 16), probes (n, 3, 4 or 5, 2 Z)   every ``stride``-th step: t, q, v, outer force; gaps, contact
+                        forces, ball positions, slips, structural approaches
     counters (8,)       see ``COUNTERS``
 
 A loop that returns less than ``count`` failed at the next step; ``motion`` is then the last good state.
@@ -63,8 +63,5 @@ def note_step(number, rows, probes, stride, t, motion, outer, work, ball, counte
         probes[row, 0, i] = work[0, i]
         probes[row, 1, i] = work[2, i]
     for k in range(ball.shape[0]):
-        probes[row, 2, 2 * k] = ball[k, 0]
-        probes[row, 2, 2 * k + 1] = ball[k, 1]
-        if ball.shape[1] == 4:
-            probes[row, 3, 2 * k] = ball[k, 2]
-            probes[row, 3, 2 * k + 1] = ball[k, 3]
+        for c in range(ball.shape[1]):
+            probes[row, 2 + c // 2, 2 * k + c % 2] = ball[k, c]

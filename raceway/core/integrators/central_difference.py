@@ -13,7 +13,7 @@ Belytschko, Liu, Moran: Nonlinear Finite Elements for Continua and Structures, b
 
 import numpy as np
 
-from raceway.core.bodies import WORK_ROWS
+from raceway.core.bodies.columns import next_balls, work_rows
 from raceway.core.dense import solve
 from raceway.core.integrators import note_step, outer_force
 from raceway.core.jit import jit
@@ -27,7 +27,7 @@ def central_difference(
 ):  # fmt: skip
     """See ``raceway.core.integrators``."""
     z = ball.shape[0]
-    work = np.zeros((WORK_ROWS, 2 * z))
+    work = np.zeros((work_rows(scalars, table), 2 * z))
     # No tangents are asked for.
     f, K, C = np.empty(5), np.empty((0, 0)), np.empty((0, 0))
     q, half, guess, a, outer, time = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(1)
@@ -57,13 +57,7 @@ def central_difference(
             half[i] = motion[1, i] + 0.5 * dt * motion[2, i]
             guess[i] = motion[1, i] + dt * motion[2, i]
             q[i] = motion[0, i] + dt * half[i]
-        for k in range(z):
-            for c in range(2):
-                known[k, c] = (0.5 * ball_before[k, c] - 2.0 * ball[k, c]) / dt
-                trial[k, c] = 2.0 * ball[k, c] - ball_before[k, c]
-            for c in range(2, ball.shape[1]):
-                known[k, c] = ball[k, c]
-                trial[k, c] = ball[k, c]
+        next_balls(scalars, dt, ball, ball_before, known, trial)
         counters[0] += 1.0
         status = system(
             t, dt, q, guess, trial, gain, known, law, law_params, law_state, law_new, scalars, table, work, f, K, C

@@ -15,7 +15,7 @@ Newmark, J. Eng. Mech. Div. ASCE 85 (1959); Chung, Hulbert, J. Appl. Mech. 60 (1
 
 import numpy as np
 
-from raceway.core.bodies import WORK_ROWS
+from raceway.core.bodies.columns import next_balls, work_rows
 from raceway.core.bodies.ring import TILT_ARM
 from raceway.core.dense import solve
 from raceway.core.integrators import note_step, outer_force
@@ -38,7 +38,7 @@ def implicit(
     )  # fmt: skip
     z = ball.shape[0]
     arm = scalars[TILT_ARM]
-    work = np.zeros((WORK_ROWS, 2 * z))
+    work = np.zeros((work_rows(scalars, table), 2 * z))
     f, K, C, J = np.empty(5), np.empty((5, 5)), np.empty((5, 5)), np.empty((5, 5))
     q, v, a, r, dq, outer, time = (
         np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.zeros(5), np.empty(5), np.empty(1),
@@ -57,13 +57,7 @@ def implicit(
         for i in range(5):
             # Start from constant acceleration.
             q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
-        for k in range(z):
-            for c in range(2):
-                known[k, c] = (0.5 * ball_before[k, c] - 2.0 * ball[k, c]) / dt
-                trial[k, c] = 2.0 * ball[k, c] - ball_before[k, c]
-            for c in range(2, ball.shape[1]):
-                known[k, c] = ball[k, c]
-                trial[k, c] = ball[k, c]
+        next_balls(scalars, dt, ball, ball_before, known, trial)
         norm_before = np.inf
         found = False
         halvings = 0

@@ -9,7 +9,7 @@ tolerance, and 1 where there is no potential.
 
 import numpy as np
 
-from raceway.core.bodies import WORK_ROWS
+from raceway.core.bodies.columns import keep_slips, work_rows
 from raceway.core.bodies.ring import stop
 from raceway.core.equilibrium import settle
 from raceway.core.integrators import note_step, outer_force
@@ -25,7 +25,7 @@ def quasi_static(
 ):  # fmt: skip
     """See ``raceway.core.integrators``; motion[1] is not a velocity here but the change over the last step."""
     z = ball.shape[0]
-    work = np.zeros((WORK_ROWS, 2 * z))
+    work = np.zeros((work_rows(scalars, table), 2 * z))
     f, K = np.empty(5), np.empty((5, 5))
     q, total, outer, time, report = np.empty(5), np.empty(5), np.empty(5), np.empty(1), np.zeros(2)
     trial = np.empty_like(ball)
@@ -60,9 +60,7 @@ def quasi_static(
             # One more evaluation hands out the law's memory of this equilibrium: no rates, no step of time.
             now, places = scalars.copy(), table.copy()
             stop(time[0], now, places)
-            for k in range(z):
-                for c in range(2, ball.shape[1]):
-                    known[k, c] = ball[k, c]
+            keep_slips(scalars, ball, known)
             law_new[:, :] = law_state
             if (
                 system(

@@ -17,7 +17,9 @@ def half_line(zone: float, length: float, fine: float, coarse: float, growth: fl
     """Points from 0 to ``length``: distance ``fine`` up to ``zone``, growing beyond."""
     cells = max(int(np.ceil(zone / fine - 1e-9)), 1)
     fine = zone / cells
-    return np.concatenate([np.linspace(0.0, zone, cells + 1)[:-1], zone + growing(length - zone, growth * fine, coarse, growth)])
+    return np.concatenate(
+        [np.linspace(0.0, zone, cells + 1)[:-1], zone + growing(length - zone, growth * fine, coarse, growth)]
+    )
 
 
 def quarter_ball(radius: float, across: np.ndarray, along: np.ndarray, up: np.ndarray, layers: np.ndarray) -> HexMesh:

@@ -12,6 +12,7 @@ import attrs
 import numpy as np
 
 from raceway.core.mesh import HexMesh, nodes_of
+from raceway.core.meshing.outline import Outline, plain_outline
 from raceway.errors import MeshError
 
 
@@ -27,6 +28,7 @@ class RingShape:
     groove : radius of the groove
     centre_x, centre_r : axial place and radius of the circle of groove centres
     contact : angle from the groove's radial direction to the free contact [rad], along increasing x
+    given : what a user's polygon gives in place of seat, land and width; these three are then its extremes
     """
 
     inner: bool
@@ -37,27 +39,33 @@ class RingShape:
     centre_x: float
     centre_r: float
     contact: float
+    given: Outline | None = None
 
     def __attrs_post_init__(self) -> None:
         name = "inner ring" if self.inner else "outer ring"
+        if self.given is None:
+            self._check_plain(name)
+        if self.wall <= 0.0:
+            raise MeshError(f"{name}: no wall is left below the groove ({1e3 * self.wall:.4g} mm)")
+        low, high = self.edges
+        if not low < self.contact < high:
+            raise MeshError(
+                f"{name}: the contact angle of {abs(self.contact) * 180 / pi:.3g} deg lies outside the groove, which ends at "
+                f"{-low * 180 / pi:.3g} and {high * 180 / pi:.3g} deg: give a larger `bearing.shoulder_height`"
+            )
+
+    def _check_plain(self, name: str) -> None:
         over = self.sign * (self.land - self.centre_r)
         if not 0.0 < over < self.groove:
             raise MeshError(
                 f"{name}: the shoulder at radius {1e3 * self.land:.4g} mm does not cut the groove between its bottom and its "
                 "centre: change `bearing.shoulder_height`"
             )
-        if self.wall <= 0.0:
-            raise MeshError(f"{name}: no wall is left below the groove ({1e3 * self.wall:.4g} mm)")
         half = self.groove * sin(self.edge)
         if abs(self.centre_x) + half >= 0.5 * self.width:
             raise MeshError(
                 f"{name}: a width of {1e3 * self.width:.4g} mm does not hold the groove, which reaches to "
                 f"{1e3 * (abs(self.centre_x) + half):.4g} mm from its middle: give a larger `bearing.width`"
-            )
-        if abs(self.contact) >= self.edge:
-            raise MeshError(
-                f"{name}: the contact angle of {abs(self.contact) * 180 / pi:.3g} deg lies outside the groove, which ends at "
-                f"{self.edge * 180 / pi:.3g} deg: give a larger `bearing.shoulder_height`"
             )
 
     @property
@@ -67,13 +75,31 @@ class RingShape:
 
     @property
     def edge(self) -> float:
-        """Angle from the groove's bottom to its edge [rad]."""
+        """Angle from the groove's bottom to its edge, of unequal shoulders to the lower one's [rad]."""
+        if self.given is not None:
+            return min(-self.given.edges[0], self.given.edges[1])
         return acos(self.sign * (self.land - self.centre_r) / self.groove)
 
     @property
+    def edges(self) -> tuple[float, float]:
+        """Angles of the groove's edges at smaller and larger x [rad]."""
+        return self.outline.edges
+
+    @property
+    def outline(self) -> Outline:
+        """The section without its groove."""
+        if self.given is not None:
+            return self.given
+        reach = self.groove * sin(self.edge)
+        return plain_outline(self.seat, self.land, self.width, (self.centre_x - reach, self.centre_x + reach), self.edge)
+
+    @property
     def wall(self) -> float:
-        """Thickness under the bottom of the groove [m]."""
-        return self.sign * (self.seat - (self.centre_r + self.sign * self.groove))
+        """Least thickness under the groove [m]; plain rings: under its bottom."""
+        if self.given is None:
+            return self.sign * (self.seat - (self.centre_r + self.sign * self.groove))
+        x, r = self.surface(np.linspace(*self.given.edges, 181)).T
+        return float((self.sign * (np.interp(x, *self.given.seat.T) - r)).min())
 
     @property
     def thickness(self) -> float:
@@ -83,6 +109,8 @@ class RingShape:
     @property
     def volume(self) -> float:
         """Exact volume [m3]: hollow cylinder less the groove's circular segment (Pappus)."""
+        if self.given is not None:
+            return self.moments[0]
         away = abs(self.centre_r - self.land)
         half = sqrt(self.groove**2 - away**2)
         area = self.groove**2 * asin(half / self.groove) - half * away
@@ -93,8 +121,36 @@ class RingShape:
     @property
     def raceway_area(self) -> float:
         """Exact area of the groove [m2]: its arc swept at the radius of the arc's centroid (Pappus)."""
-        radius = self.centre_r + self.sign * self.groove * sin(self.edge) / self.edge
-        return 2.0 * pi * radius * 2.0 * self.groove * self.edge
+        low, high = self.edges
+        radius = self.centre_r + self.sign * self.groove * (sin(high) - sin(low)) / (high - low)
+        return 2.0 * pi * radius * self.groove * (high - low)
+
+    @property
+    def moments(self) -> tuple[float, float]:
+        """Volume [m3], and the integral of r^2 / 2 + x^2 over it [m5]: transverse inertia about x = 0 over density."""
+        at, weights = np.polynomial.legendre.leggauss(48)
+        out = np.zeros(2)
+
+        def add(x: np.ndarray, r: np.ndarray, slope: np.ndarray, side: float) -> None:
+            # Between the axis and the line, so that the section is the difference of its two lines.
+            for k, part in enumerate((r**2, r**4 / 4.0 + x**2 * r**2)):
+                out[k] += side * pi * float(weights @ (part * slope))
+
+        def along(line: np.ndarray, side: float) -> None:
+            for a, b in zip(line[:-1], line[1:], strict=True):
+                half = 0.5 * (b - a)
+                point = 0.5 * (a + b) + at[:, None] * half
+                add(point[:, 0], point[:, 1], np.full(len(at), half[0]), side)
+
+        outline, race = self.outline, -self.sign
+        along(outline.seat, -race)
+        along(outline.left, race)
+        along(outline.right, race)
+        low, high = outline.edges
+        angle = 0.5 * (low + high) + 0.5 * (high - low) * at
+        x, r = self.surface(angle).T
+        add(x, r, 0.5 * (high - low) * self.groove * np.cos(angle), race)
+        return float(out[0]), float(out[1])
 
     def surface(self, angles: np.ndarray) -> np.ndarray:
         """(n, 2) x and radius of points of the groove, angle from its bottom towards +x [rad]."""
@@ -132,15 +188,13 @@ def ring_mesh(
     """
     if divisions < 3:
         raise MeshError(f"a ring needs at least 3 cells around it, not {divisions}")
-    groove = shape.surface(arc)
-    x0, x1, half = groove[0, 0], groove[-1, 0], 0.5 * shape.width
-    low = np.column_stack([-half + left[:-1] * (x0 + half), np.full(len(left) - 1, shape.land)])
-    high = np.column_stack([x1 + right[1:] * (half - x1), np.full(len(right) - 1, shape.land)])
-    top = np.concatenate([low, groove, high])
+    outline = shape.outline
+    top = np.concatenate([outline.top("left", left)[:-1], shape.surface(arc), outline.top("right", right)[1:]])
+    seat = np.interp(top[:, 0], *outline.seat.T)
     ni, nj = len(top), len(layers)
     # Radius outward with j: the inner ring's layers begin at its bore.
     depth = 1.0 - layers[::-1] if shape.inner else layers
-    inside, outside = (np.full(ni, shape.seat), top[:, 1]) if shape.inner else (top[:, 1], np.full(ni, shape.seat))
+    inside, outside = (seat, top[:, 1]) if shape.inner else (top[:, 1], seat)
     radius = inside[None, :] + depth[:, None] * (outside - inside)[None, :]
     psi = start + 2.0 * pi * np.arange(divisions) / divisions
     x = np.broadcast_to(top[:, 0], (divisions, nj, ni))

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from math import ceil, cos, pi, sin
+from math import ceil, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.errors import MeshError
 from raceway.options import between, option, optional, positive, word_or
 
 if TYPE_CHECKING:
@@ -79,6 +78,7 @@ class Structured:
         MeshError
             As ``mesh``, but for the memory.
         """
+        from raceway.core.meshing.ring_shape import ring_shape
         from raceway.core.meshing.size import Prediction
         from raceway.core.meshing.sphere import ball_cells
 
@@ -92,6 +92,7 @@ class Structured:
         return Prediction.of((balls + rings) * len(bearing.rows))
 
     def _refuse(self, bearing: Any) -> None:
+        from raceway.core.meshing.ring_shape import ring_shape
         from raceway.core.meshing.size import Prediction, refuse_coarse, refuse_memory
 
         volume = pi / 6.0 * bearing.ball_diameter**3 * bearing.ball_count
@@ -155,14 +156,12 @@ class Structured:
         from raceway.core.meshing.spacing import graded, growing
 
         major, _ = self._semi_axes(bearing, shape.inner)
-        size, edge = self.element_size, shape.edge
+        size, (low, high) = self.element_size, shape.edges
         half = self.patch * major / shape.groove
-        band = max(shape.contact - half, -0.98 * edge), min(shape.contact + half, 0.98 * edge)
+        band = max(shape.contact - half, 0.98 * low), min(shape.contact + half, 0.98 * high)
         fine = major / self.nodes_per_semi_axis
-        arc = graded(-edge, edge, *band, fine / shape.groove, size / shape.groove, self.growth)
-        reach = shape.groove * sin(edge)
-        lands = [0.5 * shape.width + s * shape.centre_x - reach for s in (1.0, -1.0)]
-        left, right = (growing(1.0, size / land, size / land, self.growth) for land in lands)
+        arc = graded(low, high, *band, fine / shape.groove, size / shape.groove, self.growth)
+        left, right = (shape.outline.shares(side, size) for side in ("left", "right"))
         # As fine in depth as along the groove: the uniform azimuth does not follow the minor semi-axis.
         thickness = shape.thickness
         layers = growing(1.0, min(fine, size) / thickness, size / thickness, self.growth)
@@ -180,6 +179,7 @@ class Structured:
 
         from raceway.core.meshing.place import azimuth
         from raceway.core.meshing.ring import ring_mesh
+        from raceway.core.meshing.ring_shape import ring_shape
 
         shape = ring_shape(bearing, inner)
         left, arc, right, layers, band = self._ring_lines(bearing, shape)
@@ -192,32 +192,3 @@ class Structured:
             nodes["face_negative"], nodes["face_positive"] = nodes["face_positive"], nodes["face_negative"]
             mesh = attrs.evolve(mesh, points=mesh.points * [-1.0, 1.0, -1.0], node_sets=nodes, facet_sets=facets)
         return mesh if place == 0.0 else attrs.evolve(mesh, points=mesh.points + np.array([place, 0.0, 0.0]))
-
-
-def ring_shape(bearing: Any, inner: bool) -> RingShape:
-    """Profile of a ring of a row with side +1, from the dimensions of the scene's [bearing] table.
-
-    Raises
-    ------
-    MeshError
-        Dimensions that are missing, or that do not fit together.
-    """
-    from raceway.core.meshing.ring import RingShape
-
-    for key in ("bore", "outer_diameter", "width"):
-        if getattr(bearing, key, None) is None:
-            raise MeshError(f"`bearing.{key}` is missing: rings of hexahedra need bore, outer_diameter and width")
-    d, middle, alpha = bearing.ball_diameter, 0.5 * bearing.pitch_diameter, bearing.contact_angle
-    conformity = bearing.conformity_inner if inner else bearing.conformity_outer
-    offset, sense = (conformity - 0.5) * d, 1.0 if inner else -1.0
-    depth = bearing.shoulder_height or 0.2 * d
-    return RingShape(
-        inner=inner,
-        seat=0.5 * (bearing.bore if inner else bearing.outer_diameter),
-        land=middle - sense * (0.5 * d - depth),
-        width=bearing.width,
-        groove=conformity * d,
-        centre_x=sense * offset * sin(alpha),
-        centre_r=middle + sense * offset * cos(alpha),
-        contact=-sense * alpha,
-    )

@@ -1,0 +1,156 @@
+"""What every kind of bodies starts from: geometry, contacts, loads and the linear parts of the ring."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi, radians
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.contracts import ContactPairs
+from raceway.core.geometry import BallBearing
+from raceway.core.hertz import Ellipse, contact_modulus
+from raceway.core.plugin_kernel import plugin_kernel
+from raceway.core.signatures import FORCE
+from raceway.errors import PluginError, RacewayError
+from raceway.estimate import axial_approach
+from raceway.plan import Plan
+from raceway.ring import ring_inertia
+from raceway.scene import Scene
+
+
+@attrs.frozen(eq=False)
+class Basis:
+    """Geometry and load-independent contacts of a scene.
+
+    Attributes
+    ----------
+    geometry : lengths of one row;  modulus : E* [Pa];  inner, outer : Hertz contacts
+    azimuth : (Z,) at time zero, rows one after the other [rad]
+    axial, ball_load : rough axial approach [m] and load of a ball [N] under the axial load alone
+    """
+
+    geometry: BallBearing
+    modulus: float
+    inner: Ellipse
+    outer: Ellipse
+    azimuth: np.ndarray
+    axial: float
+    ball_load: float
+
+
+@attrs.frozen(eq=False)
+class Built:
+    """What the builder of a kind of bodies hands to the model.
+
+    Attributes
+    ----------
+    basis : geometry and contacts
+    system : ``raceway.core.system.System``, or what offers the same
+    guess : (5,) first guess of the equilibrium, with a held axial displacement
+    bodies : what this kind knows beyond that; None for rigid bodies
+    """
+
+    basis: Basis
+    system: Any
+    guess: np.ndarray
+    bodies: Any = None
+
+
+def make_basis(scene: Scene) -> Basis:
+    """Geometry and contacts of a scene."""
+    b = scene.bearing
+    geometry = BallBearing(
+        b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer
+    )
+    modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
+    inner, outer = geometry.ellipses(modulus)
+    single = radians(b.first_ball_azimuth_deg) + 2.0 * pi * np.arange(b.ball_count) / b.ball_count
+    axial, ball_load = axial_approach(scene)
+    return Basis(geometry, modulus, inner, outer, np.tile(single, len(b.rows)), axial, max(ball_load, 1.0))
+
+
+def made_by(who: str, duty: str, make: Callable[[], Any]) -> np.ndarray:
+    """An array from a plug-in's own code, whose failures are put to its name."""
+    try:
+        return np.ascontiguousarray(make(), dtype=float)
+    except RacewayError:
+        raise
+    except Exception as why:  # a third party's own code
+        raise PluginError(f"{who}: {duty} raises {type(why).__name__}: {why}") from why
+
+
+def law_params(scene: Scene, basis: Basis) -> np.ndarray:
+    """(2 Z, k) parameters of the contact law: inner races first, then outer."""
+    inner, outer = basis.inner, basis.outer
+    z = scene.bearing.ball_count * len(scene.bearing.rows)
+
+    def both(a: float, b: float) -> np.ndarray:
+        return np.repeat([a, b], z).astype(float)
+
+    pairs = ContactPairs(
+        curvature_a=both(inner.curvatures[0], outer.curvatures[0]),
+        curvature_b=both(inner.curvatures[1], outer.curvatures[1]),
+        contact_modulus=both(basis.modulus, basis.modulus),
+        hertz_factor=both(inner.factor, outer.factor),
+        reference_load=both(basis.ball_load, basis.ball_load),
+    )
+    params = made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
+    if params.ndim != 2 or len(params) != 2 * z:
+        raise PluginError(
+            f"contact law '{scene.contact.kind}': build() returned parameters of shape {params.shape}; "
+            f"it must be ({2 * z}, k): a row for each ball-race pair"
+        )
+    return params
+
+
+def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
+    """Mass, damping and stiffness (5, 5) of ring, rotor and shaft, the unknowns (5,) and the constant load (5,)."""
+    rotor = scene.rotor
+    mass, tilt = ring_inertia(scene)
+    translation, rotation = rotor.mass + mass, rotor.transverse_inertia + tilt
+    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0])
+    # dH/dt of a spinning rotor: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
+    damping[3, 4] = rotor.polar_inertia * scene.spin_speed
+    damping[4, 3] = -damping[3, 4]
+    shaft = scene.supports.tilt if isinstance(scene.supports.tilt, float) else 0.0
+    return {
+        "mass": np.diag([translation] * 3 + [rotation] * 2),
+        "damping": damping,
+        "stiffness": np.diag([0.0, 0.0, 0.0, shaft, shaft]),
+        "free": np.array(plan.free, dtype=float),
+        "load": np.array([scene.load.axial, *scene.load.radial, *scene.load.moment]),
+    }
+
+
+def excitation(scene: Scene) -> dict[str, Any]:
+    """The excitation's kernel and parameters."""
+    if scene.excitation is None:
+        from raceway.core.excitations.harmonic import no_force
+
+        return {"force": no_force, "force_params": np.zeros(1)}
+    parameters = made_by(f"excitation '{scene.excitation.name}'", "parameters()", scene.excitation.parameters)
+    if parameters.ndim != 1:
+        raise PluginError(
+            f"excitation '{scene.excitation.name}': parameters() returned shape {parameters.shape}; it must be (k,)"
+        )
+    return {"force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"), "force_params": parameters}
+
+
+def first_guess(scene: Scene, basis: Basis) -> np.ndarray:
+    """(5,) displacement to look for the equilibrium from [m, rad]."""
+    geometry, x = basis.geometry, basis.axial
+    guess = np.zeros(5)
+    axial, radial = scene.load.axial, np.array(scene.load.radial)
+    rest_axial, rest_radial = geometry.rest
+    size = float(np.hypot(*radial))
+    if axial > 0.0:
+        guess[0] = x
+    elif axial < 0.0:
+        guess[0] = -2.0 * rest_axial - x
+    elif size > 0.0:
+        guess[0] = -rest_axial
+        guess[1:3] = radial / size * (geometry.centre_distance - rest_radial + 1e-3 * geometry.centre_distance)
+    return guess

@@ -1,0 +1,193 @@
+"""Condensed rings and balls whose contacts are pressures at surface points.
+
+The answer of rigid rings on Hertz's contacts says how far the contacts reach and which load the points are laid out for;
+where contacts go further than that, the patches are made wider.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Basis, Built, made_by, make_basis
+from raceway.bodies.rigid import place_ring, probe, rigid_system
+from raceway.contact_laws.hertz import Hertz
+from raceway.contracts import ContactPairs
+from raceway.core.bodies.ring import CENTRIFUGAL
+from raceway.core.condensed.compliances import RingBody, Solid, make_ball, make_patch
+from raceway.core.condensed.contact import BeyondPatch
+from raceway.core.condensed.nodal_law import PointLaw
+from raceway.core.condensed.patch import Patch, Spacing
+from raceway.core.condensed.patch_system import PatchSystem
+from raceway.core.condensed.pool import Pool
+from raceway.core.condensed.reach import Reach, reach_of
+from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.orbit import steady_orbit
+from raceway.core.plugin_kernel import plugin_kernel
+from raceway.core.signatures import LAW
+from raceway.core.system import System
+from raceway.errors import ConvergenceError, SceneError
+from raceway.plan import Plan
+from raceway.scene import Scene
+
+#: Points along each semi-axis, and size of elements far from the contacts [m], where the scene says nothing.
+NODES, BULK = 4, 0.8e-3
+#: Contacts that are laid out may carry this much more than rigid bodies say before patches are made anew.
+_ROOM = 1.2
+
+
+@attrs.frozen(eq=False)
+class PatchBodies:
+    """What a result tells of the patches.
+
+    Attributes
+    ----------
+    nodes : points along each semi-axis at ``load`` [N] on the inner race
+    spacing : Spacing
+    pool : the patches as they are now
+    """
+
+    nodes: float
+    load: float
+    spacing: Spacing
+    pool: Pool
+
+
+def build(scene: Scene, plan: Plan) -> Built:
+    """The system of a scene with nodal contacts; see ``raceway.model.build_model``.
+
+    Raises
+    ------
+    MeshError
+        Rings without dimensions, sections that cannot be meshed.
+    """
+    basis = make_basis(scene)
+    contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+    as_rigid = attrs.evolve(scene, contact=contact)
+    rigid = rigid_system(as_rigid, plan, basis)
+    probe(as_rigid, basis, rigid)
+    guess = place_ring(as_rigid, basis, rigid)
+    reach = _first_reach(scene, basis, rigid, guess)
+    nodes, load = _layout(scene, reach)
+    spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
+    make = _maker(scene, spacing)
+    pool = Pool(make(reach), _point_laws(scene, basis, spacing), _widening(basis, reach, spacing, make))
+    fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
+    system = PatchSystem(**fields, pool=pool)
+    if scene.bearing.preload > 0.0 or scene.supports.axial == "displacement":
+        guess = place_ring(as_rigid, basis, system)
+    return Built(basis, system, guess, PatchBodies(nodes, load, spacing, pool))
+
+
+def _semi_axes(ellipse: Any, load: float) -> tuple[float, float]:
+    a, b = ellipse.semi_axes(load)
+    return float(a), float(b)
+
+
+def _first_reach(scene: Scene, basis: Basis, rigid: System, guess: np.ndarray) -> Reach:
+    """Loads and contact angles of rigid bodies at rest and, where the excitation repeats, on its orbit."""
+    q, ball, _ = rigid.settle(guess)
+    states = [(q, ball, 0.0)]
+    excitation = scene.excitation
+    if excitation is not None and excitation.period_s is not None:
+        try:
+            orbit = steady_orbit(rigid.at_standstill(), excitation.period_s, q, samples=33)
+            times = np.arange(33) * orbit.period / 33
+            states += [(q, ball[:, :2], t) for q, ball, t in zip(orbit.displacement, orbit.ball, times, strict=True)]
+        except ConvergenceError:
+            pass  # patches grow on the way
+    angles: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    loads: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    still = rigid.at_standstill()
+    for q, ball, t in states:
+        now = still.evaluate(q, ball=ball, t=t)
+        centre = still.centre_vectors(q, t)[0]
+        z = still.ball_count
+        place = now.ball[:, :2] if rigid.table[:, CENTRIFUGAL].any() else 0.5 * centre
+        for race, vector in enumerate((centre - place, place)):
+            angles[race].append(np.arctan2(vector[:, 0], vector[:, 1]))
+            loads[race].append(now.contact_force[race * z : (race + 1) * z])
+    free = basis.geometry.contact_angle
+    given = [(np.concatenate(a), np.concatenate(f)) for a, f in zip(angles, loads, strict=True)]
+    return reach_of(given[0], given[1], (basis.inner, basis.outer), 0.5 * basis.geometry.ball_diameter, free, _ROOM)
+
+
+def _layout(scene: Scene, reach: Reach) -> tuple[float, float]:
+    """Points per semi-axis, and the load [N] at which they count: the mesh's, or the mean of the balls that carry."""
+    nodes = float(getattr(scene.mesh, "nodes_per_semi_axis", NODES))
+    load = getattr(scene.mesh, "ball_load", None)
+    return nodes, float(load) if load is not None else reach.mean_load
+
+
+def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Patch]]:
+    """Patches for a reach; the ball's grid follows the larger one of the two."""
+    b = scene.bearing
+    bulk = float(getattr(scene.mesh, "element_size", BULK))
+    rings = Solid(b.rings.young, b.rings.poisson, bulk=bulk)
+    steel = Solid(b.balls.young, b.balls.poisson, bulk=bulk)
+    seats = [
+        value if isinstance(value, float) else "clamped" for value in (scene.supports.inner_seat, scene.supports.outer_seat)
+    ]
+
+    def make(reach: Reach) -> tuple[Patch, Patch]:
+        grid = spacing.holding(reach.widest)
+        bodies = [
+            RingBody(ring_shape(b, inner), rings, seat, window)
+            for inner, seat, window in zip((True, False), seats, (reach.inner, reach.outer), strict=True)
+        ]
+        rows = max(int((body.window[1] - body.window[0]) * body.shape.groove / grid.along) + 2 for body in bodies)
+        ball = make_ball(0.5 * b.ball_diameter, steel, grid, rows)
+        first, second = (make_patch(body, ball, grid, b.ball_count) for body in bodies)
+        return first, second
+
+    return make
+
+
+def _widening(
+    basis: Basis, reach: Reach, spacing: Spacing, make: Callable[[Reach], tuple[Patch, Patch]]
+) -> Callable[[BeyondPatch], tuple[Patch, Patch]]:
+    """What a pool calls when a contact leaves its patch."""
+    now = [reach]
+
+    def wider(left: BeyondPatch) -> tuple[Patch, Patch]:
+        ellipse = basis.inner if left.sense < 0.0 else basis.outer
+        now[0] = now[0].grown(left, ellipse, 0.5 * basis.geometry.ball_diameter, _ROOM)
+        return make(now[0])
+
+    return wider
+
+
+def _point_laws(scene: Scene, basis: Basis, spacing: Spacing) -> tuple[PointLaw | None, PointLaw | None]:
+    """Laws of the inner and the outer race's points.
+
+    Raises
+    ------
+    SceneError
+        A law that remembers: its points travel with the patch.
+    """
+    law = scene.contact.law
+    if getattr(law, "constraint", False):
+        return None, None
+    if law.state_size > 0:
+        raise SceneError.at(
+            "contact.kind",
+            scene.contact.kind,
+            "remembers what a contact did, but the surface points of condensed bodies travel with the contact: use "
+            "discretisation = 'resultant'",
+        )
+    both = [basis.inner, basis.outer]
+    pairs = ContactPairs(
+        curvature_a=np.array([e.curvatures[0] for e in both]),
+        curvature_b=np.array([e.curvatures[1] for e in both]),
+        contact_modulus=np.full(2, basis.modulus),
+        hertz_factor=np.array([e.factor for e in both]),
+        reference_load=np.full(2, basis.ball_load),
+        area=np.full(2, spacing.area),
+    )
+    params = made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
+    kernel = plugin_kernel(law, "contact law", LAW, "LAW")
+    first, second = (PointLaw(kernel, row, spacing.area) for row in params)
+    return first, second

@@ -1,0 +1,65 @@
+"""What the columns of ``ball`` mean and how many rows ``work`` has, told by the system's constants.
+
+Notes
+-----
+Columns 0 and 1 of a ball are positions; columns 2 and 3 are slips where there is friction; the last two of condensed
+bodies are structural approaches.  Positions and approaches have rates, slips are only committed.
+"""
+
+from numba import boolean, float64, int64, void
+
+from raceway.core.bodies import WORK_ROWS
+from raceway.core.bodies.ring import SCALARS
+from raceway.core.jit import jit
+from raceway.core.signatures import MATRIX, VECTOR
+
+#: Rows of ``work`` that condensed bodies need beyond the rigid ones, less their matrix; see ``structural``.
+ELASTIC_ROWS = 48
+
+
+@jit(boolean(VECTOR))
+def are_condensed(scalars):
+    """Whether these constants belong to condensed bodies."""
+    return scalars.size > SCALARS
+
+
+@jit(int64(VECTOR, MATRIX))
+def work_rows(scalars, table):
+    """Rows of ``work`` that a system needs."""
+    if not are_condensed(scalars):
+        return WORK_ROWS
+    return WORK_ROWS + ELASTIC_ROWS + 2 * table.shape[0]
+
+
+@jit(int64(VECTOR, MATRIX))
+def slips_end(scalars, ball):
+    """The column after the slips, which begin at 2."""
+    return ball.shape[1] - 2 if are_condensed(scalars) else ball.shape[1]
+
+
+@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX))
+def next_balls(scalars, dt, ball, before, known, trial):
+    """First guess of the balls after a step, and the part of their rates that is known by then.
+
+    Notes
+    -----
+    Rates follow the second-order backward difference (1.5 new - 2 now + 0.5 before) / dt.
+    """
+    end = slips_end(scalars, ball)
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            if c < 2 or c >= end:
+                known[k, c] = (0.5 * before[k, c] - 2.0 * ball[k, c]) / dt
+                trial[k, c] = 2.0 * ball[k, c] - before[k, c]
+            else:
+                known[k, c] = ball[k, c]
+                trial[k, c] = ball[k, c]
+
+
+@jit(void(VECTOR, MATRIX, MATRIX))
+def keep_slips(scalars, ball, known):
+    """The committed slips of balls at rest: ``known`` of a state without rates."""
+    end = slips_end(scalars, ball)
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            known[k, c] = ball[k, c] if 2 <= c < end else 0.0

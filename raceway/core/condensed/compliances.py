@@ -1,0 +1,102 @@
+"""Patches from sections of rings and ball: compliances of the bodies on the points where they meet, from the cache."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.condensed.patch import Ball, Patch, Race, Spacing, race_divisions
+from raceway.core.meshing.ring import RingShape
+from raceway.core.revolution.ball import free_ball
+from raceway.core.revolution.kept import kept_compliance
+from raceway.core.revolution.profile import dofs
+from raceway.core.revolution.ring_profile import graded_profile
+
+
+@attrs.frozen
+class Solid:
+    """Material and element formulation of a body.
+
+    Attributes
+    ----------
+    young [Pa], poisson, formulation : see ``raceway.core.revolution.body``
+    bulk : size of elements far from the contacts [m]
+    """
+
+    young: float
+    poisson: float
+    formulation: str = "incompatible"
+    bulk: float = 0.8e-3
+
+
+@attrs.frozen
+class RingBody:
+    """One ring of a row.
+
+    Attributes
+    ----------
+    shape, solid
+    seat : "clamped" or the stiffness of a bed [N/m3]
+    window : (2,) contact angles between which it has surface points [rad]
+    """
+
+    shape: RingShape
+    solid: Solid
+    seat: str | float
+    window: tuple[float, float]
+
+
+def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patch:
+    """The patch of a ring for a ball; ``balls`` in a row.
+
+    Raises
+    ------
+    MeshError
+        A section that cannot be meshed, a window beyond the groove.
+    """
+    shape, sense = ring.shape, ring.shape.sign
+    middle = 0.5 * (ring.window[0] + ring.window[1])
+    finest = min(spacing.along, spacing.across)
+    section = graded_profile(shape, spacing.along, ring.window, finest, ring.solid.bulk)
+    count = race_divisions(shape.centre_r, shape.groove, sense, middle, spacing.across, balls)
+    columns, rows = 2 * spacing.columns + 1, len(section.race)
+    neighbours = np.arange(1, balls // 2 + 1) * (count // balls)
+    steps = np.concatenate([np.arange(columns), neighbours])
+    load = dofs(section.race)
+    what = f"{'inner' if sense < 0.0 else 'outer'} ring, {count} x {len(section.quads)} elements, {rows} rows of points"
+    full = kept_compliance(
+        what, section, count, ring.solid.young, ring.solid.poisson, load, load, steps, ring.solid.formulation, ring.seat
+    )
+    normal = np.array([np.cos(section.angles), np.sin(section.angles)])  # radial, axial
+    near = _projected(full[:columns], normal)
+    chosen = [rows // 2, rows + rows // 2]
+    between = full[columns:][:, chosen][:, :, chosen][:, ::-1, ::-1]  # (axial, radial)
+    crossing = np.zeros((balls, 2, 2))
+    for k, block in enumerate(between, start=1):
+        crossing[k] = crossing[-k] = block
+    race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, shape.edge, crossing)
+    return Patch(ball, race, spacing.area)
+
+
+def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int) -> Ball:
+    """The floating ball on a grid of so many rows."""
+    steps = np.append(np.arange(rows), spacing.ball_divisions // 2)
+    finest = min(spacing.along, spacing.across)
+    found = free_ball(
+        radius, solid.poisson, spacing.ball_divisions, spacing.across, (spacing.columns - 0.5) * spacing.across, finest, solid.bulk, steps,
+        formulation=solid.formulation,
+    )  # fmt: skip
+    assert len(found.latitudes) == 2 * spacing.columns + 1
+    normal = np.array([np.cos(found.latitudes), np.sin(found.latitudes)])
+    near = _projected(found.compliance(radius, solid.young), normal)
+    middle = len(found.latitudes) // 2
+    return Ball(radius, found.latitudes, np.ascontiguousarray(near[:-1]), float(near[-1, middle, middle]))
+
+
+def _projected(full: Any, normal: np.ndarray) -> np.ndarray:
+    """(o, n, n) along normals, from (o, 2 n, 2 n) of two components; normal (2, n)."""
+    n = normal.shape[1]
+    parts = np.asarray(full).reshape(len(full), 2, n, 2, n)
+    return np.ascontiguousarray(np.einsum("ci,ocidj,dj->oij", normal, parts, normal, optimize=True))

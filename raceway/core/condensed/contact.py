@@ -1,0 +1,146 @@
+"""One ball against one race: resultant, tangent and pressures for a given place of the ball in the groove."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.condensed.factor import Factor
+from raceway.core.condensed.gap import derivatives, sphere_in_torus
+from raceway.core.condensed.nodal_law import LawState, PointLaw, by_law
+from raceway.core.condensed.patch import Patch
+from raceway.core.condensed.unilateral import active_set
+from raceway.errors import RacewayError
+
+
+class BeyondPatch(RacewayError):
+    """Points in contact at the end of a patch that could be larger: what it must reach.
+
+    Attributes
+    ----------
+    sense : of the race, -1 inner, 1 outer;  angle : contact angle of the resultant [rad];  load : of the contact [N]
+    across : whether it left along the rolling direction
+    """
+
+    def __init__(self, sense: float, angle: float, load: float, across: bool) -> None:
+        race = "inner" if sense < 0.0 else "outer"
+        way = "the rolling direction" if across else "the groove"
+        super().__init__(
+            f"the contact on the {race} race, {load:.4g} N at {np.degrees(angle):.2f} deg, leaves its surface points along {way}"
+        )
+        self.sense, self.angle, self.load, self.across = sense, angle, load, across
+
+
+@attrs.frozen(eq=False)
+class Pressed:
+    """A contact's answer.
+
+    Attributes
+    ----------
+    force : (2,) on the ball, axial and radial [N];  stiffness : (2, 2) minus its derivative by the ball's place [N/m]
+    viscous : (2, 2) minus its derivative by the ball's velocity [N s/m]
+    nodes, load : (n,) points that carry and their forces [N], number k * columns + i
+    penetration : largest one that a law leaves [m]
+    truncated : whether points at the groove's edge carry
+    """
+
+    force: np.ndarray
+    stiffness: np.ndarray
+    viscous: np.ndarray
+    nodes: np.ndarray
+    load: np.ndarray
+    penetration: float = 0.0
+    truncated: bool = False
+
+
+_NONE = np.zeros(0, dtype=np.int64)
+
+
+class Contact:
+    """One ball-race pair with the memory that makes the next solution cheap: points in contact and their factor.
+
+    Parameters
+    ----------
+    patch : Patch
+    law : what gives the pressure at a point; None for no penetration
+    """
+
+    def __init__(self, patch: Patch, law: PointLaw | None) -> None:
+        self.patch, self.law = patch, law
+        self._factor = Factor(patch)
+        self._nodes = _NONE
+        self._depth = np.zeros(patch.rows * patch.columns)
+        self._gap = np.empty((patch.rows, patch.columns))
+        self.iterations = 0
+
+    def press(self, place: np.ndarray, rate: np.ndarray) -> Pressed:
+        """Solve for a place (2,) and a velocity (2,) of the ball's centre, seen from the groove's centre.
+
+        Raises
+        ------
+        BeyondPatch
+            Contact at the end of the patch, short of the groove's edge.
+        """
+        patch = self.patch
+        axial, radial = float(place[0]), float(place[1])
+        sphere_in_torus(axial, radial, patch.geometry, patch.meridian, patch.parallel, self._gap)
+        gap = self._gap.reshape(-1)
+        if not (gap < 0.0).any():
+            return self._open()
+        if self.law is None:
+            nodes, load, count = active_set(gap, self._nodes, self._factor)
+            solve: Any = lambda right: self._factor.solve(nodes, right)  # noqa: E731
+            state, penetration = None, 0.0
+        else:
+            every = np.arange(len(gap))
+            speed = self._derivatives(every, np.zeros(len(gap)), axial, radial)[0] @ rate
+            state = by_law(gap, speed, self.law, self._depth, self._factor)
+            nodes, load, count, solve = state.nodes, state.load, state.iterations, state.solve
+            penetration = float(-state.gap.min(initial=0.0))
+        self.iterations += count
+        self._nodes = nodes
+        if not len(nodes):
+            return self._open()
+        slope, curved = self._derivatives(nodes, load, axial, radial)
+        force = slope.T @ load
+        held = solve(slope)
+        stiffness = slope.T @ held - curved
+        viscous = self._viscous(state, slope, held)
+        truncated = self._ends(nodes, force)
+        return Pressed(force, stiffness, viscous, nodes, load, penetration, truncated)
+
+    def _open(self) -> Pressed:
+        self._nodes = _NONE
+        zero = np.zeros((2, 2))
+        return Pressed(np.zeros(2), zero, zero, _NONE, np.zeros(0))
+
+    def _derivatives(
+        self, nodes: np.ndarray, load: np.ndarray, axial: float, radial: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        patch = self.patch
+        slope, curved = np.empty((len(nodes), 2)), np.empty(3)
+        derivatives(
+            axial, radial, patch.geometry, patch.meridian, patch.parallel, nodes, np.ascontiguousarray(load), slope, curved
+        )
+        return slope, curved[[0, 1, 1, 2]].reshape(2, 2)
+
+    @staticmethod
+    def _viscous(state: LawState | None, slope: np.ndarray, held: np.ndarray) -> np.ndarray:
+        if state is None or not state.viscous.any():
+            return np.zeros((2, 2))
+        return -held.T @ (state.viscous[:, None] * slope)
+
+    def _ends(self, nodes: np.ndarray, force: np.ndarray) -> bool:
+        """Whether the contact is cut off by the groove's edge."""
+        patch = self.patch
+        row, column = nodes // patch.columns, nodes % patch.columns
+        low, high = row[0] == 0, row[-1] == patch.rows - 1
+        first, last = patch.race.ends
+        sense = patch.race.sense
+        wide = bool((column == 0).any() or (column == patch.columns - 1).any())
+        if wide or (low and not first) or (high and not last):
+            angle = float(np.arctan2(-sense * force[0], -sense * force[1]))
+            raise BeyondPatch(sense, angle, float(np.hypot(*force)), wide)
+        return bool(low or high)

@@ -1,0 +1,67 @@
+"""Exact gap of points of a sphere to the torus of a groove, with its derivatives by the place of the sphere.
+
+Notes
+-----
+With D = (axial, radial) the place of the ball's centre seen from the groove's centre in the ball's meridian plane, a
+point at angle phi and latitude l lies at
+
+    radial  R = R_c + D_r + s R_b cos(l) cos(phi),   rolling  y = R_b sin(l),   axial  z = D_a + s R_b cos(l) sin(phi)
+
+and its gap is g = R_g - rho with rho = hypot(hypot(R, y) - R_c, z); s = -1 on the inner race, 1 on the outer one.
+"""
+
+import numpy as np
+from numba import float64, int64, void
+
+from raceway.core.jit import jit
+from raceway.core.signatures import MATRIX, VECTOR
+
+INDEX = int64[::1]
+
+
+@jit(void(float64, float64, VECTOR, MATRIX, MATRIX, MATRIX))
+def sphere_in_torus(axial, radial, geometry, meridian, parallel, gap):
+    """gap (m, n) [m] of every point.
+
+    Parameters
+    ----------
+    geometry : (4,) s, R_g, R_c, R_b;  meridian : (2, m) cosine and sine of phi;  parallel : (2, n) of l
+    """
+    sense, groove, circle, ball = geometry[0], geometry[1], geometry[2], geometry[3]
+    for i in range(parallel.shape[1]):
+        size = sense * ball * parallel[0, i]
+        y = ball * parallel[1, i]
+        for k in range(meridian.shape[1]):
+            away = circle + radial + size * meridian[0, k]
+            z = axial + size * meridian[1, k]
+            u = np.sqrt(away * away + y * y) - circle
+            gap[k, i] = groove - np.sqrt(u * u + z * z)
+
+
+@jit(void(float64, float64, VECTOR, MATRIX, MATRIX, INDEX, VECTOR, MATRIX, VECTOR))
+def derivatives(axial, radial, geometry, meridian, parallel, nodes, load, slope, curved):
+    """slope (n, 2): derivatives of chosen points' gaps by D; curved (3,): aa, ar, rr of sum(load * second derivatives).
+
+    Parameters
+    ----------
+    nodes : (n,) numbers k * columns + i;  load : (n,)
+    """
+    sense, circle, ball = geometry[0], geometry[2], geometry[3]
+    columns = parallel.shape[1]
+    curved[0], curved[1], curved[2] = 0.0, 0.0, 0.0
+    for n in range(nodes.size):
+        k, i = nodes[n] // columns, nodes[n] % columns
+        size = sense * ball * parallel[0, i]
+        y = ball * parallel[1, i]
+        away = circle + radial + size * meridian[0, k]
+        z = axial + size * meridian[1, k]
+        reach = np.sqrt(away * away + y * y)
+        u = reach - circle
+        rho = np.sqrt(u * u + z * z)
+        lean = away / reach
+        slope[n, 0] = -z / rho
+        slope[n, 1] = -u / rho * lean
+        w = load[n] / rho
+        curved[0] -= w * (1.0 - z * z / (rho * rho))
+        curved[1] += w * z * u / (rho * rho) * lean
+        curved[2] -= w * ((1.0 - u * u / (rho * rho)) * lean * lean + u * y * y / (reach * reach * reach))

@@ -1,0 +1,168 @@
+"""Grids of surface points on which a ball meets a race, and the compliances of both bodies on them.
+
+Notes
+-----
+Rows run along the groove, columns along the rolling direction.  Ball and race have the same spacing of points, so that
+the angles obey d(phi) R_ball = d(alpha) R_groove: the ball's mesh is turned until its row ``anchor`` lies on the race's
+row of that number, and the race's mesh, being axisymmetric, is phased to the azimuth of the ball.  Nothing is
+interpolated.  Away from the anchor the two rows of a pair drift apart by R_groove / R_ball - 1 of the distance, 4 % of
+it: the gap is that of the ball's own point, and the compliance of the race belongs to a place so much off.
+"""
+
+from __future__ import annotations
+
+from math import ceil, cos, pi
+
+import attrs
+import numpy as np
+
+
+@attrs.frozen
+class Spacing:
+    """Distances of the surface points.
+
+    Attributes
+    ----------
+    along, across : along the groove and along the rolling direction [m]
+    ball_divisions : points around the ball's equator
+    columns : points on each side of the middle one, along the rolling direction
+    """
+
+    along: float
+    across: float
+    ball_divisions: int
+    columns: int
+
+    @property
+    def area(self) -> float:
+        """Of one point [m2]."""
+        return self.along * self.across
+
+    @classmethod
+    def of(cls, semi_axes: tuple[float, float], nodes: float, radius: float, widest: float) -> Spacing:
+        """Spacing of ``nodes`` points per semi-axis.
+
+        Parameters
+        ----------
+        semi_axes : major and minor one at the load that counts [m]
+        radius : of the ball [m]
+        widest : largest minor semi-axis that has to fit, with margin [m]
+        """
+        divisions = round(2.0 * pi * radius / (semi_axes[0] / nodes))
+        divisions += divisions % 2  # the opposite pole is a point too
+        across = float(semi_axes[1]) / nodes
+        return cls(2.0 * pi * radius / divisions, across, divisions, ceil(widest / across))
+
+    def holding(self, widest: float) -> Spacing:
+        """The same distances, with points for a minor semi-axis with margin [m]."""
+        return attrs.evolve(self, columns=max(self.columns, ceil(widest / self.across)))
+
+
+def race_divisions(centre_radius: float, groove: float, sense: float, angle: float, across: float, balls: int) -> int:
+    """Points around a race so that they lie ``across`` [m] apart at a contact angle; a multiple of the balls."""
+    circle = 2.0 * pi * (centre_radius + sense * groove * cos(angle))
+    return balls * max(round(circle / across / balls), 1)
+
+
+@attrs.frozen(eq=False)
+class Race:
+    """A race's surface points and its compliance, seen from any ball.
+
+    Attributes
+    ----------
+    sense : -1 inner, 1 outer
+    groove, centre_radius : radius of the groove, and of the circle of its centres [m]
+    angle : (m,) contact angles of the rows [rad], increasing
+    compliance : (columns, m, m) displacement of a row by a force on another one, so many columns apart, both along the
+        normal [m/N]
+    across : distance of neighbouring columns [m]
+    edge : angle from the groove's bottom to its edge [rad]
+    crossing : (Z, 2, 2) displacement (axial, radial) at the middle row by a force (axial, radial) at the same row under
+        the k-th next ball [m/N]; row 0, the ball itself, is zero
+    """
+
+    sense: float
+    groove: float
+    centre_radius: float
+    angle: np.ndarray
+    compliance: np.ndarray
+    across: float
+    edge: float
+    crossing: np.ndarray
+
+    @property
+    def name(self) -> str:
+        return "inner" if self.sense < 0.0 else "outer"
+
+    @property
+    def anchor(self) -> int:
+        """The row on which a row of the ball lies exactly."""
+        return len(self.angle) // 2
+
+    @property
+    def ends(self) -> tuple[bool, bool]:
+        """Whether the first and the last row are the last ones before the groove's edges."""
+        reach = 1.5 * (self.angle[1] - self.angle[0])  # rows end half a step before the edge
+        return bool(self.angle[0] - reach < -self.edge), bool(self.angle[-1] + reach > self.edge)
+
+
+@attrs.frozen(eq=False)
+class Ball:
+    """The ball's surface points and its compliance, about its centre of mass.
+
+    Attributes
+    ----------
+    radius : float [m]
+    latitude : (columns,) of the points along the rolling direction [rad], symmetric about 0
+    compliance : (rows, columns, columns) displacement of a column by a force on another one, so many rows apart, both
+        along the normal [m/N]
+    opposite : displacement at a contact by a force at the opposite pole, along the normals [m/N]
+    """
+
+    radius: float
+    latitude: np.ndarray
+    compliance: np.ndarray
+    opposite: float
+
+
+@attrs.frozen(eq=False)
+class Patch:
+    """One ball on one race: both grids together.
+
+    Attributes
+    ----------
+    ball, race
+    area : of a surface point [m2]
+    """
+
+    ball: Ball
+    race: Race
+    area: float
+    phi: np.ndarray = attrs.field(init=False)
+    geometry: np.ndarray = attrs.field(init=False)
+    meridian: np.ndarray = attrs.field(init=False)
+    parallel: np.ndarray = attrs.field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        race, ball = self.race, self.ball
+        middle = race.angle[race.anchor]
+        # The angle on the ball of every row; frozen: set once.
+        phi = middle + (race.angle - middle) * race.groove / ball.radius
+        object.__setattr__(self, "phi", phi)
+        object.__setattr__(
+            self, "geometry", np.array([race.sense, race.groove, race.centre_radius, ball.radius], dtype=float)
+        )
+        object.__setattr__(self, "meridian", np.ascontiguousarray([np.cos(phi), np.sin(phi)]))
+        object.__setattr__(self, "parallel", np.ascontiguousarray([np.cos(ball.latitude), np.sin(ball.latitude)]))
+
+    @property
+    def rows(self) -> int:
+        return len(self.phi)
+
+    @property
+    def columns(self) -> int:
+        return len(self.ball.latitude)
+
+    @property
+    def anchor_angle(self) -> float:
+        return float(self.phi[self.race.anchor])

@@ -1,0 +1,108 @@
+"""Patches and the solvers on them, shared by all copies of a system, so that each solution starts from the last one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import attrs
+import numpy as np
+
+from raceway.core.bodies.ring import CENTRIFUGAL
+from raceway.core.condensed.balls import Balls, Linear
+from raceway.core.condensed.contact import BeyondPatch, Contact
+from raceway.core.condensed.nodal_law import PointLaw
+from raceway.core.condensed.patch import Patch
+from raceway.errors import ConvergenceError
+
+T = TypeVar("T")
+#: Largest step of a ball or the ring in an iteration, of the ball's diameter.
+STEP = 5e-4
+#: How often the patches may be made wider for one solution.
+_WIDER = 12
+
+
+@attrs.define(eq=False)
+class Row:
+    """The balls' solver of one system and where it was last.
+
+    Attributes
+    ----------
+    balls : Balls
+    force : (2 Z, 2) contact forces on the balls [N]
+    last : the state of the last solution
+    """
+
+    balls: Balls
+    force: np.ndarray
+    last: Linear | None = None
+
+
+class Pool:
+    """Patches of both races and solvers for any set of balls on them.
+
+    Parameters
+    ----------
+    patches : of the inner and the outer race
+    laws : at the points of the inner and the outer race; None for no penetration
+    wider : called with a ``BeyondPatch``, returns patches that reach further; None: contact that leaves is an error
+    """
+
+    def __init__(
+        self,
+        patches: tuple[Patch, Patch],
+        laws: tuple[PointLaw | None, PointLaw | None] = (None, None),
+        wider: Callable[[BeyondPatch], tuple[Patch, Patch]] | None = None,
+    ) -> None:
+        self.patches, self.laws, self._wider = patches, laws, wider
+        self._rows: dict[tuple[float, ...], Row] = {}
+
+    @property
+    def diameter(self) -> float:
+        """Of the balls [m]."""
+        return 2.0 * self.patches[0].ball.radius
+
+    def row(self, table: np.ndarray) -> Row:
+        """The solver for the balls of a system's ``table``."""
+        key = tuple(table[:, CENTRIFUGAL].tolist())
+        if key not in self._rows:
+            z = len(table)
+            contacts = [Contact(patch, law) for patch, law in zip(self.patches, self.laws, strict=True) for _ in range(z)]
+            loads = np.zeros((z, 2))
+            loads[:, 1] = table[:, CENTRIFUGAL]
+            balls = Balls(contacts, self._coupling(z), loads, STEP * self.diameter)
+            self._rows[key] = Row(balls, np.zeros((2 * z, 2)))
+        return self._rows[key]
+
+    def widened(self, solve: Callable[[], T]) -> T:
+        """The solution, on patches that are made wider while the contact leaves them.
+
+        Raises
+        ------
+        ConvergenceError
+            The contact leaves every patch, or nothing makes them wider.
+        """
+        for _ in range(_WIDER):
+            try:
+                return solve()
+            except BeyondPatch as left:
+                if self._wider is None:
+                    raise ConvergenceError(str(left)) from left
+                self.patches = self._wider(left)
+                self._rows.clear()
+        raise ConvergenceError("the contacts run away from every patch: there is no equilibrium near the first guess")
+
+    def _coupling(self, z: int) -> np.ndarray:
+        """(4 Z, 4 Z) W: between the poles of a ball, and between the balls of a row through both rings."""
+        row = len(self.patches[0].race.crossing)
+        out = np.zeros((2, z, 2, 2, z, 2))
+        ball = np.arange(z)
+        for component in (0, 1):
+            for here, there in ((0, 1), (1, 0)):
+                out[here, ball, component, there, ball, component] = -self.patches[0].ball.opposite
+        for race, patch in enumerate(self.patches):
+            for k in range(z):
+                first = k // row * row
+                for other in range(first, first + row):
+                    out[race, k, :, race, other, :] += patch.race.crossing[(k - other) % row]
+        return out.reshape(4 * z, 4 * z)

@@ -1,0 +1,33 @@
+"""Laws that serve both discretisations by one kernel: a force of a pair in column 0, a pressure at a point in column 1.
+
+``build`` sets the column that is not wanted to zero.
+"""
+
+import numpy as np
+
+from raceway.core.jit import jit
+from raceway.core.signatures import LAW
+
+
+@jit(LAW)
+def three_halves_or_linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Hertz: Q = K delta^1.5 of a pair, or p = k delta at a point."""
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        linear = params[i, 1] if gap[i] < 0.0 else 0.0
+        slope = params[i, 0] * np.sqrt(approach)
+        force[i] = (slope + linear) * approach
+        d_gap[i] = -1.5 * slope - linear
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def square_or_linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Penalty: p = k delta at a point, or, integrated over the overlap of a paraboloid, Q = c delta^2 of a pair."""
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        linear = params[i, 1] if gap[i] < 0.0 else 0.0
+        slope = params[i, 0] * approach
+        force[i] = (slope + linear) * approach
+        d_gap[i] = -2.0 * slope - linear
+        d_rate[i] = 0.0

@@ -1,0 +1,52 @@
+"""Central differences for stepped systems, without matrices; equations in ``raceway.core.integrators.central_difference``."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway.core.stepping.implicit import BOUND
+from raceway.core.stepping.protocol import State, SteppedSystem
+from raceway.core.stepping.recorder import Recorder
+from raceway.errors import ConvergenceError, StabilityError
+
+
+def central_difference(system: SteppedSystem, recorder: Recorder, coefficients: np.ndarray) -> None:
+    """Take all steps of the recorder's schedule.
+
+    Raises
+    ------
+    StabilityError
+        A step above the stable limit of the start, with the limit, or a motion that grows without bound.
+    """
+    dt = recorder.schedule.dt
+    _refuse_long_step(system, recorder)
+    for step in range(1, recorder.schedule.steps + 1):
+        t, before = recorder.time_of(step), recorder.state
+        half = before.v + 0.5 * dt * before.a
+        u = before.u + dt * half
+        guess = before.v + dt * before.a
+        recorder.evaluations += 1
+        try:
+            rest = recorder.load(t) - system.internal(t, dt, u, guess)
+        except ConvergenceError as why:
+            raise recorder.stalled([], str(why)) from why
+        # The constant damping acts on the velocity of the step's end, contacts that depend on the rate see the guess.
+        a = system.divide_mass(rest + 0.5 * dt * system.damping_times(before.a), 0.5 * dt)
+        if not (np.isfinite(a).all() and np.abs(u).max() < BOUND):
+            raise recorder.unbounded()
+        recorder.accept(State(u, half + 0.5 * dt * a, a, -system.mass_times(a)))
+
+
+def _refuse_long_step(system: SteppedSystem, recorder: Recorder) -> None:
+    start, schedule = recorder.state, recorder.schedule
+    system.internal(recorder.time_of(0), schedule.dt, start.u, start.v)
+    limit = system.stable_step()
+    system.rollback()
+    if schedule.dt >= limit:
+        motion = system.motion(start)
+        raise StabilityError(
+            f"`integrator.steps_per_turn` = {schedule.steps_per_turn} makes a step of {schedule.dt:.4g} s, above the stable "
+            f"limit of central differences, {limit:.4g} s. Take at least "
+            f"{int(schedule.steps_per_turn * schedule.dt / (0.8 * limit)) + 1}.",
+            {"q": motion.q, "ball": motion.ball},
+        )

@@ -1,0 +1,67 @@
+"""Newmark's method and generalised-alpha for stepped systems; equations in ``raceway.core.integrators.implicit``."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway.core.stepping.protocol import State, SteppedSystem
+from raceway.core.stepping.recorder import Recorder
+from raceway.errors import ConvergenceError
+
+NEWTON_LIMIT = 40
+HALVINGS = 8
+#: Iterations after which a step that does not shrink the residual is shortened too: contacts may change to and fro.
+PATIENCE = 10
+#: A force that is none [N]: a motion that has died out is not resolved further.
+NOTHING = 1e-30
+#: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
+BOUND = 1.0
+
+
+def implicit(system: SteppedSystem, recorder: Recorder, coefficients: np.ndarray) -> None:
+    """Take all steps of the recorder's schedule; ``coefficients``: am, af, beta, gamma, tolerance of Newton."""
+    for step in range(1, recorder.schedule.steps + 1):
+        recorder.accept(_step(system, recorder, recorder.time_of(step), coefficients))
+
+
+def _step(system: SteppedSystem, recorder: Recorder, t: float, coefficients: np.ndarray) -> State:
+    """The state at time t, one step on."""
+    am, af, beta, gamma, tolerance = (float(c) for c in coefficients)
+    before, dt = recorder.state, recorder.schedule.dt
+    to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
+    predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
+    u = before.u + dt * before.v + 0.5 * dt * dt * before.a  # start from constant acceleration
+    outer = recorder.load(t)
+    load = system.measure(outer)
+    history: list[float] = []
+    norm_before, halvings, du = np.inf, 0, np.zeros_like(u)
+    for _ in range(NEWTON_LIMIT):
+        a = (u - predicted) * to_a
+        v = before.v + dt * ((1.0 - gamma) * before.a + gamma * a)
+        recorder.evaluations += 1
+        try:
+            rest = system.internal(t, dt, u, v) - outer
+        except ConvergenceError as why:
+            raise recorder.stalled(history, str(why)) from why
+        inertia = system.mass_times((1.0 - am) * a + am * before.a)
+        residual = inertia + (1.0 - af) * rest + af * before.rest
+        norm = system.measure(residual)
+        history.append(norm)
+        if not np.isfinite(norm):
+            raise recorder.unbounded()
+        # Below the rounding of the inertia forces nothing can be asked.
+        rounding = 1e-6 * to_a * system.measure(system.mass_times(np.abs(u)))
+        scale = max(system.contacts()[2], load, system.measure(inertia), rounding)
+        if norm <= tolerance * scale + NOTHING:
+            if np.abs(u).max() >= BOUND:
+                raise recorder.unbounded()
+            return State(u, v, a, rest)
+        if norm > (2.0 if len(history) < PATIENCE else 0.999) * norm_before and halvings < HALVINGS:
+            halvings += 1
+            du *= 0.5
+            u = u - du
+            continue
+        halvings, norm_before = 0, norm
+        du = system.solve(1.0 - af, (1.0 - af) * to_v, (1.0 - am) * to_a, -residual)
+        u = u + du
+    raise recorder.stalled(history)

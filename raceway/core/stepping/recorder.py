@@ -1,0 +1,146 @@
+"""The steps of a stepped system become a ``Record``; progress is reported and failures keep the last good state."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from raceway.core.record import OnChunk, Record, Schedule
+from raceway.core.stepping.protocol import Observation, State, SteppedSystem
+from raceway.errors import ConvergenceError, StabilityError
+
+#: Seconds between two reports of progress.
+_REPORT_S = 0.1
+
+
+def ramp(t: float, duration: float) -> float:
+    """Share of the excitation at time t: 10 s^3 - 15 s^4 + 6 s^5 over the ramp, as in the compiled loops."""
+    if t >= duration:
+        return 1.0
+    s = max(t / duration, 0.0)
+    return s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
+class Recorder:
+    """Follows one integration.
+
+    Parameters
+    ----------
+    system, schedule : what is integrated, over which times
+    on_chunk : called with the steps done and the steps in all
+
+    Attributes
+    ----------
+    state : the last accepted ``State``
+    evaluations : of the internal forces, all steps together
+    """
+
+    def __init__(self, system: SteppedSystem, state: State, schedule: Schedule, on_chunk: OnChunk | None) -> None:
+        self.system, self.state, self.schedule, self.evaluations = system, state, schedule, 0
+        self._on_chunk, self._reported = on_chunk, time.perf_counter()
+        self._done = 0
+        self._rows: list[tuple[float, Observation]] = []
+        self._penetration = self._peak = self._work = 0.0
+        self._outer = self.load(self.time_of(0))
+
+    def time_of(self, step: int) -> float:
+        """Time [s] at the end of a step, counted from 1."""
+        return (self.schedule.first + step) * self.schedule.dt
+
+    def load(self, t: float) -> np.ndarray:
+        """(size,) constant load and excitation under the ramp."""
+        return self.system.external(t, ramp(t, self.schedule.ramp))
+
+    def accept(self, state: State, velocity: np.ndarray | None = None) -> None:
+        """Commit a step, keep it in the record where its turn is, and report progress.
+
+        Parameters
+        ----------
+        velocity : (size,) what the record shows; None for ``state.v``
+        """
+        system, schedule = self.system, self.schedule
+        outer = self.load(self.time_of(self._done + 1))
+        self._work += float(0.5 * (self._outer + outer) @ (state.u - self.state.u))
+        self._outer = outer
+        penetration, peak, _ = system.contacts()
+        self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
+        system.commit()
+        self.state = state
+        self._done += 1
+        if (schedule.first + self._done) % schedule.stride == 0:
+            t = self.time_of(self._done)
+            seen = system.observe(state.u, state.v if velocity is None else velocity)
+            if seen.energies:
+                seen.energies["external"] = self._work
+            self._rows.append((t, seen))
+        now = time.perf_counter()
+        if self._on_chunk is not None and (now - self._reported > _REPORT_S or self._done == schedule.steps):
+            self._reported = now
+            self._on_chunk(self._done, schedule.steps)
+
+    def record(self) -> Record:
+        """The whole ``Record``."""
+        times = np.array([t for t, _ in self._rows])
+        seen = [one for _, one in self._rows]
+        z = self.system.ball_count
+
+        def stack(name: str, shape: tuple[int, ...]) -> np.ndarray:
+            return np.array([getattr(one, name) for one in seen]) if seen else np.zeros((0, *shape))
+
+        first: Observation | None = seen[0] if seen else None
+        return Record(
+            time=times,
+            displacement=stack("displacement", (5,)),
+            velocity=stack("velocity", (5,)),
+            force=np.array([ramp(t, self.schedule.ramp) * self.system.outer_force(t) for t in times]).reshape(-1, 5),
+            gap=stack("gap", (2 * z,)),
+            contact_force=stack("contact_force", (2 * z,)),
+            ball=stack("ball", (z, 2)),
+            final=self.system.motion(self.state),
+            schedule=self.schedule,
+            counts={
+                "steps": self.schedule.steps,
+                "evaluations": self.evaluations,
+                "max_penetration_m": self._penetration,
+                "peak_contact_force_n": self._peak,
+            },
+            energies={name: np.array([one.energies[name] for one in seen]) for name in (first.energies if first else ())},
+        )
+
+    def unbounded(self) -> StabilityError:
+        """The error for a motion that grows without bound."""
+        try:
+            limit = self.system.stable_step()
+        except ConvergenceError:
+            limit = float("inf")
+        hint = f"; stable limit of explicit steps there {limit:.3g} s" if 0.0 < limit < float("inf") else ""
+        return StabilityError(
+            f"the motion grew without bound {self._when()}, step {self.schedule.dt:.3g} s{hint}. Take more "
+            "`integrator.steps_per_turn`, add damping, or move away from a resonance.",
+            self._last_good(),
+        )
+
+    def stalled(self, residuals: list[float], why: str = "the iteration of a step did not converge") -> ConvergenceError:
+        """The error for a step that found no balance, with the residuals [N] of its iterations."""
+        kept = ", ".join(f"{r:.2g}" for r in residuals[-6:])
+        history = (
+            f" (residuals of {len(residuals)} iterations: {'..., ' if len(residuals) > 6 else ''}{kept} N)"
+            if residuals
+            else ""
+        )
+        return ConvergenceError(
+            f"{why} {self._when()}{history}. Take more `integrator.steps_per_turn`.",
+            {**self._last_good(), "residuals": np.array(residuals)},
+        )
+
+    def _when(self) -> str:
+        schedule = self.schedule
+        t, turn = self.time_of(self._done), (schedule.first + self._done) // schedule.steps_per_turn + 1
+        return f"after {self._done} of {schedule.steps} steps (t = {t:.6g} s, turn {turn})"
+
+    def _last_good(self) -> dict[str, np.ndarray]:
+        self.system.rollback()
+        motion = self.system.motion(self.state)
+        found = {"t": np.array(self.time_of(self._done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
+        return found | dict(motion.whole or {})

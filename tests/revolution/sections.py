@@ -1,0 +1,25 @@
+"""Small sections for the tests of bodies of revolution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway import load_scene
+from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.revolution.ball_profile import ball_profile
+from raceway.core.revolution.profile import Profile
+from raceway.core.revolution.ring_profile import graded_profile
+from tests.command_line import EXAMPLES
+
+BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
+STEEL = (212e9, 0.29, 7810.0)
+RADIUS = 0.5 * BEARING.ball_diameter
+
+
+def ring(inner: bool, step: float = 0.5e-3, size: float = 3e-3) -> Profile:
+    window = (np.deg2rad(0.0), np.deg2rad(30.0))
+    return graded_profile(ring_shape(BEARING, inner), step, window, 3.0 * step, size)
+
+
+def ball(step: float = 0.5e-3) -> Profile:
+    return ball_profile(RADIUS, step, 2.0 * step, 2.0 * step, 2e-3)

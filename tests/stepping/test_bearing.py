@@ -1,0 +1,115 @@
+"""A rigid bearing that is stepped from Python moves as in the compiled loops."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+
+from benchmarks.evidence._scenes import model_of, rotating
+from raceway.core.record import Schedule
+from raceway.core.start import at_rest, static_orbit
+from raceway.core.stepping.bearing import SteppedBearing
+from raceway.core.stepping.restart import load_motion, save_motion
+from raceway.errors import RacewayError, StabilityError
+from raceway.integrators import raceway_integrators
+from raceway.statics import settle
+from raceway.testing.integrator import IntegratorSuite
+
+METHODS = raceway_integrators()
+
+
+@attrs.frozen
+class Stepped:
+    """An integrator that steps every system from Python."""
+
+    method: Any
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.method, name)
+
+    def advance(self, system: Any, *rest: Any) -> Any:
+        return self.method.advance(SteppedBearing(system), *rest)
+
+
+def case(integrator: str, **changes: Any):
+    """Method, system, start and schedule: 40 steps of a bearing that rings after a sudden force."""
+    tables = rotating(600.0, "free", 12000.0, changes.pop("inertia", True), integrator)
+    tables["integrator"]["steps_per_turn"] = 2880 if integrator == "central_difference" else 360
+    for table, keys in changes.items():
+        tables[table] = tables.get(table, {}) | keys
+    model = model_of(tables)
+    now = settle(model)
+    method, dt = model.scene.integrator.method, model.excitation.period_s / tables["integrator"]["steps_per_turn"]
+    begin = at_rest if method.inertial else static_orbit
+    return method, model.system, begin(model.system, now.displacement, now.ball, False), Schedule(dt, 40, 1, ramp=20 * dt)
+
+
+CHANGES = [
+    {},
+    {"inertia": False},
+    {"contact": {"damping": 300.0, "friction": 0.05}, "kinematics": {"orbiting": True}},
+    {"rotor": {"mass": 2.0, "polar_inertia": 8e-3, "damping": 200.0}, "supports": {"tilt": 2000.0}},
+]
+
+
+@pytest.mark.parametrize("changes", CHANGES, ids=["inertial", "weightless", "friction orbiting", "gyroscopic"])
+@pytest.mark.parametrize("kind", [m.name for m in METHODS])
+def test_records_equal_the_compiled_loops(kind, changes):
+    method, system, start, schedule = case(kind, **changes)
+    wanted = method.advance(system, start, schedule)
+    found = method.advance(SteppedBearing(system), start, schedule)
+    assert (found.time == wanted.time).all()
+    for name in ("displacement", "velocity", "force", "gap", "contact_force", "ball"):
+        a, b = getattr(wanted, name), getattr(found, name)
+        assert a.shape == b.shape
+        # Same equations; iterations end at 1e-9 of the forces (newmark) and 1e-11 (equilibria), most far below.
+        assert np.abs(a - b).max() <= 1e-9 * np.abs(a).max(), name
+    for name in ("max_penetration_m", "peak_contact_force_n"):
+        assert found.counts[name] == pytest.approx(wanted.counts[name], rel=1e-9)
+
+
+@pytest.mark.parametrize("method", [m() for m in METHODS], ids=[m.name for m in METHODS])
+def test_loops_conform(method):
+    """The suite of integrators holds for the loops in Python as for the compiled ones."""
+    suite = IntegratorSuite()
+    # The order of convergence follows from the records' equality; its reference solutions take seconds.
+    for name in ("record", "equilibria", "impact", "stability", "restart", "memory", "progress", "failure"):
+        suite.checks()[name].check(suite, Stepped(method))
+
+
+@pytest.mark.parametrize("kind", [m.name for m in METHODS])
+def test_restart_from_disk_equals_going_on(kind, tmp_path):
+    method, system, start, schedule = case(kind, contact={"damping": 300.0, "friction": 0.05})
+    whole = method.advance(SteppedBearing(system), start, schedule)
+    half = attrs.evolve(schedule, steps_per_turn=20)
+    first = method.advance(SteppedBearing(system), start, half)
+    path = save_motion(first.final, tmp_path / "motion.npz")
+    second = method.advance(SteppedBearing(system), load_motion(path), attrs.evolve(half, first=20))
+    for name in ("time", "displacement", "velocity", "force", "ball", "contact_force"):
+        assert (np.concatenate([getattr(first, name), getattr(second, name)]) == getattr(whole, name)).all(), name
+
+
+def test_compiled_loops_keep_the_clock_too(tmp_path):
+    method, system, start, schedule = case("generalized_alpha")
+    whole = method.advance(system, start, schedule)
+    half = attrs.evolve(schedule, steps_per_turn=20)
+    first = method.advance(system, start, half)
+    path = save_motion(first.final, tmp_path / "motion.npz")
+    second = method.advance(system, load_motion(path), attrs.evolve(half, first=20))
+    assert (np.concatenate([first.displacement, second.displacement]) == whole.displacement).all()
+
+
+def test_a_file_that_is_no_motion_is_refused(tmp_path):
+    (tmp_path / "motion.npz").write_bytes(b"PK no zip")
+    with pytest.raises(RacewayError, match="holds no motion"):
+        load_motion(tmp_path / "motion.npz")
+
+
+def test_step_above_the_stable_limit_is_refused_with_the_limit():
+    method, system, start, schedule = case("central_difference")
+    limit = system.critical_time_step(system.evaluate(start.q, ball=start.ball).stiffness)
+    with pytest.raises(StabilityError, match=f"{limit:.4g} s"):
+        method.advance(SteppedBearing(system), start, attrs.evolve(schedule, dt=1.01 * limit))

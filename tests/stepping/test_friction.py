@@ -1,0 +1,173 @@
+"""Coulomb friction at points, and of a block on a plane against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.core.elastic.friction import CoulombFriction
+from raceway.core.record import Schedule
+from raceway.core.stepping.energy import drift
+from raceway.core.stepping.restart import load_motion, save_motion
+from raceway.errors import ConvergenceError
+from raceway.integrators.central_difference import CentralDifference
+from raceway.integrators.newmark import Newmark
+from tests.stepping.block import POISSON, YOUNG, Block
+
+WEIGHT, MU = 2.0, 0.3
+
+
+def points(count: int = 40, seed: int = 1):
+    rng = np.random.default_rng(seed)
+    normal = rng.normal(size=(count, 3))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    friction = CoulombFriction(0.2, rng.uniform(1e12, 3e12, count), symmetric=False)
+    return rng, normal, friction
+
+
+def test_points_stick_below_the_limit_and_slip_on_it():
+    rng, normal, friction = points()
+    shift = 1e-5 * rng.normal(size=(40, 3))
+    pressure = np.full(40, 5e7)
+    found, _ = friction.evaluate(shift, normal, pressure, np.full(40, -1e13))
+    tangential = shift - (shift * normal).sum(axis=1, keepdims=True) * normal
+    trial = friction.stick[:, None] * tangential
+    size = np.linalg.norm(trial, axis=1)
+    assert (friction.slipping == (size > 1e7)).all()
+    assert 0 < friction.slipping.sum() < 40
+    wanted = np.where((size > 1e7)[:, None], 1e7 * trial / size[:, None], trial)
+    assert np.abs(found + wanted).max() < 1e-12 * 1e7
+    assert np.abs((found * normal).sum(axis=1)).max() < 1e-9 * 1e7
+
+
+def test_tangent_is_the_derivative():
+    """Central differences; the pressure follows the shift along the normal."""
+    rng, normal, friction = points()
+    shift, stiffness, h = 1e-5 * rng.normal(size=(40, 3)), 1e13, 1e-11
+
+    def at(s: np.ndarray):
+        opened = (s * normal).sum(axis=1)
+        return friction.evaluate(s, normal, 5e7 - stiffness * opened * 1e-3, np.full(40, -stiffness * 1e-3))
+
+    _, tangent = at(shift)
+    for axis in range(3):
+        step = np.zeros(3)
+        step[axis] = h
+        wanted = -(at(shift + step)[0] - at(shift - step)[0]) / (2.0 * h)
+        # (h / shift)^2 = 1e-12 of truncation, 1e-16 * 1e7 / (1e-11 * 1e12) = 1e-10 of rounding.
+        assert np.abs(tangent[:, :, axis] - wanted).max() < 1e-7 * np.abs(tangent).max()
+    friction.symmetric = True
+    _, symmetric = at(shift)
+    assert np.abs(symmetric - np.swapaxes(symmetric, 1, 2)).max() < 1e-12 * np.abs(symmetric).max()
+
+
+def test_history_is_committed_only_when_told():
+    _, normal, friction = points()
+    shift = np.full((40, 3), 1e-6)
+    first, _ = friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
+    assert (friction.evaluate(np.zeros((40, 3)), normal, np.full(40, 1e9), np.zeros(40))[0] == 0.0).all()
+    friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
+    friction.commit()
+    again, _ = friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
+    assert np.abs(again - first).max() < 1e-12 * np.abs(first).max()
+    assert friction.evaluate(2 * shift, normal, np.full(40, 1e9), np.zeros(40))[0] == pytest.approx(2 * first, rel=1e-12)
+
+
+def test_an_open_point_carries_nothing():
+    _, normal, friction = points()
+    friction.evaluate(np.full((40, 3), 1e-6), normal, np.full(40, 1e9), np.zeros(40))
+    friction.commit()
+    assert (friction.evaluate(np.full((40, 3), 1e-6), normal, np.zeros(40), np.zeros(40))[0] == 0.0).all()
+
+
+def test_closed_cycles_lose_four_times_the_amplitude():
+    """Sliding to and fro between -A and A: mu p * 4 A a cycle less the springs' part, 4 mu p * (mu p / k)."""
+    friction = CoulombFriction(0.2, np.array([1e12]))
+    amplitude, limit = 1e-4, 0.2 * 1e7
+    normal, pressure = np.array([[0.0, 0.0, 1.0]]), np.array([1e7])
+    path = amplitude * np.sin(np.linspace(0.0, 6.0 * np.pi, 6001))
+    lost = []
+    for x in path:
+        friction.evaluate(np.array([[x, 0.0, 0.0]]), normal, pressure, np.zeros(1))
+        friction.commit()
+        lost.append(friction.dissipated[0])
+    cycle = lost[5500] - lost[3500]
+    assert cycle == pytest.approx(limit * 4.0 * (amplitude - limit / 1e12), rel=1e-3)
+
+
+def test_block_sticks_below_the_limit():
+    """Pulled with 0.3 mu N and let go: it moves by F / (k A), rocks, shears, and comes back."""
+
+    def pull(t: float) -> float:
+        return 0.3 * MU * WEIGHT * np.sin(np.pi * min(t / 4e-3, 1.0)) ** 2
+
+    block = Block(WEIGHT, MU, pull, stick=1e11)
+    start = block.at_rest()
+    record = Newmark().advance(block, start, Schedule(4e-5, 125, 1))
+    x, sticking = (
+        record.displacement[:, 0] - block.motion(block.begin(start)).q[0],
+        0.3 * MU * WEIGHT / (1e11 * block.area.sum()),
+    )
+    rocking = 0.3 * MU * WEIGHT * 1e-3**2 / (1e12 * 3e-3 * 4e-3**3 / 12.0)
+    modulus = YOUNG / (2.0 * (1.0 + POISSON))
+    shear = 0.3 * MU * WEIGHT * 2e-3 / (3.0 * modulus * 12e-6)  # mean over the height, the pull spread over the mass
+    # Bending and the vibration that the pull leaves are some 1 %.
+    assert x.max() == pytest.approx(sticking + rocking + shear, rel=0.02)
+    assert np.abs(x[record.time > 4e-3]).max() < 0.03 * sticking
+    assert record.energies["friction"][-1] == 0.0
+
+
+def test_block_slips_above_the_limit():
+    """Pulled with 2 mu N it gathers speed at mu N / m."""
+    block = Block(WEIGHT, MU, lambda t: 2.0 * MU * WEIGHT)
+    time = 3e-4
+    record = Newmark().advance(block, block.at_rest(), Schedule(time / 150, 150, 1))
+    gained = MU * WEIGHT / block.mass
+    # Sticking springs load up first: a delay of some microseconds.
+    assert record.velocity[-1, 0] == pytest.approx(gained * time, rel=0.01)
+    assert record.displacement[-1, 0] == pytest.approx(0.5 * gained * time**2, rel=0.02)
+    assert drift(record.energies) < 1e-6  # Newton's tolerance: the mean forces of a step do the work that it conserves
+
+
+@pytest.mark.parametrize("method", [Newmark(), CentralDifference()], ids=["newmark", "central_difference"])
+def test_block_slides_and_stops_as_in_closed_form(method):
+    speed = 1.0
+    block = Block(WEIGHT, MU)
+    deceleration = MU * WEIGHT / block.mass
+    time, distance = speed / deceleration, 0.5 * speed**2 / deceleration
+    steps = 200 if method.implicit else int(1.4 * time / (0.8 * block.stable_step()))
+    record = method.advance(block, block.at_rest(speed), Schedule(1.4 * time / steps, steps, 1))
+    x, v, t = record.displacement[:, 0], record.velocity[:, 0], record.time
+    sliding = t < 0.9 * time
+    assert np.abs(v[sliding] - (speed - deceleration * t[sliding])).max() < 0.01 * speed
+    assert np.abs(x[t > 1.1 * time] - distance).max() < 0.01 * distance  # it stays where it stopped
+    assert record.energies["friction"][-1] == pytest.approx(0.5 * block.mass * speed**2, rel=0.01)
+    assert drift(record.energies) < 1e-4
+
+
+@pytest.mark.parametrize("method", [Newmark(), CentralDifference()], ids=["newmark", "central_difference"])
+def test_restart_of_a_block_from_disk(method, tmp_path):
+    dt = 0.5 * Block(WEIGHT, MU).stable_step()
+
+    def run(start, first, steps):
+        block = Block(WEIGHT, MU, lambda t: 3.0 * MU * WEIGHT * np.sin(3e4 * t))
+        begin = block.at_rest() if start is None else load_motion(start)
+        return method.advance(block, begin, Schedule(dt, steps, 1, first=first))
+
+    whole = run(None, 0, 80)
+    half = run(None, 0, 40)
+    rest = run(save_motion(half.final, tmp_path / "half.npz"), 40, 40)
+    assert (np.concatenate([half.displacement, rest.displacement]) == whole.displacement).all()
+    assert rest.energies["friction"][-1] == whole.energies["friction"][-1] > 0.0
+
+
+def test_a_step_that_finds_no_balance_leaves_state_and_history():
+    block = Block(WEIGHT, MU)
+    start = block.at_rest(1.0)
+    block.solve = lambda *_: np.full(block.size, 1e-9)  # type: ignore[method-assign]
+    with pytest.raises(ConvergenceError, match="did not converge after 0 of 10 steps") as caught:
+        Newmark().advance(block, start, Schedule(1e-6, 10, 1))
+    state = caught.value.state
+    assert (state["u"] == start.whole["u"]).all()
+    assert len(state["residuals"]) == 40
+    assert np.isfinite(state["residuals"]).all()

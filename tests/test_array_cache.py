@@ -1,0 +1,197 @@
+"""Arrays kept on disk: found again, never mistaken, whole or made anew, by several processes, within a size."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pytest
+
+from raceway import array_cache
+from raceway.array_cache import kept
+from tests.command_line import invoke, python
+
+INPUTS = {"points": np.arange(6.0).reshape(3, 2), "count": 3, "seat": "clamped", "ratio": 0.29, "offsets": None}
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path))
+    array_cache._warn_unwritable.cache_clear()
+    yield tmp_path / "arrays"
+    array_cache._warn_unwritable.cache_clear()
+
+
+class Maker:
+    def __init__(self):
+        self.calls = 0
+
+    def __call__(self):
+        self.calls += 1
+        return {"a": np.arange(12.0).reshape(3, 4)[:, ::2], "b": np.array([7], dtype=np.int32)}
+
+
+def get(maker, inputs=INPUTS, kind="test", sources=("errors.py",)):
+    return kept(kind, "arrays of a test", inputs, sources, maker)
+
+
+def test_a_second_use_reads_what_the_first_made(folder):
+    make = Maker()
+    first, second = get(make), get(make)
+    assert make.calls == 1
+    for found in (first, second):
+        assert np.array_equal(found["a"], [[0.0, 2.0], [4.0, 6.0], [8.0, 10.0]])
+        assert found["a"].flags.c_contiguous and found["b"].dtype == np.int32
+    assert len(list(folder.iterdir())) == 1
+
+
+CHANGES = {
+    "points": INPUTS["points"] + 1e-16 * np.arange(6).reshape(3, 2),
+    "count": 3.0,
+    "seat": 5e11,
+    "ratio": 0.29 + 1e-16,
+    "offsets": [0, 1],
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_every_input_counts(name):
+    make = Maker()
+    get(make)
+    get(make, {**INPUTS, name: CHANGES[name]})
+    assert make.calls == 2
+
+
+def test_kind_sources_shapes_and_nesting_count():
+    make = Maker()
+    get(make)
+    get(make, kind="other")
+    get(make, sources=("options.py",))
+    get(make, {**INPUTS, "points": INPUTS["points"].reshape(2, 3)})
+    get(make, {**INPUTS, "offsets": [[1, 2], [3]]})
+    get(make, {**INPUTS, "offsets": [[1], [2, 3]]})
+    assert make.calls == 6
+
+
+def test_what_is_no_value_cannot_be_a_key():
+    with pytest.raises(TypeError, match="dict"):
+        get(Maker(), {"inputs": {}})
+
+
+def cut(path):
+    path.write_bytes(path.read_bytes()[:-5])
+
+
+def flip(path):
+    content = bytearray(path.read_bytes())
+    content[-9] ^= 1
+    path.write_bytes(bytes(content))
+
+
+def empty(path):
+    path.write_bytes(b"")
+
+
+def other_head(path):
+    path.write_bytes(b'{"kind": 3}\n' + path.read_bytes().split(b"\n", 1)[1])
+
+
+@pytest.mark.parametrize("harm", [cut, flip, empty, other_head])
+def test_a_damaged_file_is_made_anew_and_said(folder, harm):
+    make = Maker()
+    get(make)
+    harm(next(folder.iterdir()))
+    with pytest.warns(RuntimeWarning, match="damaged"):
+        found = get(make)
+    assert make.calls == 2 and found["a"][2, 1] == 10.0
+    get(make)
+    assert make.calls == 2
+
+
+def test_a_folder_that_cannot_be_written_costs_one_warning(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path / "file"))
+    make = Maker()
+    with pytest.warns(RuntimeWarning, match="RACEWAY_CACHE_DIR") as caught:
+        get(make)
+        found = get(make)
+    assert len(caught) == 1 and make.calls == 2 and found["a"][0, 1] == 2.0
+
+
+#: Half of a megabyte, so that a writer is seen in the middle; both wait for the other to have started.
+RACE = """
+import sys, time
+import numpy as np
+from raceway.array_cache import kept
+start = float(sys.argv[1])
+for i in range(20):
+    time.sleep(max(0.0, start + 0.02 * i - time.time()))
+    found = kept("race", "a race", {"round": i}, ("errors.py",), lambda: {"a": np.full(65536, float(i))})
+    assert found["a"].shape == (65536,) and (found["a"] == i).all(), i
+print("whole")
+"""
+
+
+def test_two_processes_may_make_the_same_entries_at_once(folder):
+    import time
+
+    start = str(time.time() + 1.0)
+    both = [
+        subprocess.Popen(
+            [sys.executable, "-W", "error", "-c", RACE, start], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        for _ in range(2)
+    ]
+    for process in both:
+        out, err = process.communicate(timeout=60)
+        assert out == "whole\n", err
+    names = [path.name for path in folder.iterdir()]
+    assert len(names) == 20 and all(name.endswith(".arrays") for name in names)
+
+
+def test_the_least_recently_used_go_first(folder, monkeypatch):
+    import os
+
+    monkeypatch.setattr(array_cache, "LIMIT", 2500)
+
+    def entry(i):
+        return kept("size", f"entry {i}", {"i": i}, ("errors.py",), lambda: {"a": np.full(100, float(i))})
+
+    for i in range(3):
+        entry(i)
+        for path in folder.iterdir():
+            status = path.stat()
+            os.utime(path, (status.st_atime - 10.0, status.st_mtime - 10.0))
+        entry(0)  # used again each time
+    assert sorted(e.what for e in array_cache.entries()) == ["entry 0", "entry 2"]
+    assert sum(e.bytes for e in array_cache.entries()) <= 2500
+
+
+def test_the_command_shows_and_clears(folder):
+    assert json.loads(invoke("cache", "--json").stdout)["arrays"] == []
+    assert "Compliances of bodies" in invoke("cache").stdout
+    get(Maker())
+    (folder / "broken.arrays").write_bytes(b"\x00\n")
+    found = json.loads(invoke("cache", "--json").stdout)
+    assert {(e["kind"], e["what"]) for e in found["arrays"]} == {("test", "arrays of a test"), ("damaged", "broken.arrays")}
+    assert found["arrays_bytes"] == sum(p.stat().st_size for p in folder.iterdir())
+    assert "arrays of a test" in invoke("cache").stdout
+    cleared = json.loads(invoke("cache", "--clear", "--json").stdout)
+    assert cleared["arrays"] == [] and cleared["arrays_bytes"] == 0
+    assert not folder.exists()
+
+
+def test_the_command_reads_no_arrays():
+    """Heads of files alone: numpy stays out."""
+    found = python("-c", "import sys; from raceway import array_cache; array_cache.entries(); print('numpy' in sys.modules)")
+    assert found.stdout == "False\n", found.stderr
+
+
+def test_kept_arrays_warn_of_nothing(folder):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        get(Maker())
+        get(Maker())
