@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from raceway.core.blocks import BlockMatrix
+
 #: Degree of the Chebyshev smoother, and the part of the spectrum that it damps: from a thirtieth of the bound to it.
 _DEGREE, _LOWEST, _MARGIN = 3, 1.0 / 30.0, 1.1
 
@@ -27,7 +29,7 @@ class VCycle:
         from pyamg.relaxation.chebyshev import chebyshev_polynomial_coefficients
         from pyamg.util.linalg import approximate_spectral_radius
 
-        self._matrices = [level.A.astype(np.float32) for level in levels[:-1]]
+        self._matrices = [BlockMatrix(level.A, np.float32) for level in levels[:-1]]
         self._up = [level.P.astype(np.float32) for level in levels[:-1]]
         self._down = [level.R.astype(np.float32) for level in levels[:-1]]
         self._smoothers = []
@@ -49,8 +51,8 @@ class VCycle:
             return np.asarray(self._coarse @ right)
         matrix = self._matrices[level]
         found = self._smooth(level, right)
-        found += self._up[level] @ self._cycle(level + 1, self._down[level] @ (right - matrix @ found))
-        found += self._smooth(level, right - matrix @ found)
+        found += self._up[level] @ self._cycle(level + 1, self._down[level] @ (right - matrix.times(found)))
+        found += self._smooth(level, right - matrix.times(found))
         return found
 
     def _smooth(self, level: int, residual: np.ndarray) -> np.ndarray:
@@ -58,5 +60,5 @@ class VCycle:
         matrix, coefficients = self._matrices[level], self._smoothers[level]
         out = coefficients[0] * residual
         for c in coefficients[1:]:
-            out = c * residual + matrix @ out
+            out = matrix.times(out, residual, c)
         return np.asarray(out)
