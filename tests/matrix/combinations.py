@@ -126,10 +126,10 @@ def outcome(cell: Combination) -> Outcome | SceneError:
 
 
 @cache
-def reference(excitation: str, tilt: str | float) -> complex | None:
-    """Z of the same physics by Hertz, Newmark and the first identifier that takes this excitation."""
+def reference(excitation: str, tilt: str | float, bodies: str) -> complex | None:
+    """Z of the same physics and bodies by Hertz, Newmark and the first identifier that takes this excitation."""
     for identifier in ("fft_1x", "order_tracking", "sine_fit"):
-        found = outcome(Combination(excitation, "hertz", "resultant", "newmark", identifier, tilt, "rigid"))
+        found = outcome(Combination(excitation, "hertz", "resultant", "newmark", identifier, tilt, bodies))
         if isinstance(found, Outcome):
             return found.dynamic
     return None
