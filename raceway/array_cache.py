@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 #: Bytes that all entries may take together; the least recently used ones go first.
 LIMIT = 2**30
 _SUFFIX, _FORMAT = ".arrays", 1
+#: Age [s] at which a file that is being written has no writer any more.
+_ABANDONED = 3600.0
 
 
 def folder() -> Path:
@@ -222,8 +224,12 @@ def _write(path: Path, kind: str, what: str, arrays: Mapping[str, np.ndarray], s
 
 
 def _trim(newest: Path) -> None:
-    """Remove the least recently used entries above the limit; the one just written stays."""
+    """Remove the least recently used entries above the limit, and what killed processes left; the newest entry stays."""
     found = []
+    for scratch in newest.parent.glob(".*"):
+        with suppress(OSError):
+            if time.time() - scratch.stat().st_mtime > _ABANDONED:
+                scratch.unlink()
     for path in _files():
         with suppress(OSError):
             status = path.stat()

@@ -14,7 +14,7 @@ import click
 
 from raceway import __version__
 from raceway.cache_command import cache
-from raceway.command_frame import attempt, common, plugin_files, registry_with, show, show_progress
+from raceway.command_frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
 from raceway.command_inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
 from raceway.console import Commands, print_json
 from raceway.errors import ConvergenceError, RacewayError, SceneError
@@ -48,20 +48,9 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
-_scene = click.argument("scene", type=click.Path(path_type=Path, readable=False))
-_set = click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
-_out = click.option(
-    "--out",
-    type=click.Path(path_type=Path, readable=False),
-    metavar="DIR",
-    help="Folder of the results [raceway-out/TITLE].",
-)
-
-
 @main.command(short_help="Compute one scene.")
-@_scene
-@_set
-@_out
+@on_scene
+@out_folder
 @click.option("--pictures", is_flag=True, help="Also write orbit, spectrum and ball loads as PNG.")
 @plugin_files
 @common
@@ -106,8 +95,7 @@ def run(
 
 
 @main.command(short_help="Say what would be built and what not.")
-@_scene
-@_set
+@on_scene
 @plugin_files
 @common
 def plan(
@@ -133,8 +121,7 @@ def plan(
 
 
 @main.command(short_help="Validate a scene; compute nothing.")
-@_scene
-@_set
+@on_scene
 @plugin_files
 @common
 def check(
@@ -163,10 +150,9 @@ def check(
 
 
 @main.command(short_help="One scene, some keys varied, everything else the same.")
-@_scene
+@on_scene
 @click.option("--vary", multiple=True, required=True, metavar="A.B=X,Y", help="Values x,y,z or a range start:stop:count.")
-@_set
-@_out
+@out_folder
 @click.option("--pictures/--no-pictures", default=True, help="Write the curves as PNG (default).")
 @plugin_files
 @common
@@ -198,13 +184,22 @@ def compare(
         from raceway.result import write_json
         from raceway.studies.compare import compare as study
 
-        comparison = study(tables, list(vary), registry, progress)
+        stopped = None
+        try:
+            comparison = study(tables, list(vary), registry, progress)
+        except KeyboardInterrupt as stop:
+            partial = getattr(stop, "partial", None)
+            if partial is None or not partial.rows:
+                raise
+            comparison, stopped = partial, stop  # what is finished is shown and written first
     content = comparison.as_dict()
     files: list[str] = []
     failed = attempt(lambda: [write_json(content, folder / "compare.json")], files)
-    if pictures and failed is None:
+    if pictures and failed is None and stopped is None:
         failed = attempt(lambda: comparison.picture(folder), files)
     show(content, as_json, failed, lambda screen: screen.compare_screen(title, comparison.table(), comparison.words, files))
+    if stopped is not None:
+        raise stopped
     return 0
 
 

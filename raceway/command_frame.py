@@ -15,6 +15,14 @@ from raceway.registry import default_registry
 if TYPE_CHECKING:
     from raceway.registry import Registry
 
+_scene = click.argument("scene", type=click.Path(path_type=Path, readable=False))
+_set = click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+
+out_folder = click.option(
+    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR",
+    help="Folder of the results [raceway-out/TITLE].",
+)  # fmt: skip
+
 plugin_files = click.option(
     "--plugin", "plugins", multiple=True, type=click.Path(path_type=Path), metavar="FILE.py",
     help="A one-off plug-in file, not installed; repeat for more.",
@@ -33,6 +41,11 @@ def registry_with(files: tuple[Path, ...]) -> Registry:
     for file in files:
         registry.load_file(file)
     return registry
+
+
+def on_scene(command: Callable[..., Any]) -> Callable[..., Any]:
+    """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
+    return _scene(_set(command))
 
 
 def common(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -19,7 +19,7 @@ from typing import Any
 
 import click
 
-from raceway.errors import RacewayError, SceneError
+from raceway.errors import MeshError, RacewayError, SceneError
 from raceway.options import nearest
 
 
@@ -91,6 +91,8 @@ def described(error: Exception) -> tuple[int, list[dict[str, Any]]]:
     """Exit code and ``[{path, value, message}]`` of an exception."""
     if isinstance(error, SceneError):
         return error.exit_code, [{"path": m.path, "value": plain(m.value), "message": m.message} for m in error.mistakes]
+    if isinstance(error, MeshError) and error.mistake is not None:
+        return described(SceneError([error.mistake]))
     code, message = 2, str(error)
     if isinstance(error, RacewayError):
         code = error.exit_code

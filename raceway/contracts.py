@@ -141,6 +141,8 @@ class Mesher(Protocol):
     2. No cell is inverted or flat; what cannot be meshed raises ``MeshError``.
     3. The same bearing gives the same mesh.
     4. An option ``ball_load`` that is None gets the static load of a ball [N] from the scene.
+    5. Optional ``predict(bearing)``: body -> number of cells, without meshing, for the plan (or a
+       ``raceway.core.meshing.size.Prediction``); what cannot be meshed raises ``MeshError`` here already.
     """
 
     name: ClassVar[str]

@@ -59,7 +59,16 @@ class PluginError(RacewayError):
 
 
 class MeshError(RacewayError):
-    """A mesh that cannot be read, built or used."""
+    """A mesh that cannot be read, built or used; ``mistake`` names the key of the scene where one is to blame."""
+
+    mistake: Mistake | None = None
+
+    @classmethod
+    def at(cls, path: str, value: Any, message: str) -> MeshError:
+        mistake = Mistake(path, value, message)
+        error = cls(str(mistake))
+        error.mistake = mistake
+        return error
 
 
 class ConvergenceError(RacewayError):

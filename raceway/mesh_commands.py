@@ -9,18 +9,15 @@ from typing import Any
 import attrs
 import click
 
-from raceway.command_frame import attempt, common, plugin_files, registry_with, show
+from raceway.command_frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show
 from raceway.command_inputs import load, slug, tell_faults, writable
 from raceway.errors import RacewayError, SceneError
 from raceway.progress import ProgressBar
 
 
 @click.command(short_help="Mesh the bodies of a scene: counts, quality, files.")
-@click.argument("scene", type=click.Path(path_type=Path, readable=False))
-@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
-@click.option(
-    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder of the files [raceway-out/TITLE]."
-)
+@on_scene
+@out_folder
 @click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
 @plugin_files
 @common

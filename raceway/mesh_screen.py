@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from raceway.screen import Row, number, sections, written
+from raceway.screen import Row, grouped, number, sections, written
 
 
 def mesh_screen(found: Mapping[str, Any]) -> RenderableType:
@@ -29,7 +29,7 @@ def mesh_screen(found: Mapping[str, Any]) -> RenderableType:
     if patch is not None:
         for name, sizes in patch.items():
             low, high = (f"{1e3 * sizes[word]:.3g}" for word in ("min", "max"))
-            rows.append((f"contact patch, {name}", f"{low} to {high} mm", "element edges"))
+            rows.append((f"contact patch, {name}", f"{low} mm", f"to {high} mm, element edges"))
     rows += [
         ("scaled Jacobian", f"{jacobian['min']:.3g}", f"smallest; mean {jacobian['mean']:.3g}, 1 is a cube, 0 is flat"),
         ("aspect", f"{found['aspect']['max']:.3g}", f"largest; mean {found['aspect']['mean']:.3g}"),
@@ -38,7 +38,9 @@ def mesh_screen(found: Mapping[str, Any]) -> RenderableType:
         ("time", number(found["seconds"], "s", 3), "building the meshes; judging and writing them is apart"),
         ("Bodies", "", ""),
     ]
+    bodies = {}
     for name, body in found["bodies"].items():
         words = f"hexahedra, {body['nodes']} nodes, scaled Jacobian {body['scaled_jacobian']['min']:.3g} and more"
-        rows.append((name, str(body["elements"]), words))
+        bodies[name] = str(body["elements"]), words
+    rows += [(name, *said) for name, said in grouped(bodies)]
     return Group(Text(found["title"], style="bold"), sections(rows), *written(found["files"]))

@@ -9,6 +9,7 @@ import attrs
 
 from raceway.errors import MeshError, PluginError, SceneError
 from raceway.estimate import axial_approach
+from raceway.mesh_fit import check_size
 from raceway.scene import Scene
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def mesh_scene(scene: Scene) -> dict[str, HexMesh]:
     Raises
     ------
     MeshError
-        What the mesher refuses, or a bad cell.
+        What the mesher refuses, a bad cell, or a body in other units than metres.
     PluginError
         A mesher that returns something else.
     """
@@ -56,4 +57,5 @@ def mesh_scene(scene: Scene) -> dict[str, HexMesh]:
         except (AttributeError, MeshError) as why:
             raise PluginError(f"mesher '{mesher.name}': body '{name}' is no mesh: {why}") from why
         refuse_bad_cells(out[str(name)], str(name))
+    check_size(mesher, scene.bearing, out)
     return out

@@ -13,6 +13,7 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.estimate import highest_frequency
+from raceway.mesh_plan import mesh_faults, predicted_mesh
 from raceway.patch_plan import patch_cost, patch_faults
 from raceway.ring import ring_inertia
 from raceway.scene import Scene
@@ -52,6 +53,7 @@ class Plan:
     turns : turns that are integrated
     dofs : unknowns of the ring and of the balls
     time_step_s, predicted_wall_s : None in a static scene; predictions
+    mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
     """
 
     kept: tuple[Part, ...]
@@ -66,6 +68,7 @@ class Plan:
     time_step_s: float | None
     predicted_steps: int
     predicted_wall_s: float
+    mesh: dict[str, Any] | None = None
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -75,6 +78,7 @@ class Plan:
             "time_step_s": self.time_step_s,
             "predicted_steps": self.predicted_steps,
             "predicted_wall_s": self.predicted_wall_s,
+            "mesh": self.mesh,
         }
 
 
@@ -123,8 +127,9 @@ def make_plan(scene: Scene) -> Plan:
     pair = f"bearing.arrangement is {scene.bearing.arrangement}"
     decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
     condensed = scene.bodies.kind == "condensed"
-    why = "bodies.kind is condensed: finite elements of rings and balls, reduced to structural compliances"
-    decide(condensed, "elastic rings and balls", why, "bodies.kind is rigid: only contacts deform")
+    why = f"bodies.kind is {scene.bodies.kind}: finite elements of rings and balls"
+    why += ", reduced to structural compliances" if condensed else ""
+    decide(scene.bodies.kind != "rigid", "elastic rings and balls", why, "bodies.kind is rigid: only contacts deform")
     nodal = condensed and scene.contact.discretisation == "nodal"
     coupled = condensed and _balls_meet(scene) and not nodal
     if nodal:
@@ -186,6 +191,7 @@ def make_plan(scene: Scene) -> Plan:
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
         predicted_wall_s=_START_S + _bodies_seconds(scene) + 1.5 * steps * each,
+        mesh=predicted_mesh(scene),
     )
 
 
@@ -211,20 +217,19 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
     listed = " or ".join(f"'{kind}'" for kind in BODIES)
     refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
-    condensed = scene.bodies.kind == "condensed"
-    refuse(scene.mesh is not None and not condensed, "mesh", None, "rigid bodies have no mesh: leave the table out")
+    faults += mesh_faults(scene)
+    rigid, condensed = scene.bodies.kind == "rigid", scene.bodies.kind == "condensed"
     if condensed:
         _refuse_condensed(scene, refuse)
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
-    elif contact.discretisation == "nodal":
-        if condensed:
-            faults += patch_faults(scene)
-        else:
-            why = "rigid bodies have no surface points: use 'resultant'"
-            faults.append(Mistake("contact.discretisation", "nodal", why))
+    elif contact.discretisation == "nodal" and condensed:
+        faults += patch_faults(scene)
+    elif contact.discretisation == "nodal" and rigid:
+        why = "rigid bodies have no surface points: use 'resultant'"
+        faults.append(Mistake("contact.discretisation", "nodal", why))
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
     alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
@@ -233,7 +238,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
     for seat in ("outer_seat", "inner_seat"):
         value = getattr(scene.supports, seat)
-        stiff = value != "rigid" and not condensed
+        stiff = rigid and value != "rigid"
         refuse(stiff, f"supports.{seat}", value, "rigid rings have rigid seats: leave it out, or bodies.kind = 'condensed'")
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))

@@ -14,8 +14,9 @@ from raceway.registry import default_registry
 
 
 @click.command(short_help="List what is installed, with options.")
+@plugin_files
 @common
-def plugins(as_json: bool) -> int:
+def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
     """List every plug-in with its options; broken or shadowed ones are named (exit code 2).
 
     RACEWAY_DISABLE=NAME,... leaves plug-ins out; RACEWAY_PLUGINS=NAME,... loads exactly these.
@@ -23,10 +24,11 @@ def plugins(as_json: bool) -> int:
     \b
     Example:
       raceway plugins --json
+      raceway plugins --plugin my_law.py
     """
     from raceway import plugin_screen
 
-    registry = default_registry()
+    registry = registry_with(plugins)
     rows = plugin_screen.plugin_rows(registry.all())
     broken = faults(registry)
     if as_json:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sys
+import warnings
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -12,6 +13,7 @@ from traceback import extract_tb
 from typing import Any
 
 from raceway.errors import PluginError
+from raceway.options import nearest
 
 
 def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
@@ -24,6 +26,10 @@ def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
         missing = sorted(wanted - {name for p in points for name in _called(p)})
         points = [p for p in points if wanted & _called(p)]
     blocked = _names(os.environ.get("RACEWAY_DISABLE", ""))
+    known = sorted({name for p in entry_points(group="raceway") for name in _called(p)})
+    for name in sorted(blocked - set(known)):
+        told = f"installed: {', '.join(known)}" if known else "no plug-in is installed"
+        warnings.warn(f"RACEWAY_DISABLE names '{name}', which nothing is called{nearest(name, known)}; {told}", stacklevel=2)
     return [p for p in points if not blocked & _called(p)], missing
 
 

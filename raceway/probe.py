@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from raceway.core.plugin_kernel import check_compiled
 from raceway.errors import PluginError
 
 #: Gaps [m] and rates [m/s] that are tried, all contacts at once.
@@ -41,8 +42,9 @@ def probe_law(
     who = _who("contact law", "contact_law", law, distribution)
     n = len(state)
     _check_array(params, who, "build()", f"({n}, k): a row for each contact", (n, None))
-    _check_signature(kernel, LAW, "LAW", who)
+    check_compiled(kernel, who, LAW, "LAW")
     state = np.ascontiguousarray(state, dtype=float)
+    _probe_alone(kernel, params, state, who)  # first: what lies behind all rows may be anything
     for gap in (*_GAPS, *(-float(depth) for depth in depths)):
         for rate in _RATES:
             where = f"at gap {gap:g} m, rate {rate:g} m/s"
@@ -54,7 +56,6 @@ def probe_law(
                 raise PluginError(f"{who}: force {worst:.4g} {where}, outside contact; the contract says zero for gap >= 0")
             if (force < 0.0).any():
                 raise PluginError(f"{who}: force {force.min():.4g} {where}; the contract says never negative")
-    _probe_alone(kernel, params, state, who)
 
 
 def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: str | None = None) -> None:
@@ -73,7 +74,7 @@ def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: st
 
     who = _who("excitation", "excitation", excitation, distribution)
     _check_array(params, who, "parameters()", "(k,)", (None,))
-    _check_signature(kernel, FORCE, "FORCE", who)
+    check_compiled(kernel, who, FORCE, "FORCE")
     period = excitation.period_s or 1.0 / excitation.frequency_hz
     for part in (0.0, 0.13, 0.5, 3.7):
         out = np.full(5, _MARK)
@@ -139,17 +140,6 @@ def _check_array(values: Any, who: str, source: str, wanted: str, shape: tuple[i
         raise PluginError(f"{who}: {source} returned {found}; the contract says a C-contiguous float64 array {wanted}")
     if not np.isfinite(values).all():
         raise PluginError(f"{who}: {source} returned values that are not finite")
-
-
-def _check_signature(kernel: Any, signature: Any, word: str, who: str) -> None:
-    compiled = getattr(kernel, "overloads", None)
-    if compiled is None:
-        raise PluginError(
-            f"{who}: kernel() returned {kernel!r}, which is not compiled; decorate the function with @jit({word})"
-        )
-    if tuple(signature.args) not in compiled:
-        have = ", ".join(str(s) for s in compiled) or "no signature"
-        raise PluginError(f"{who}: kernel() is compiled for {have}, not for {word}; decorate the function with @jit({word})")
 
 
 def _who(words: str, kind: str, plugin: Any, distribution: str | None) -> str:

@@ -18,14 +18,16 @@ from raceway.requires import check_requires
 from raceway.scene import TABLES, Scene
 from raceway.structure import structure
 
-#: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the default kind (None: the table may be absent).
+#: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
 PLUGIN_TABLES = {
     "excitation": ("excitation", None),
-    "mesh": ("mesher", None),
+    "mesh": ("mesher", "structured"),
     "contact": ("contact_law", "hertz"),
     "integrator": ("integrator", "newmark"),
     "identifier": ("identifier", "fft_1x"),
 }
+#: Those of them that may be absent, which means something.
+OPTIONAL_TABLES = ("excitation", "mesh")
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
@@ -153,7 +155,7 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
         parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
     for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
-        if name in plain or default is not None:
+        if name in plain or name not in OPTIONAL_TABLES:
             parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)
     if mistakes:
         raise SceneError(mistakes)

@@ -226,8 +226,38 @@ def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
         ("time step", step, f"{plan['predicted_steps']} steps"),
         ("wall time", number(plan["predicted_wall_s"], "s", 2), "with compiled kernels in the cache"),
     ]
+    if plan["mesh"] is not None:
+        rows += _mesh_rows(plan["mesh"])
     parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]), sections(rows)]
     return Group(Text(title, style="bold"), *parts)
+
+
+def _mesh_rows(mesh: Mapping[str, Any]) -> list[Row]:
+    """Predicted cells and memory of all bodies and of each; balls in one line."""
+    rows: list[Row] = [
+        ("Mesh, predicted", "", ""),
+        ("hexahedra", str(mesh["cells"]), f"{mesh['bytes'] / 2**20:.4g} MiB at the peak while they are made"),
+    ]
+    for name, bodies in grouped({body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}):
+        cells, size = bodies
+        rows.append((name, str(cells), f"{size / 2**20:.3g} MiB" + (" each" if name.startswith("balls (") else "")))
+    return rows
+
+
+def grouped(bodies: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """Bodies with what is said of them; balls of which the same is said share a line, ``balls (12)``."""
+    rows: list[tuple[str, Any]] = []
+    balls: list[tuple[Any, int]] = []
+    for name, said in bodies.items():
+        if not name.startswith("ball"):
+            rows.append((name, said))
+            continue
+        at = next((i for i, (other, _) in enumerate(balls) if other == said), None)
+        if at is None:
+            balls.append((said, 1))
+        else:
+            balls[at] = said, balls[at][1] + 1
+    return rows + [(f"balls ({count})", said) for said, count in balls]
 
 
 def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType:

@@ -170,6 +170,19 @@ def test_the_least_recently_used_go_first(folder, monkeypatch):
     assert sum(e.bytes for e in array_cache.entries()) <= 2500
 
 
+def test_what_a_killed_process_left_goes_when_it_is_old(folder):
+    import os
+
+    get(Maker())
+    old, new = folder / ".key.1.abc", folder / ".key.2.def"
+    for path in (old, new):
+        path.write_bytes(b"half")
+    os.utime(old, (1.0, 1.0))
+    get(Maker(), kind="other")
+    assert not old.exists() and new.exists()
+    assert len(array_cache.entries()) == 2
+
+
 def test_the_command_shows_and_clears(folder):
     assert json.loads(invoke("cache", "--json").stdout)["arrays"] == []
     assert "Compliances of bodies" in invoke("cache").stdout

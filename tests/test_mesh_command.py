@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 
-from tests.command_line import MINIMAL, invoke
+import pytest
+
+from tests.command_line import EXAMPLES, MINIMAL, invoke, raceway
 
 COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "--set", "mesh.nodes_per_semi_axis=1")
 
@@ -41,3 +44,76 @@ def test_sizes_that_cannot_be_meshed_are_refused(tmp_path):
     found = invoke("mesh", MINIMAL, *COARSE, "--set", "mesh.element_size=1.0", "--out", tmp_path)
     assert found.exit_code == 2
     assert "element_size" in found.output
+
+
+def test_a_picture_without_a_display_is_silent(tmp_path):
+    words = ("mesh", MINIMAL, *COARSE, "--out", tmp_path, "--picture")
+    found = raceway(*words, DISPLAY="", PYTHONWARNINGS="always")
+    assert found.returncode == 0
+    assert found.stderr == ""
+
+
+def test_tables_fit_80_columns_and_balls_share_a_line(tmp_path):
+    found = raceway("mesh", MINIMAL, *COARSE, "--out", tmp_path, COLUMNS=80)
+    assert "…" not in found.stdout
+    assert "balls (12)" in found.stdout and "ball_07 " not in found.stdout
+    patch = next(line for line in found.stdout.splitlines() if "contact patch, long" in line)
+    assert re.search(r"[\d.]+ mm +to [\d.]+ mm, element edges", patch)
+
+
+def test_the_axial_load_sets_the_patch(tmp_path):
+    widths = []
+    for axial in (50.0, 5000.0):
+        found = invoke("mesh", MINIMAL, *COARSE, "--set", f"load.axial={axial}", "--out", tmp_path, "--json")
+        widths.append(json.loads(found.stdout)["patch_size_m"]["short"]["min"])
+    # Semi-axes go with the cube root of a ball's load; 100 times the axial load, on a contact angle that grows, is 3 to 4.7.
+    assert 3.0 < widths[1] / widths[0] < 4.7
+
+
+MESHER = '''
+import attrs
+import numpy as np
+from types import SimpleNamespace
+from raceway import hookimpl
+
+@attrs.frozen
+class Wrong:
+    """A mesher of a test."""
+
+    name = "wrong"
+
+    def mesh(self, bearing):
+        corner = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        points = 0.01 * np.array(corner, dtype=float)
+        return {answer}
+
+@hookimpl
+def raceway_meshers():
+    return [Wrong]
+'''
+FLIPPED = '{"ball_0": SimpleNamespace(points=points, cells=np.array([[4, 5, 6, 7, 0, 1, 2, 3]]))}'
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        ("None", "mesher 'wrong': mesh() returned NoneType; it must be meshes by name"),
+        (FLIPPED, "`ball_0`: 1 of 1 cells are inverted or degenerate"),
+        ('{"ball_0": points}', "mesher 'wrong': body 'ball_0' is no mesh"),
+        ('{"inner_ring": SimpleNamespace(points=1e3 * points, cells=np.arange(8)[None])}', "must return metres"),
+    ],
+)
+def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
+    (tmp_path / "wrong.py").write_text(MESHER.replace("{answer}", answer))
+    found = invoke("mesh", MINIMAL, "--plugin", tmp_path / "wrong.py", "--set", "mesh.kind=wrong", "--out", tmp_path / "out")
+    assert found.exit_code == 2
+    assert words in " ".join(found.output.split())
+
+
+def test_the_documents_mesher_runs(tmp_path):
+    text = (EXAMPLES.parent / "docs" / "plugins.md").read_text(encoding="utf-8")
+    (tmp_path / "one_cell.py").write_text(text.split("# one_cell.py\n")[1].split("```")[0])
+    words = ("mesh", MINIMAL, "--plugin", tmp_path / "one_cell.py", "--set", "mesh.kind=one_cell")
+    found = invoke(*words, "--out", tmp_path / "out", "--json")
+    assert found.exit_code == 0
+    assert json.loads(found.stdout)["elements"] == 1

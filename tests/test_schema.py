@@ -63,7 +63,7 @@ WRONG = {
     "no kind": {"excitation": {"speed_rpm": 3.0}},
     "steps below the rule": {"integrator": {"steps_per_turn": 3}},
     "mesher that is not installed": {"mesh": {"kind": "structred"}},
-    "mesh without a kind": {"mesh": {"element_size": 1e-3}},
+    "mesh without a kind has the structured mesher's keys": {"mesh": {"inner_ring": "ring.inp"}},
     "element size of nothing": {"mesh": {"kind": "structured", "element_size": 0.0}},
 }
 

@@ -22,13 +22,25 @@ def plugin_kernel(plugin: Any, kind: str, signature: Any, name: str) -> Any:
         ``kernel()`` raises, returns something that is not compiled, or is compiled for other arguments.
     """
     label = f"{kind} '{plugin.name}' ({type(plugin).__module__})"
-    remedy = f"decorate it with @jit({name}) of raceway.core.jit and raceway.core.signatures"
     try:
         kernel = plugin.kernel()
     except RacewayError as why:
         raise PluginError(f"{label}: {why}") from why
     except Exception as why:  # a third party's own code
         raise PluginError(f"{label}: kernel() raises {type(why).__name__}: {why}") from why
+    check_compiled(kernel, label, signature, name)
+    return kernel
+
+
+def check_compiled(kernel: Any, label: str, signature: Any, name: str) -> None:
+    """Refuse what ``kernel()`` returned unless it is compiled for a signature; parameters as ``plugin_kernel``.
+
+    Raises
+    ------
+    PluginError
+        It is not compiled, or for other arguments.
+    """
+    remedy = f"decorate it with @jit({name}) of raceway.core.jit and raceway.core.signatures"
     if not hasattr(kernel, "nopython_signatures"):
         raise PluginError(f"{label}: kernel() returns {type(kernel).__name__}, which is not compiled: {remedy}")
     if not any(
@@ -36,4 +48,3 @@ def plugin_kernel(plugin: Any, kind: str, signature: Any, name: str) -> Any:
     ):
         found = " or ".join(signature_words(has) for has in kernel.nopython_signatures) or "no signature"
         raise PluginError(f"{label}: its kernel has {found}, the rule is {signature_words(signature)}: {remedy}")
-    return kernel

@@ -64,7 +64,9 @@ def test_the_built_in_combinations_run():
     """Nothing that could run hides among the refusals."""
     periodic = ("bidirectional", "unidirectional", "measured")
     for cell in combinations():
-        plain = cell.bodies in ("rigid", "condensed") and cell.discretisation == "resultant" and cell.law in ("hertz", "penalty")
+        plain = (
+            cell.bodies in ("rigid", "condensed") and cell.discretisation == "resultant" and cell.law in ("hertz", "penalty")
+        )
         known = cell.integrator in ("newmark", "generalized_alpha", "central_difference", "quasi_static")
         fits = (cell.excitation in periodic and cell.identifier in ("fft_1x", "sine_fit", "order_tracking", "tangent")) or (
             cell.excitation == "run_up" and cell.identifier == "order_tracking"

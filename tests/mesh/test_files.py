@@ -55,8 +55,9 @@ def test_unreadable_files_are_named(form, content, tmp_path):
     path = path_of(tmp_path, form)
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(MeshError, match=path.name):
+    with pytest.raises(MeshError, match=path.name) as told:
         form.read(path)
+    assert not str(told.value).endswith(": ")
 
 
 def test_formats_without_meshio_name_the_extra(tmp_path, monkeypatch):
@@ -76,6 +77,15 @@ def test_an_abaqus_file_written_by_hand(tmp_path):
     (tmp_path / "hand.inp").write_text(text.replace("ALL, S2", "Alll, S2"))
     with pytest.raises(MeshError, match="surface 'Race' has the line 'Alll, S2'.*Known element sets: all"):
         Abaqus().read(tmp_path / "hand.inp")
+
+
+def test_element_sets_that_are_not_taken_over_are_told(tmp_path):
+    mesh = block()
+    Abaqus().write(tmp_path / "body.inp", mesh)
+    with (tmp_path / "body.inp").open("a") as file:
+        file.write("*ELSET, ELSET=Fixed_end\n1, 2, 3\n")
+    with pytest.warns(UserWarning, match=r"body.inp': element sets fixed_end are not taken over"):
+        Abaqus().read(tmp_path / "body.inp")
 
 
 @pytest.fixture
@@ -125,9 +135,9 @@ def test_files_of_no_use(tmp_path, path, words):
 
 
 def test_scenes_name_files_beside_them(given, tmp_path):
-    text = '[bearing]\npreset = "B7206C"\n[mesh]\nkind = "file"\ninner_ring = "body.inp"\n[mesh.sets.inner_ring]\nraceway = "outside"\n'
+    text = '[bearing]\npreset = "B7206C"\n[mesh]\nkind = "file"\nscale = 1e-2\ninner_ring = "body.inp"\n[mesh.sets.inner_ring]\nraceway = "outside"\n'
     (tmp_path / "scene.toml").write_text(text)
-    assert mesh_scene(load_scene(tmp_path / "scene.toml"))["inner_ring"].volume() == pytest.approx(6.0)
+    assert mesh_scene(load_scene(tmp_path / "scene.toml"))["inner_ring"].volume() == pytest.approx(6e-6)
     for mesh, words in (
         ({"kind": "file"}, "names no body"),
         ({"kind": "file", "ball": "b.inp", "sets": {"bal": {}}}, r"did you mean 'ball'"),

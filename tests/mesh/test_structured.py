@@ -144,10 +144,14 @@ def test_a_scene_with_a_mesh_tells_all_its_keys():
 @pytest.mark.parametrize(
     ("mesher", "change", "words"),
     [
-        ({"element_size": 5e-3}, {}, r"0.005 m is larger than the wall of the inner ring under its groove, 0.0032\d* m"),
-        ({"element_size": 1e-5}, {}, r"`mesh.element_size` = 1e-05 would give about .*e\+10 elements and take .* GiB"),
+        (
+            {"element_size": 5e-3},
+            {},
+            r"`mesh.element_size` = 0.005: is larger than the wall of the inner ring under its groove, 0.0032\d* m",
+        ),
+        ({"element_size": 1e-5}, {}, r"`mesh.element_size` = 1e-05: would give about .*e\+10 elements and take .* GiB"),
         ({"element_size": 2e-4, "azimuth_cells": 100_000}, {}, "elements and take .* GiB, above 4 GiB"),
-        ({}, {"bore": None}, "`bearing.bore` is missing"),
+        ({}, {"bore": None}, "`bearing.bore`: is missing"),
         ({}, {"width": 6e-3}, "width of 6 mm does not hold the groove"),
         ({}, {"shoulder_height": 6e-3}, "shoulder"),
         ({}, {"shoulder_height": 1e-4}, "contact angle of 15 deg lies outside the groove"),

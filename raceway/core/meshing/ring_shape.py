@@ -25,7 +25,7 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
         return _given(bearing, key, inner)
     for key in ("bore", "outer_diameter", "width"):
         if getattr(bearing, key, None) is None:
-            raise MeshError(f"`bearing.{key}` is missing: rings of hexahedra need bore, outer_diameter and width")
+            raise MeshError.at(f"bearing.{key}", None, "is missing: rings of hexahedra need bore, outer_diameter and width")
     middle, depth = 0.5 * bearing.pitch_diameter, bearing.shoulder_height or 0.2 * bearing.ball_diameter
     return RingShape(
         inner=inner,

@@ -12,6 +12,6 @@ ball           the floating ball: one dimensionless compliance for all balls
 
 References
 ----------
-R. J. Astley, W. Eversman, cyclic symmetry in finite elements; D. L. Thomas, Dynamics of rotationally periodic structures,
-Int. J. Numer. Meth. Engng 14 (1979) 81-102: block-circulant matrices split into one system for each harmonic.
+D. L. Thomas, Dynamics of rotationally periodic structures, Int. J. Numer. Meth. Engng 14 (1979) 81-102: block-circulant
+matrices split into one system for each harmonic.
 """

@@ -40,7 +40,8 @@ def load(path: Any, reader: Callable[[Any], Any]) -> Any:
     try:
         return reader(path)
     except Exception as why:  # meshio raises whatever its parsers stumble over
-        raise MeshError(f"'{path}' cannot be read: {type(why).__name__}: {why}") from why
+        told = f"{type(why).__name__}: {why}" if str(why) else "it is damaged, or not what its ending says"
+        raise MeshError(f"'{path}' cannot be read: {told}") from why
 
 
 def store(path: Any, writer: Callable[[Any, Any], Any], content: Any) -> None:

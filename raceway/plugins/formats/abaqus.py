@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, ClassVar
@@ -27,9 +28,16 @@ class Abaqus:
         content = exchange.load(path, exchange.meshio().abaqus.read)
         cells, first = exchange.hexahedra(path, content)
         members = {name.lower(): _members(blocks, first) for name, blocks in content.cell_sets.items()}
-        facets = {
-            name: _facets(path, name, lines, members) for name, lines in _surfaces(Path(path).read_text(encoding="utf-8"))
-        }
+        surfaces = list(_surfaces(Path(path).read_text(encoding="utf-8")))
+        facets = {name: _facets(path, name, lines, members) for name, lines in surfaces}
+        used = {line[0].lower() for _, lines in surfaces for line in lines}
+        left = sorted(name for name, found in members.items() if name not in used and len(found) < len(cells))
+        if left:
+            warnings.warn(
+                f"'{path}': element sets {', '.join(left)} are not taken over: what is used are sets of nodes (*NSET) and of "
+                "faces (*SURFACE)",
+                stacklevel=2,
+            )
         return exchange.used_only(path, content.points, cells, content.point_sets, facets)
 
     def write(self, path: Any, what: HexMesh) -> None:

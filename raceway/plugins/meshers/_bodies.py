@@ -8,11 +8,28 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.errors import MeshError
+from raceway.options import option, positive
 
 if TYPE_CHECKING:
     from raceway.core.mesh import HexMesh
 
 BODIES = ("inner_ring", "outer_ring", "ball")
+
+
+def ring_path(which: str) -> Any:
+    """The option that names the file of a ring."""
+    return option(None, help=f"file of the {which} ring, in the bearing's coordinates", path=True)
+
+
+def ball_path() -> Any:
+    """The option that names the file of one ball, from which all are made."""
+    words = "file of one ball about its centre: x rolling, y across, z towards the outer contact"
+    return option(None, help=words, path=True)
+
+
+def file_unit(words: str) -> Any:
+    """The option that says what one unit of the files is."""
+    return option(1.0, unit="m", help=f"one unit of {words}; 1e-3 for millimetres", rule=positive())
 
 
 def bodies(mesher: Any, bearing: Any, make: Callable[[str, str], HexMesh]) -> dict[str, HexMesh]:

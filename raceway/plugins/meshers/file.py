@@ -9,8 +9,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.errors import MeshError
-from raceway.options import nearest, option, positive
-from raceway.plugins.meshers._bodies import BODIES, bodies, refuse_no_body, with_node_sets
+from raceway.options import nearest, option
+from raceway.plugins.meshers._bodies import (
+    BODIES,
+    ball_path,
+    bodies,
+    file_unit,
+    refuse_no_body,
+    ring_path,
+    with_node_sets,
+)
 
 if TYPE_CHECKING:
     from raceway.core.mesh import HexMesh
@@ -22,12 +30,10 @@ class File:
 
     name: ClassVar[str] = "file"
 
-    inner_ring: str | None = option(None, help="file of the inner ring, in the bearing's coordinates", path=True)
-    outer_ring: str | None = option(None, help="file of the outer ring, in the bearing's coordinates", path=True)
-    ball: str | None = option(
-        None, help="file of one ball about its centre: x rolling, y across, z towards the outer contact", path=True
-    )
-    scale: float = option(1.0, unit="m", help="one unit of the files; 1e-3 for files in millimetres", rule=positive())
+    inner_ring: str | None = ring_path("inner")
+    outer_ring: str | None = ring_path("outer")
+    ball: str | None = ball_path()
+    scale: float = file_unit("the files")
     sets: dict[str, dict[str, str]] | None = option(
         None, help="for each body: the program's name of a set = its name in the file"
     )

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import MeshError
 from raceway.options import one_of, option, positive
-from raceway.plugins.meshers._bodies import bodies, refuse_no_body, with_node_sets
+from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
 
 if TYPE_CHECKING:
     from raceway.core.mesh import HexMesh
+    from raceway.core.meshing.size import Prediction
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 _SUFFIXES = (".step", ".stp", ".brep", ".geo")
+#: Hexahedra of tetrahedra of twice the element's size, split in four, for each cube of that size (2.4 to 3 measured).
+_SPLIT = 3.0
+#: What Gmsh and the taking over of its mesh need beside the meshes: as such [bytes], and a cell (1450 to 1700 measured).
+_BESIDE_BYTES, _BYTES_BESIDE = 30 * 2**20, 1800
+Found = TypeVar("Found")
 
 
 @attrs.frozen
@@ -26,20 +33,16 @@ class Gmsh:
 
     name: ClassVar[str] = "gmsh"
 
-    inner_ring: str | None = option(None, help="solid of the inner ring, in the bearing's coordinates", path=True)
-    outer_ring: str | None = option(None, help="solid of the outer ring, in the bearing's coordinates", path=True)
-    ball: str | None = option(
-        None, help="solid of one ball about its centre: x rolling, y across, z towards the outer contact", path=True
-    )
+    inner_ring: str | None = ring_path("inner")
+    outer_ring: str | None = ring_path("outer")
+    ball: str | None = ball_path()
     element_size: float = option(1e-3, unit="m", help="aimed at", rule=positive())
     method: str = option(
         "transfinite",
         help="'transfinite': six-sided volumes; 'subdivision': tetrahedra, each split in 4; 'as_written': the .geo's own",
         rule=one_of("transfinite", "subdivision", "as_written"),
     )
-    scale: float = option(
-        1.0, unit="m", help="one unit of .geo and .brep files; STEP files name their own unit", rule=positive()
-    )
+    scale: float = file_unit(".geo and .brep files (STEP files name their own)")
 
     def __attrs_post_init__(self) -> None:
         refuse_no_body(self)
@@ -58,11 +61,48 @@ class Gmsh:
         MeshError
             Gmsh is absent, files cannot be read or meshed with hexahedra, elements are too large or too small.
         """
+        self.predict(bearing)  # refuses what cannot work
         return bodies(self, bearing, self._body)
+
+    def predict(self, bearing: Any) -> Prediction:
+        """Size of the meshes from the solids' volumes and, but for 'subdivision', the divisions of their edges.
+
+        Raises
+        ------
+        MeshError
+            Gmsh is absent, files cannot be read, elements are too large or too small.
+
+        Notes
+        -----
+        Six-sided volumes of transfinite edges are counted exactly: of the numbers of cells along twelve edges, each of the
+        three directions' occurs four times.  Solids of Gmsh's built-in geometry kernel tell no volume: their box bounds it.
+        """
+        from raceway.core.meshing.place import ball_names
+        from raceway.core.meshing.size import Prediction, refuse_memory
+
+        found: dict[str, float] = {}
+        for body in BODIES:
+            path = getattr(self, body)
+            if path is None:
+                continue
+            cells = self._opened(path, self._cells)
+            found.update(dict.fromkeys(ball_names(bearing) if body == "ball" else [body], cells))
+            # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
+            prediction = Prediction.of(found, _BESIDE_BYTES + _BYTES_BESIDE * max(found.values()))
+            if self.method == "as_written":
+                refuse_memory(prediction, "mesh.method", self.method, f"'{Path(path).name}' has to ask for fewer elements")
+            refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
+        return prediction
 
     def _body(self, body: str, path: str) -> HexMesh:
         from raceway.core.mesh_quality import refuse_bad_cells
 
+        mesh = self._opened(path, self._meshed)
+        refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
+        return with_node_sets(mesh.renumbered())
+
+    def _opened(self, path: str, work: Callable[[Any, str, float], Found]) -> Found:
+        """What ``work(gmsh, path, scale)`` finds with the file open in Gmsh; all its failures are ``MeshError``."""
         suffix = Path(path).suffix.lower()
         if suffix not in _SUFFIXES:
             raise MeshError(f"'{path}': mesh.kind = 'gmsh' reads {', '.join(_SUFFIXES)}, not '{suffix}'")
@@ -78,36 +118,24 @@ class Gmsh:
             raise MeshError(f"mesh.kind = 'gmsh' needs the package gmsh: pip install 'raceway[gmsh]' ({why})") from why
         gmsh.initialize([], readConfigFiles=False, interruptible=False)
         try:
-            mesh = self._meshed(gmsh, path, 1.0 if suffix in (".step", ".stp") else self.scale)
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.option.setString("Geometry.OCCTargetUnit", "M")
+            gmsh.open(path)
+            if not gmsh.model.getEntities(3):
+                raise MeshError(f"'{path}' holds no solid")
+            return work(gmsh, path, 1.0 if suffix in (".step", ".stp") else self.scale)
         except MeshError:
             raise
         except Exception as why:  # gmsh raises plain exceptions for all it fails at
             raise MeshError(f"'{path}' cannot be meshed: {why}") from why
         finally:
             gmsh.finalize()
-        refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
-        return with_node_sets(mesh.renumbered())
 
     def _meshed(self, gmsh: Any, path: str, scale: float) -> HexMesh:
         from raceway.core.mesh import HexMesh
         from raceway.plugins.formats._exchange import facets_of_quads
 
-        number = gmsh.option.setNumber
-        number("General.Terminal", 0)
-        gmsh.option.setString("Geometry.OCCTargetUnit", "M")
-        gmsh.open(path)
-        if not gmsh.model.getEntities(3):
-            raise MeshError(f"'{path}' holds no solid")
-        size = self.element_size / scale
-        self._refuse_sizes(gmsh, path, scale)
-        for word, value in (("MeshSizeMax", size), ("RandomSeed", 1), ("ElementOrder", 1), ("Optimize", 1)):
-            number(f"Mesh.{word}", value)
-        if self.method == "transfinite":
-            number("Mesh.MeshSizeMin", size)
-            gmsh.model.mesh.setTransfiniteAutomatic()
-        elif self.method == "subdivision":
-            number("Mesh.MeshSizeMax", 2.0 * size)
-            number("Mesh.SubdivisionAlgorithm", 2)
+        self._set_sizes(gmsh, scale)
         gmsh.model.mesh.generate(3)
         cells = self._hexahedra(gmsh, path)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
@@ -122,19 +150,34 @@ class Gmsh:
         own = place[cells]
         return HexMesh(points, own, {}, {name: facets_of_quads(path, own, q) for name, q in quads.items() if len(q)})
 
-    def _refuse_sizes(self, gmsh: Any, path: str, scale: float) -> None:
+    def _set_sizes(self, gmsh: Any, scale: float) -> None:
+        number, size = gmsh.option.setNumber, self.element_size / scale
+        for word, value in (("MeshSizeMax", size), ("RandomSeed", 1), ("ElementOrder", 1), ("Optimize", 1)):
+            number(f"Mesh.{word}", value)
+        if self.method == "transfinite":
+            number("Mesh.MeshSizeMin", size)
+            gmsh.model.mesh.setTransfiniteAutomatic()
+        elif self.method == "subdivision":
+            number("Mesh.MeshSizeMax", 2.0 * size)
+            number("Mesh.SubdivisionAlgorithm", 2)
+
+    def _cells(self, gmsh: Any, path: str, scale: float) -> float:
+        """Predicted number of hexahedra of the open file."""
         from raceway.core.meshing.size import Prediction, refuse_coarse, refuse_memory
 
-        box = scale * np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)
-        if self.method == "as_written":
-            return
-        refuse_coarse(self.element_size, float(np.ptp(box, axis=0).min()), f"smallest extent of '{Path(path).name}'")
-        try:
-            volume = sum(gmsh.model.occ.getMass(3, tag) for _, tag in gmsh.model.getEntities(3)) * scale**3
-        except Exception:  # a built-in geometry kernel knows no volumes: its box bounds them
-            volume = float(np.ptp(box, axis=0).prod())
-        predicted = Prediction.of(volume / self.element_size**3)
-        refuse_memory(predicted, "mesh.element_size", self.element_size, "take larger elements")
+        volumes = {tag: _volume(gmsh, tag) * scale**3 for _, tag in gmsh.model.getEntities(3)}
+        if self.method != "as_written":
+            box = scale * np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)
+            refuse_coarse(self.element_size, float(np.ptp(box, axis=0).min()), f"smallest extent of '{Path(path).name}'")
+            cubes = sum(volumes.values()) / self.element_size**3
+            if self.method == "subdivision":
+                return _SPLIT * cubes
+            # Before the edges are divided: with tiny elements not even these would fit.
+            refuse_memory(Prediction.of({"": cubes}), "mesh.element_size", self.element_size, "take larger elements")
+        self._set_sizes(gmsh, scale)
+        gmsh.model.mesh.generate(1)
+        split = gmsh.option.getNumber("Mesh.SubdivisionAlgorithm") == 2.0
+        return float(sum(_cells_between_edges(gmsh, tag, volume / scale**3, split) for tag, volume in volumes.items()))
 
     def _hexahedra(self, gmsh: Any, path: str) -> np.ndarray:
         """(m, 8) node tags of the hexahedra; ``MeshError`` where there is any other solid."""
@@ -152,6 +195,36 @@ class Gmsh:
                 f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {told} came out; {remedy}"
             )
         return np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
+
+
+def _volume(gmsh: Any, tag: int) -> float:
+    """Volume of a solid in the file's units; of its box where the geometry kernel is Gmsh's own."""
+    try:
+        return float(gmsh.model.occ.getMass(3, tag))
+    except Exception:  # gmsh's only class of exceptions: the solid is not one of OpenCASCADE
+        return float(np.ptp(np.array(gmsh.model.getBoundingBox(3, tag)).reshape(2, 3), axis=0).prod())
+
+
+def _cells_between_edges(gmsh: Any, tag: int, volume: float, split: bool) -> float:
+    """Hexahedra of a volume whose edges are divided already; ``split``: of tetrahedra or hexahedra that are subdivided."""
+    curves = {abs(c) for _, s in gmsh.model.getBoundary([(3, tag)]) for _, c in gmsh.model.getBoundary([(2, s)])}
+    counts, lengths = [], 0.0
+    for curve in curves:
+        tags, nodes = gmsh.model.mesh.getElementsByType(1, curve)
+        at = {int(n): x for n, x in zip(*_nodes(gmsh, curve), strict=True)}
+        ends = [at[int(n)] for n in nodes]
+        counts.append(len(tags))
+        lengths += float(np.linalg.norm(np.subtract(ends[::2], ends[1::2]), axis=1).sum()) if len(tags) else 0.0
+    if len(counts) == 12 and min(counts) > 0:
+        return float(np.prod(np.array(counts, dtype=float)) ** 0.25) * (8.0 if split else 1.0)
+    size = lengths / max(sum(counts), 1)
+    return (8.0 * _SPLIT if split else 1.0) * volume / size**3 if size else 0.0
+
+
+def _nodes(gmsh: Any, curve: int) -> tuple[Any, np.ndarray]:
+    """Tags and places of the nodes of a curve, its ends too."""
+    tags, places, _ = gmsh.model.mesh.getNodes(1, curve, includeBoundary=True)
+    return tags, places.reshape(-1, 3)
 
 
 def _surfaces(gmsh: Any) -> dict[str, list[int]]:

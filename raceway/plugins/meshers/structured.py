@@ -57,12 +57,11 @@ class Structured:
         from raceway.core.meshing.place import azimuth, ball_names, placed
         from raceway.core.meshing.sphere import ball_mesh
 
-        self._refuse(bearing)
+        self.predict(bearing)  # refuses what cannot work
         bodies: dict[str, HexMesh] = {}
         u, v, w, layers, patch = self._ball_lines(bearing)
         ball = ball_mesh(0.5 * bearing.ball_diameter, u, v, w, layers, patch)
-        for row, (side, place) in enumerate(bearing.rows):
-            suffix = f"_row{row + 1}" if len(bearing.rows) > 1 else ""
+        for suffix, (side, place) in zip(self._suffixes(bearing), bearing.rows, strict=True):
             for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
                 bodies[word + suffix] = self._ring(bearing, inner, side, place)
             for index, word in enumerate(ball_names(bearing)):
@@ -71,25 +70,38 @@ class Structured:
         return bodies
 
     def predict(self, bearing: Any) -> Prediction:
-        """Number of cells and bytes, exactly as ``mesh`` would make them; nothing is meshed.
+        """Number of cells of each body and bytes, exactly as ``mesh`` would make them; nothing is meshed.
 
         Raises
         ------
         MeshError
-            As ``mesh``, but for the memory.
+            As ``mesh``.
         """
+        from raceway.core.meshing.place import ball_names
         from raceway.core.meshing.ring_shape import ring_shape
-        from raceway.core.meshing.size import Prediction
+        from raceway.core.meshing.size import Prediction, refuse_memory
         from raceway.core.meshing.sphere import ball_cells
 
+        self._refuse(bearing)
+        bodies: dict[str, float] = {}
         u, v, w, layers, _ = self._ball_lines(bearing)
-        balls = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1) * bearing.ball_count
-        rings = 0
-        for inner in (True, False):
-            shape = ring_shape(bearing, inner)
-            left, arc, right, depth, _ = self._ring_lines(bearing, shape)
-            rings += (len(left) + len(arc) + len(right) - 3) * (len(depth) - 1) * self._divisions(bearing, shape)
-        return Prediction.of((balls + rings) * len(bearing.rows))
+        ball = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1)
+        for suffix in self._suffixes(bearing):
+            for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
+                shape = ring_shape(bearing, inner)
+                left, arc, right, depth, _ = self._ring_lines(bearing, shape)
+                profile = (len(left) + len(arc) + len(right) - 3) * (len(depth) - 1)
+                bodies[word + suffix] = profile * self._divisions(bearing, shape)
+            bodies.update({name + suffix: ball for name in ball_names(bearing)})
+        found = Prediction.of(bodies)
+        remedy = "take larger elements, fewer nodes_per_semi_axis or azimuth_cells, or a larger growth"
+        refuse_memory(found, "mesh.element_size", self.element_size, remedy)
+        return found
+
+    def _suffixes(self, bearing: Any) -> list[str]:
+        """What follows the names of the bodies of each row."""
+        count = len(bearing.rows)
+        return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
 
     def _refuse(self, bearing: Any) -> None:
         from raceway.core.meshing.ring_shape import ring_shape
@@ -102,10 +114,8 @@ class Structured:
             volume += shape.volume
         refuse_coarse(self.element_size, 0.5 * bearing.ball_diameter, "radius of a ball")
         # From the volume first: with tiny elements even the lines of the mesh would not fit.
-        lowest = Prediction.of(volume * len(bearing.rows) / self.element_size**3)
+        lowest = Prediction.of({"all": volume * len(bearing.rows) / self.element_size**3})
         refuse_memory(lowest, "mesh.element_size", self.element_size, "take larger elements")
-        remedy = "take larger elements, fewer nodes_per_semi_axis or azimuth_cells, or a larger growth"
-        refuse_memory(self.predict(bearing), "mesh.element_size", self.element_size, remedy)
 
     def _semi_axes(self, bearing: Any, inner: bool) -> tuple[float, float]:
         """Semi-axes [m] of a contact ellipse, along the groove and along the rolling direction."""

@@ -1,0 +1,72 @@
+"""What a scene's mesh will be: its size predicted, and what is wrong with it.  Nothing is meshed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from raceway.errors import MeshError, Mistake, PluginError
+from raceway.meshing import scene_mesher
+from raceway.scene import Scene
+
+if TYPE_CHECKING:
+    from raceway.core.meshing.size import Prediction
+
+
+def mesh_faults(scene: Scene) -> list[Mistake]:
+    """Why the table [mesh] cannot be used: bodies without a mesh, sizes that its mesher refuses or the memory does not hold."""
+    if scene.mesh is None:
+        return []
+    if scene.bodies.kind == "rigid":
+        why = "rigid bodies have no mesh: leave the table out, or give [bodies] a kind that deforms"
+        return [Mistake("mesh", None, why)]
+    if scene.bodies.kind == "condensed":  # meshes of sections: a few thousand nodes
+        return []
+    try:
+        _prediction(scene)
+    except MeshError as error:
+        return [error.mistake or Mistake("mesh", None, str(error))]
+    return []
+
+
+def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
+    """Predicted size of the scene's mesh.
+
+    Returns
+    -------
+    dict or None
+        ``bodies[{name, cells, bytes}]`` (what each mesh keeps), ``cells`` of all, ``bytes`` at the peak while they are
+        made; None for bodies without a mesh of their own, without [mesh], and where the mesher cannot tell before it reads or meshes.
+
+    Raises
+    ------
+    MeshError
+        Sizes that cannot work.
+    PluginError
+        A mesher whose prediction is none.
+    """
+    found = _prediction(scene) if scene.mesh is not None and scene.bodies.kind == "elastic" else None
+    if found is None:
+        return None
+    from raceway.core.meshing.size import body_bytes
+
+    bodies = [{"name": name, "cells": cells, "bytes": body_bytes(cells)} for name, cells in found.bodies.items()]
+    return {"bodies": bodies, "cells": found.cells, "bytes": found.memory_bytes}
+
+
+def _prediction(scene: Scene) -> Prediction | None:
+    """What the mesher's ``predict`` says, if it has one; refused where it would not fit."""
+    mesher = scene_mesher(scene)
+    if not hasattr(mesher, "predict"):
+        return None
+    from raceway.core.meshing.size import Prediction, refuse_memory
+
+    found = mesher.predict(scene.bearing)
+    if isinstance(found, Mapping) and all(isinstance(cells, int) for cells in found.values()):
+        found = Prediction.of({str(name): cells for name, cells in found.items()})
+    if not isinstance(found, Prediction):
+        raise PluginError(
+            f"mesher '{mesher.name}': predict() returned {type(found).__name__}; it must be body -> number of cells"
+        )
+    refuse_memory(found, "mesh.kind", mesher.name, "take larger elements")
+    return found
