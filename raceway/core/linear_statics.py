@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.core.multigrid import VCycle
 from raceway.core.rigid import MOTIONS, free_motions, rigid_motions
 from raceway.errors import ConvergenceError, RacewayError
 
@@ -134,11 +135,12 @@ class Preconditioner:
                 presmoother=smoother,
                 postsmoother=smoother,
                 improve_candidates=None,
-                max_coarse=500,
+                max_coarse=50,
+                coarse_solver=None,
             )
         finally:
             np.random.set_state(state)
-        self._cycle = self.levels.aspreconditioner(cycle="V")
+        self._cycle = VCycle(self.levels.levels)
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """Approximate solution (m,) or (m, k) for a residual, both on the m free degrees of freedom."""

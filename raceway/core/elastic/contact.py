@@ -40,7 +40,8 @@ class Friction(Protocol):
 
     1. ``evaluate(moved, normal, pressure, d_gap)``: moved (n, 3), displacement of the points against the other surface
        [m]; traction (n, 3) on the points [Pa] and minus its derivative by ``moved`` (n, 3, 3) [Pa/m].
-    2. ``commit()``, ``rollback()``: as for the system;  ``dissipated``: density (n,) [J/m2] up to the last commit.
+    2. ``commit()``, ``rollback()``: as for the system;  ``dissipated``: density (n,) [J/m2] up to the last commit;
+       ``stored()``: density (n,) in what sticks.
     3. ``state()``: arrays by name that ``restore(arrays)`` takes back.
     """
 
@@ -49,6 +50,7 @@ class Friction(Protocol):
     def evaluate(
         self, moved: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]: ...
+    def stored(self) -> np.ndarray: ...
     def commit(self) -> None: ...
     def rollback(self) -> None: ...
     def state(self) -> dict[str, np.ndarray]: ...
@@ -102,6 +104,11 @@ class NodalContact:
         self._short = np.zeros(n)
         self._move: Any = None
         self.update(self.place)
+
+    @property
+    def projected(self) -> np.ndarray:
+        """(n, 3) where the points lay when their places were last looked up [m]."""
+        return self._projected
 
     @property
     def move(self) -> Any:
@@ -189,11 +196,12 @@ class NodalContact:
         return np.minimum.reduceat(self.gap, np.r_[0, np.cumsum(self.counts)[:-1]])
 
     def energy(self) -> float:
-        """What the law stores at the last gaps [J]; meant for laws without memory."""
+        """What the law and sticking points store at the last gaps [J]; meant for laws without memory."""
         n = len(self.gap)
         out = np.empty(n)
         stored_energy(self.law, self.params, self.memory, self._trial.copy(), self.gap, np.zeros((6, n)), out)
-        return float(self.area @ out)
+        stored = 0.0 if self.friction is None else float(self.area @ self.friction.stored())
+        return float(self.area @ out) + stored
 
     def friction_energy(self) -> float:
         """What friction has taken up to the last commit [J]."""

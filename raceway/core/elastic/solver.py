@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from raceway.core.blocks import BlockMatrix
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contact import NodalContact
 from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
-MOST_ITERATIONS, MANY_ITERATIONS = 600, 45
+MOST_ITERATIONS, MANY_ITERATIONS = 600, 60
+SOFT=1.0
 #: Ratio of the mass' share of the matrix at which the multigrid is made anew.
 _OTHER_MASS = 4.0
 
@@ -37,7 +39,7 @@ class LinearSolver:
         self.last_iterations, self.iterations, self.solves, self.setups = 0, 0, 0, 0
         a = assembly
         self._ride = a.carried[a.free]
-        self._inner: Any = None
+        self._matrix: BlockMatrix | None = None
 
     def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float) -> np.ndarray:
         """(size,) solution to a relative residual; zero for frames' coordinates that are held."""
@@ -70,7 +72,7 @@ class LinearSolver:
         a = self.assembly
         matrix = a.stiffness()
         if self.contact is not None:
-            matrix = matrix + self.contact.tangent(self.contact.stiffness)
+            matrix = matrix + self.contact.tangent(SOFT * self.contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
         if a.cage is not None:
             # The mean of a ball's motion is dense; a spring on every node in proportion to its mass holds it as well.
@@ -90,11 +92,9 @@ class LinearSolver:
     def _operator(self, c_k: float, c_c: float, c_m: float) -> Callable[[np.ndarray], np.ndarray]:
         a, contact = self.assembly, self.contact
         m = a.frame_size
-        if self._inner is None:
-            whole = a.stiffness()
-            self._inner = whole[a.free][:, a.free].tocsr()
-            self._cross = (whole[a.free] @ a.carried_tied()) if m else np.zeros((len(a.free), 0))
-            self._frame = a.carried_tied().T @ (whole @ a.carried_tied())
+        if self._matrix is None:
+            self._matrix = BlockMatrix(a.stiffness())
+        matrix = self._matrix
         blocks = None if contact is None else c_k * contact.stiffness + c_c * contact.rate_stiffness
         if blocks is not None:
             chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
@@ -103,25 +103,21 @@ class LinearSolver:
         frame = c_k * a.frame_stiffness + c_c * 0.5 * (a.frame_damping + a.frame_damping.T) + c_m * a.frame_mass
 
         def apply(y: np.ndarray) -> np.ndarray:
-            q, w = y[:m], y[m:]
-            out = np.empty_like(y)
-            out[m:] = c_k * (self._inner @ w) + c_m * a.free_mass * w
-            if m:
-                out[m:] += c_k * (self._cross @ q)
-                out[:m] = c_k * (self._cross.T @ w + self._frame @ q) + frame @ q
-            if blocks is not None or a.cage is not None or a.beds:
-                u = a.nodal(y)
-                force = np.zeros_like(u)
-                if blocks is not None and len(blocks):
-                    force = transposed @ np.einsum("iab,ib->ia", blocks, (move @ u).reshape(-1, 3)).ravel()
-                if a.cage is not None:
-                    force = force + c_k * a.cage.internal(u)
-                out += a.reduced(force)
-                for bed, ride in a.beds:
-                    if ride.any():
-                        pull = bed @ (ride @ q)
-                        out -= c_k * a.reduced(pull)
-                        out[:m] -= c_k * (ride.T @ (bed @ u) - ride.T @ pull)
+            q, u = y[:m], a.nodal(y)
+            force = matrix.times(u)
+            if a.cage is not None:
+                force += a.cage.internal(u)
+            pulled = np.zeros(m)
+            for bed, ride in a.beds:
+                pull = bed @ (ride @ q)
+                force -= pull
+                pulled += ride.T @ (pull - bed @ u)
+            force *= c_k
+            if blocks is not None and len(blocks):
+                force += transposed @ np.einsum("iab,ib->ia", blocks, (move @ u).reshape(-1, 3)).ravel()
+            out = a.reduced(force)
+            out[:m] += c_k * pulled + frame @ q
+            out[m:] += c_m * a.free_mass * y[m:]
             out[~a.unknown] = 0.0
             return out
 

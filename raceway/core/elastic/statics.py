@@ -12,7 +12,8 @@ from raceway.errors import ConvergenceError
 #: Iterations of one load step, halvings of one line search, halvings of the load.
 NEWTON_LIMIT, HALVINGS, SMALLEST_PART = 40, 8, 1.0 / 16.0
 #: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
-TOLERANCE, LOOSE, TIGHT = 1e-8, 1e-2, 1e-4
+TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-4, 1e-2, 1e-4
+DEBUG=0
 
 
 @attrs.frozen(eq=False)
@@ -66,8 +67,9 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
 
 def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[float], share: float) -> tuple[np.ndarray, int]:
     y = guess.copy()
+    system.locate(y)
     rest = system.load - system.static_internal(y, share)
-    forcing, previous = LOOSE, np.inf
+    forcing, previous = FIRST, np.inf
     for done in range(NEWTON_LIMIT):
         scale = system.force_scale()
         size = system.measure(rest)
@@ -77,8 +79,8 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
             raise ConvergenceError("forces are not finite.")
         if relative <= tolerance and (done > 0 or share == 0.0):
             return y, done
-        if done > 1:
-            forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous))
+        if done > 0:
+            forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous, 0.3 * tolerance / relative))
         previous = size
         step = system.solve(1.0, 0.0, 0.0, rest, tolerance=forcing)
         slope = float(step @ rest)
@@ -92,4 +94,7 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
                 break
             part *= 0.5 if now > 0.0 or slope - now <= 0.0 else min(max(slope / (slope - now), 0.1), 0.8)
         y = trial
+        if DEBUG: print(done, f"rel {relative:.2e} forcing {forcing:.1e} its {system.solver.last_iterations} part {part:.2f} active {(system.contact.gap<0).sum()}")
+        if system.locate(y):
+            rest = system.load - system.static_internal(y)
     raise ConvergenceError(f"Newton's residual stands at {history[-1]:.1e} of the load after {NEWTON_LIMIT} iterations.")

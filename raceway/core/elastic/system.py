@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contact import NodalContact
 from raceway.core.elastic.solver import LinearSolver
-from raceway.core.elastic.statics import Settled, settle
+from raceway.core.elastic.statics import TOLERANCE, Settled, settle
 from raceway.errors import ConvergenceError, MeshError
 
 #: Relative residual of the linear solves of a time step.
@@ -74,7 +73,6 @@ class ElasticSystem:
         self._y, self._u = y.copy(), a.nodal(y)
         out = a.internal(y, self._u)
         if self.contact is not None:
-            self.contact.update(self.contact.place + (self.contact.move @ self._u).reshape(-1, 3))
             out += a.reduced(self.contact.evaluate(dt, self._u, a.nodal(np.ascontiguousarray(v)) if dt > 0.0 else None))
         m = a.frame_size
         out[:m] += a.frame_damping @ v[:m]
@@ -139,6 +137,8 @@ class ElasticSystem:
     def commit(self) -> None:
         if self.contact is not None:
             self.contact.commit()
+            # Between steps only: within one, places that jump would keep Newton from converging.
+            self.contact.update(self.contact.place + (self.contact.move @ self._u).reshape(-1, 3))
 
     def rollback(self) -> None:
         if self.contact is not None:
@@ -146,7 +146,7 @@ class ElasticSystem:
 
     # Statics
 
-    def settle(self, guess: np.ndarray, tolerance: float = 1e-8) -> Settled:
+    def settle(self, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
         """Equilibrium under ``load``; places on the second surfaces are looked up anew until they stay.
 
         Raises
@@ -160,19 +160,14 @@ class ElasticSystem:
         loose = self.assembly.loose_motions(touching)
         if loose:
             raise ConvergenceError("nothing holds " + "; ".join(loose))
-        y, found, steps, linear, history = np.array(guess, dtype=float), None, 0, 0, []
-        for _ in range(6):
-            if self.contact is not None:
-                moved = self.contact.move @ self.assembly.nodal(y)
-                if not self.contact.update(self.contact.place + moved.reshape(-1, 3)) and found is not None:
-                    break
-            elif found is not None:
-                break
-            found = settle(self, y, tolerance)
-            y, steps, linear = found.y, steps + found.iterations, linear + found.linear_iterations
-            history += found.residuals
-        self.static_internal(y)
-        return Settled(y, steps, linear, history)
+        return settle(self, np.array(guess, dtype=float), tolerance)
+
+    def locate(self, y: np.ndarray) -> bool:
+        """Look up where the points lie on the second surfaces at a state; whether that changed anything."""
+        if self.contact is None:
+            return False
+        moved = self.contact.move @ self.assembly.nodal(y)
+        return self.contact.update(self.contact.place + moved.reshape(-1, 3))
 
     def energies(self, y: np.ndarray, v: np.ndarray) -> dict[str, float]:
         """Energies [J] at the last ``internal``."""

@@ -168,8 +168,7 @@ def ring_mesh(
     arc: np.ndarray,
     right: np.ndarray,
     layers: np.ndarray,
-    divisions: int,
-    start: float = 0.0,
+    azimuths: np.ndarray,
     band: tuple[float, float] | None = None,
 ) -> HexMesh:
     """The swept mesh.
@@ -179,13 +178,14 @@ def ring_mesh(
     left, right : (n,) points 0 to 1 on the lands, left from the side face to the groove, right from the groove
     arc : (n,) angles of points on the groove [rad], from edge to edge
     layers : (n,) points 0 to 1 from the raceway to the seat
-    divisions, start : cells around the ring, and the azimuth of the first nodes [rad]
+    azimuths : (n,) of the nodes around the ring, ascending within one turn [rad]
     band : angles between which facets belong to the set "band", the refined zone of the raceway
 
     Notes
     -----
     Sets of facets and of nodes: raceway, band, land, seat, face_negative, face_positive.
     """
+    divisions = len(azimuths)
     if divisions < 3:
         raise MeshError(f"a ring needs at least 3 cells around it, not {divisions}")
     outline = shape.outline
@@ -196,7 +196,7 @@ def ring_mesh(
     depth = 1.0 - layers[::-1] if shape.inner else layers
     inside, outside = (seat, top[:, 1]) if shape.inner else (top[:, 1], seat)
     radius = inside[None, :] + depth[:, None] * (outside - inside)[None, :]
-    psi = start + 2.0 * pi * np.arange(divisions) / divisions
+    psi = np.asarray(azimuths)
     x = np.broadcast_to(top[:, 0], (divisions, nj, ni))
     points = np.stack([x, np.cos(psi)[:, None, None] * radius, np.sin(psi)[:, None, None] * radius], axis=-1)
     cells = _swept_cells(ni, nj, divisions)

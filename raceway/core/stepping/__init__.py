@@ -7,6 +7,7 @@ central_difference  explicit steps, without matrices
 quasi_static        the motion as a series of equilibria
 bearing             any system with the ring's five coordinates, made steppable
 energy              balance of the energies that a system tells
+elastic             elastic bodies in nodal contact, stepped in time
 restart             a motion on disk, to go on from
 
 Each loop does what the compiled loop of the same name in ``raceway.core.integrators`` does, step for step.

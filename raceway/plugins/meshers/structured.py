@@ -36,8 +36,9 @@ class Structured:
     patch: float = option(1.25, help="refined zone, in semi-axes of the contact ellipse", rule=between(0.5, 5.0))
     azimuth_cells: int | str = option(
         "auto",
-        help="cells around each ring, rounded up to a multiple of the balls; 'auto': as element_size asks",
-        rule=word_or(between(3, 1_000_000), "auto"),
+        help="cells around each ring, rounded up to a multiple of the balls; 'auto': as element_size asks; 'graded': fine at each "
+        "ball, as its minor semi-axis asks, in depth too",
+        rule=word_or(between(3, 1_000_000), "auto", "graded"),
     )
     ball_load: float | None = option(
         None,
@@ -85,6 +86,7 @@ class Structured:
         self._refuse(bearing)
         bodies: dict[str, float] = {}
         u, v, w, layers, _ = self._ball_lines(bearing)
+<<<<<<< HEAD
         ball = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1)
         for suffix in self._suffixes(bearing):
             for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
@@ -102,6 +104,15 @@ class Structured:
         """What follows the names of the bodies of each row."""
         count = len(bearing.rows)
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
+=======
+        balls = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1) * bearing.ball_count
+        rings = 0
+        for inner in (True, False):
+            shape = ring_shape(bearing, inner)
+            left, arc, right, depth, _ = self._ring_lines(bearing, shape)
+            rings += (len(left) + len(arc) + len(right) - 3) * (len(depth) - 1) * len(self._azimuths(bearing, shape))
+        return Prediction.of((balls + rings) * len(bearing.rows))
+>>>>>>> elastic
 
     def _refuse(self, bearing: Any) -> None:
         from raceway.core.meshing.ring_shape import ring_shape
@@ -165,24 +176,39 @@ class Structured:
         """Points of the left land, the groove, the right land, the layers, and the refined band's angles."""
         from raceway.core.meshing.spacing import graded, growing
 
-        major, _ = self._semi_axes(bearing, shape.inner)
+        major, minor = self._semi_axes(bearing, shape.inner)
         size, (low, high) = self.element_size, shape.edges
         half = self.patch * major / shape.groove
         band = max(shape.contact - half, 0.98 * low), min(shape.contact + half, 0.98 * high)
         fine = major / self.nodes_per_semi_axis
         arc = graded(low, high, *band, fine / shape.groove, size / shape.groove, self.growth)
         left, right = (shape.outline.shares(side, size) for side in ("left", "right"))
-        # As fine in depth as along the groove: the uniform azimuth does not follow the minor semi-axis.
+        # As fine in depth as along the groove: a uniform azimuth does not follow the minor semi-axis.
+        if self.azimuth_cells == "graded":
+            fine = minor / self.nodes_per_semi_axis
         thickness = shape.thickness
         layers = growing(1.0, min(fine, size) / thickness, size / thickness, self.growth)
         return left, arc, right, layers, band
 
-    def _divisions(self, bearing: Any, shape: RingShape) -> int:
-        """Cells around a ring: a multiple of the balls, so that each of them meets the same nodes."""
-        wanted = self.azimuth_cells
-        if isinstance(wanted, str):
-            wanted = ceil(2.0 * pi * max(shape.seat, shape.land) / self.element_size)
-        return bearing.ball_count * max(ceil(wanted / bearing.ball_count), ceil(12 / bearing.ball_count))
+    def _azimuths(self, bearing: Any, shape: RingShape) -> np.ndarray:
+        """(n,) azimuths of the nodes around a ring, less that of the first ball [rad]: each ball meets the same nodes."""
+        import numpy as np
+
+        from raceway.core.meshing.spacing import graded
+
+        wanted, count = self.azimuth_cells, bearing.ball_count
+        pitch = 2.0 * pi / count
+        if wanted == "graded":
+            minor = self._semi_axes(bearing, shape.inner)[1]
+            radius = abs(shape.centre_r + shape.sign * shape.groove)
+            half = self.patch * minor / radius
+            fine, coarse = minor / self.nodes_per_semi_axis / radius, self.element_size / max(shape.seat, shape.land)
+            one = graded(-0.5 * pitch, 0.5 * pitch, -half, half, fine, coarse, self.growth)[:-1]
+        else:
+            cells = ceil(2.0 * pi * max(shape.seat, shape.land) / self.element_size) if isinstance(wanted, str) else wanted
+            cells = max(ceil(cells / count), ceil(12 / count))
+            one = pitch * np.arange(cells) / cells
+        return np.asarray((one[None, :] + pitch * np.arange(count)[:, None]).ravel())
 
     def _ring(self, bearing: Any, inner: bool, side: float, place: float) -> HexMesh:
         import numpy as np
@@ -194,7 +220,7 @@ class Structured:
         shape = ring_shape(bearing, inner)
         left, arc, right, layers, band = self._ring_lines(bearing, shape)
         start = side * azimuth(bearing, 0)
-        mesh = ring_mesh(shape, left, arc, right, layers, self._divisions(bearing, shape), start, band)
+        mesh = ring_mesh(shape, left, arc, right, layers, start + self._azimuths(bearing, shape), band)
         if side < 0.0:  # half a turn about y, not a mirror image: cells keep their sense; psi becomes -psi
             facets = dict(mesh.facet_sets)
             facets["face_negative"], facets["face_positive"] = facets["face_positive"], facets["face_negative"]

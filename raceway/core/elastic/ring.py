@@ -1,0 +1,176 @@
+"""A bearing of elastic bodies seen from its inner ring: the interface of ``raceway.core.system.System``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.elastic.bearing import ElasticBearing
+from raceway.core.record import Motion
+from raceway.core.stepping.elastic import SteppedElastic
+from raceway.core.system import Evaluation, System
+from raceway.errors import ConvergenceError
+
+#: Relative residual of equilibria and of the linear solves for the ring's stiffness.
+_TOLERANCE, _LINEAR = 1e-6, 1e-7
+
+
+@attrs.define(eq=False)
+class ElasticRing(System):
+    """All nodes of rings and balls; the ring's reference point is what the rest of the program sees.
+
+    The kernels of the base class are those of rigid rings with Hertz's contacts: they give first guesses and the orbit
+    that a motion starts near.
+
+    Attributes
+    ----------
+    bodies : ElasticBearing
+    """
+
+    bodies: ElasticBearing = attrs.field(kw_only=True)
+    _y: np.ndarray | None = attrs.field(init=False, default=None)
+
+    @property
+    def companion(self) -> System:
+        """The same ring with rigid bodies and Hertz's contacts, compiled."""
+        fields = [f.name for f in attrs.fields(System)]
+        return System(**{name: getattr(self, name) for name in fields})
+
+    @property
+    def conservative(self) -> bool:
+        contact = self.bodies.system.contact
+        return contact is None or contact.friction is None
+
+    @property
+    def ball_columns(self) -> int:
+        return 2
+
+    def stepped(self) -> SteppedElastic:
+        """The system that the loops in Python step."""
+        self.bodies.system.excitation = self.outer_force
+        return SteppedElastic(self.bodies.system, self.bodies.look, self.ball_count)
+
+    def settle(
+        self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = _TOLERANCE
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Equilibrium under ``load``; the first guess is the equilibrium of rigid bodies, or the one found before.
+
+        Raises
+        ------
+        ConvergenceError
+            With the last good state ``y`` and the residuals.
+        """
+        if self._y is None:
+            place, places, _ = self.companion.settle(q)
+            if not places.any():  # weightless balls of rigid bodies have no place of their own
+                places = self._between(place)
+            guess = self.bodies.guess(place, places)
+        else:
+            guess = self._y
+        y, count = self._settled(guess, self.load, max(tolerance, _TOLERANCE))
+        self._y = y
+        return y[:5].copy(), self.bodies.ball_places(y), count
+
+    def evaluate(
+        self,
+        q: np.ndarray,
+        v: np.ndarray | None = None,
+        ball: np.ndarray | None = None,
+        ball_rate: np.ndarray | None = None,
+        t: float = 0.0,
+        *,
+        dt: float = 0.0,
+        ball_gain: float = 0.0,
+        memory: np.ndarray | None = None,
+    ) -> Evaluation:
+        """What the last equilibrium holds; its tangent is that of the ring with all nodes in balance.
+
+        Raises
+        ------
+        ConvergenceError
+            A place of the ring that is no equilibrium that was found.
+        """
+        if self._y is None or np.abs(self._y[:5] - q).max() > 0.0:
+            raise ConvergenceError("elastic bodies know the forces at their equilibria only", {"q": np.asarray(q)})
+        y, system = self._y, self.bodies.system
+        out = system.internal(t, 0.0, y, np.zeros_like(y))
+        _, _, gap, force, places = self.bodies.look(system, y, np.zeros_like(y))
+        held = self.stiffness @ y[:5]
+        return Evaluation(out[:5] - held, self._tangent(), np.zeros((5, 5)), gap, force, places, self.law_state.copy())
+
+    def without(self, *entries: int) -> ElasticRing:
+        """Itself: balls of elastic bodies do not orbit, and friction has its history."""
+        return self
+
+    def stopped(self, t: float) -> ElasticRing:
+        return self
+
+    def at_standstill(self) -> System:
+        """The compiled companion's: periodic motions of all nodes would take hours."""
+        return self.companion.at_standstill()
+
+    def critical_time_step(self, tangent: np.ndarray) -> float:
+        """Of elements and contacts at the last state that was computed [s]; the ring's own tangent does not limit it."""
+        return float(self.bodies.system.stable_step())
+
+    def motion_under(self, loads: list[np.ndarray], step: float = 0.0, curvature: float = 1.0) -> Motion:
+        """The equilibrium under a load (5,) at rest, or moving through three of them: now, before and after.
+
+        Parameters
+        ----------
+        step : what the difference of the outer two is divided by for the velocity [s]
+        curvature : what their second difference is divided by for the acceleration [s2]
+        """
+        now = self._y
+        if now is None:
+            raise ConvergenceError("elastic bodies start from an equilibrium: settle them first")
+        found = []
+        for load in loads:
+            now, _ = self._settled(now, load, _TOLERANCE)
+            found.append(now)
+        y = found[0]
+        v, a = np.zeros_like(y), np.zeros_like(y)
+        if len(found) == 3:
+            v = (found[2] - found[1]) / step
+            a = (found[2] - 2.0 * y + found[1]) / curvature
+        stepped = self.stepped()
+        stepped.system.locate(y)
+        stepped.internal(0.0, 0.0, y, np.zeros_like(y))
+        return stepped.motion_of(y, v, a)
+
+    def _settled(self, guess: np.ndarray, load: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
+        system = self.bodies.system
+        before = system.load.copy()
+        system.load[:5] = load
+        try:
+            found = system.settle(guess, tolerance)
+        finally:
+            system.load = before
+        return found.y, found.iterations
+
+    def _tangent(self) -> np.ndarray:
+        """(5, 5) stiffness of the ring's motions, the shaft's left out: inverse of its compliance, all motions let free."""
+        system = self.bodies.system
+        assembly = system.assembly
+        kept, unknown = assembly.frame_free.copy(), assembly.unknown.copy()
+        assembly.frame_free[:], assembly.unknown[:5] = True, True
+        try:
+            compliance = np.empty((5, 5))
+            for k in range(5):
+                force = np.zeros(system.size)
+                force[k] = 1.0
+                compliance[:, k] = system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR)[:5]
+        finally:
+            assembly.frame_free[:], assembly.unknown[:] = kept, unknown
+        found = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
+        return np.asarray(0.5 * (found + found.T))
+
+    def _between(self, q: np.ndarray) -> np.ndarray:
+        """(Z, 2) places of weightless balls: both contacts share the approach as Hertz's would."""
+        centre, _ = self.centre_vectors(q)
+        length = np.linalg.norm(centre, axis=1, keepdims=True)
+        inner, outer = self.bodies.setup.geometry.offset_inner, self.bodies.setup.geometry.offset_outer
+        share = self.table[:, [3]]  # of the approach that the outer race takes
+        return centre / length * (outer + share * (length - inner - outer))
