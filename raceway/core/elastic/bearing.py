@@ -193,7 +193,7 @@ class ElasticBearing:
         g = s.geometry
         inner = g.ellipses(s.modulus)[0]
         normal = 1.5 * s.reference_load / float(inner.approach(s.reference_load))
-        names = []
+        names, nodal = [], np.zeros(3 * assembly.nodes)
         for k in range(len(s.azimuth)):
             body = assembly.bodies[k + 2]
             mass = assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]]
@@ -202,12 +202,13 @@ class ElasticBearing:
             data.append(found.ravel())
             rows.append(np.repeat(4 * k + np.arange(4), found.shape[1]))
             columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(found.shape[1]), 4))
+            nodal[assembly.part(k + 2)] = CAGE_SHARE * normal * np.repeat(mass / mass.sum(), 3)
             names += [f"{body.name}: along its orbit", *(f"{body.name}: turning about {axis}" for axis in "xyz")]
         shape = (4 * len(s.azimuth), 3 * assembly.nodes)
         matrix = coo_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
         turning = 0.1 * g.ball_diameter**2  # of a sphere: what a spring on every node by its mass holds against turning
         one = CAGE_SHARE * normal * np.array([1.0, turning, turning, turning])
-        return Cage(matrix, np.tile(one, len(s.azimuth)), tuple(names))
+        return Cage(matrix, np.tile(one, len(s.azimuth)), tuple(names), nodal)
 
     def _contact(self, assembly: Assembly) -> NodalContact:
         s, g = self.setup, self.setup.geometry

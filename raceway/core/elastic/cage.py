@@ -15,7 +15,8 @@ class Cage:
     Attributes
     ----------
     rows : (m, 3 nodes) sparse L: a mean displacement [m], or a mean turn [rad], of one ball
-    stiffness : (m,) k [N/m, N m/rad];  motions : (m,) words for them
+    stiffness : (m,) k [N/m, N m/rad];  names : (m,) words for them
+    nodal : (3 nodes,) springs on single displacements that hold the balls' means about as well [N/m]
 
     Notes
     -----
@@ -25,6 +26,7 @@ class Cage:
     rows: Any
     stiffness: np.ndarray
     names: tuple[str, ...]
+    nodal: np.ndarray
 
     def force(self, u: np.ndarray) -> np.ndarray:
         """(m,) forces and moments [N, N m]."""

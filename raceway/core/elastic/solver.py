@@ -17,6 +17,8 @@ MOST_ITERATIONS, MANY_ITERATIONS = 600, 60
 SOFT=1.0
 #: Ratio of the mass' share of the matrix at which the multigrid is made anew.
 _OTHER_MASS = 4.0
+#: Relative residual to which the free nodes' following of a frame is solved.
+_FOLLOW_TOLERANCE = 1e-2
 
 
 class LinearSolver:
@@ -24,21 +26,21 @@ class LinearSolver:
 
     Notes
     -----
-    Let w be the displacements against the frames, y = (q, R q + w).  The bodies' stiffness does not see q then, and the
-    preconditioner is block diagonal: multigrid on w (bodies, contacts, masses, at the state at which it was made) and a
-    small dense block for q, in which each contact counts with the stiffness 2 E* sqrt(area / pi) of a flat punch: what
-    resists a frame is the contacts' Hertzian softness, not their penalty.
+    A frame that moves drags the whole system along: with Phi = the free nodes' displacement under a unit motion of each
+    frame, solved for whenever the multigrid is made, y = (q, Phi q + w) splits the matrix into two blocks that hardly know of
+    each other: Phi^T A Phi, a few numbers, and multigrid for w (bodies, contacts, masses).
     """
 
     def __init__(self, assembly: Assembly, contact: NodalContact | None, modulus: float) -> None:
         self.assembly, self.contact, self.modulus = assembly, contact, modulus
         self._multigrid: Preconditioner | None = None
-        self._built = (1.0, 0.0)
+        self._built = 0.0
         self._fresh = False
         #: Iterations of the last solve, of all solves, number of solves and of multigrid set-ups.
         self.last_iterations, self.iterations, self.solves, self.setups = 0, 0, 0, 0
         a = assembly
         self._ride = a.carried[a.free]
+        self._follow = self._ride
         self._matrix: BlockMatrix | None = None
 
     def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float) -> np.ndarray:
@@ -47,13 +49,14 @@ class LinearSolver:
         ratio = c_m / c_k
         stale = self._multigrid is None or self.last_iterations > MANY_ITERATIONS and not self._fresh
         other = (
-            abs(np.log((ratio + 1e-300) / (self._built[1] + 1e-300))) > np.log(_OTHER_MASS)
-            and max(ratio, self._built[1]) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
+            abs(np.log((ratio + 1e-300) / (self._built + 1e-300))) > np.log(_OTHER_MASS)
+            and max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
         )
         if stale or other:
             self._make(c_k, c_m)
         wanted = np.where(a.unknown, right, 0.0)
-        apply, precondition = self._operator(c_k, c_c, c_m), self._preconditioner(c_k, c_c, c_m)
+        apply = self._operator(c_k, c_c, c_m)
+        precondition = self._preconditioner(c_k, apply)
         found, self.last_iterations = _conjugate_gradients(apply, wanted, precondition, tolerance)
         self._fresh = False
         self.iterations += self.last_iterations
@@ -75,19 +78,33 @@ class LinearSolver:
             matrix = matrix + self.contact.tangent(SOFT * self.contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
         if a.cage is not None:
-            # The mean of a ball's motion is dense; a spring on every node in proportion to its mass holds it as well.
-            for rows, k in zip(a.cage.rows.tolil().rows, a.cage.stiffness, strict=True):
-                body = int(np.searchsorted(3 * a.starts, rows[0], side="right") - 1)
-                mass = a.node_mass[a.starts[body] : a.starts[body + 1]]
-                if len(rows) and k > 0.0:
-                    extra[a.part(body)] += np.repeat(k * mass / mass.sum(), 3) / 4.0
+            extra += a.cage.nodal
         from scipy.sparse import diags_array
 
         held = np.ones(3 * a.nodes, dtype=bool)
         held[a.free] = False
         self._multigrid = Preconditioner((matrix + diags_array(extra)).tocsr(), a.points, held)
-        self._built, self._fresh = (c_k, c_m / c_k), True
+        self._built, self._fresh = c_m / c_k, True
         self.setups += 1
+        self._extend(c_k, c_m)
+
+    def _extend(self, c_k: float, c_m: float) -> None:
+        """How the free nodes follow each frame: the solution of the whole for a unit motion of the frame."""
+        a, m = self.assembly, self.assembly.frame_size
+        self._follow = self._ride.copy()
+        apply = self._operator(c_k, 0.0, c_m)
+        multigrid, scale = self._multigrid, 1.0 / c_k
+        assert multigrid is not None
+        for k in np.flatnonzero(a.frame_free):
+            start = np.concatenate([np.eye(m)[k], self._ride[:, k]])
+            more, used = _conjugate_gradients(
+                lambda w: apply(np.concatenate([np.zeros(m), w]))[m:],
+                -apply(start)[m:],
+                lambda r: scale * multigrid(r),
+                _FOLLOW_TOLERANCE,
+            )
+            self._follow[:, k] += more
+            self.iterations += used
 
     def _operator(self, c_k: float, c_c: float, c_m: float) -> Callable[[np.ndarray], np.ndarray]:
         a, contact = self.assembly, self.contact
@@ -123,44 +140,25 @@ class LinearSolver:
 
         return apply
 
-    def _preconditioner(self, c_k: float, c_c: float, c_m: float) -> Callable[[np.ndarray], np.ndarray]:
+    def _preconditioner(self, c_k: float, operator: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.ndarray], np.ndarray]:
         a, m, multigrid = self.assembly, self.assembly.frame_size, self._multigrid
         assert multigrid is not None
-        inverse = np.linalg.pinv(self._frame_block(c_k, c_c, c_m)) if m else np.zeros((0, 0))
-        scale = 1.0 / c_k
+        scale, follow = 1.0 / c_k, self._follow
+        inverse = np.zeros((m, m))
+        if m:
+            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in range(m)], axis=1)
+            block = (images[:m] + follow.T @ images[m:])[np.ix_(a.frame_free, a.frame_free)]
+            inverse[np.ix_(a.frame_free, a.frame_free)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
 
         def apply(r: np.ndarray) -> np.ndarray:
             out = np.empty_like(r)
             out[m:] = scale * multigrid(r[m:])
             if m:
-                out[:m] = inverse @ (r[:m] + self._ride.T @ r[m:])
-                out[m:] += self._ride @ out[:m]
+                out[:m] = inverse @ (r[:m] + follow.T @ r[m:])
+                out[m:] += follow @ out[:m]
             return out
 
         return apply
-
-    def _frame_block(self, c_k: float, c_c: float, c_m: float) -> np.ndarray:
-        """(m, m) what resists the frames, about."""
-        a = self.assembly
-        block = c_k * a.frame_stiffness + c_c * 0.5 * (a.frame_damping + a.frame_damping.T) + c_m * a.frame_mass
-        mass = np.repeat(a.node_mass, 3)[a.free]
-        block = block + c_m * (self._ride.T @ (mass[:, None] * self._ride))
-        contact = self.contact
-        if contact is not None:
-            active = contact.stiffness.any(axis=(1, 2))
-            for index in range(len(contact.pairs)):
-                mine = np.flatnonzero(active & (contact.pair == index))
-                if not len(mine):
-                    continue
-                area = contact.area[mine].sum()
-                rows = (3 * mine[:, None] + np.arange(3)).ravel()
-                slip = (contact.move[rows] @ a.carried).reshape(len(mine), 3, -1)
-                towards = np.einsum("iak,ia->ik", slip, contact.normal[mine])
-                mean = contact.area[mine] @ towards / area
-                block = block + c_k * self.modulus * np.sqrt(area / np.pi) * np.outer(mean, mean)
-        keep = a.frame_free
-        block = np.where(keep[:, None] & keep[None, :], block, 0.0)
-        return np.asarray(block + np.diag(np.where(keep, 1e-9 * max(np.trace(block), 1e-300), 0.0)))
 
 
 def _conjugate_gradients(
