@@ -19,7 +19,13 @@ Rule = Callable[[Any, Any, Any], None]
 
 
 def option(
-    default: Any = attrs.NOTHING, *, unit: str = "", help: str = "", rule: Rule | None = None, path: bool = False
+    default: Any = attrs.NOTHING,
+    *,
+    unit: str = "",
+    help: str = "",
+    rule: Rule | None = None,
+    path: bool = False,
+    no_list: str = "",
 ) -> Any:
     """An attrs field for one key of a scene.
 
@@ -30,8 +36,9 @@ def option(
     help : one sentence
     rule : validator, called as ``rule(None, attribute, value)``
     path : the value names a file, relative to the folder of the scene file
+    no_list : what to tell who gives a list or a table where one value is wanted
     """
-    metadata = {"unit": unit, "help": help, "rule": getattr(rule, "words", ""), "path": path}
+    metadata = {"unit": unit, "help": help, "rule": getattr(rule, "words", ""), "path": path, "no_list": no_list}
     return attrs.field(default=default, validator=rule or (lambda *_: None), metadata=metadata)
 
 

@@ -144,6 +144,12 @@ class Bearing:
         return radians(self.contact_angle_deg or 0.0)
 
 
+_AROUND = (
+    "must be one number: a seat that differs around the ring is not axisymmetric. Mesh what it sits in, with "
+    "bodies.kind = 'elastic'"
+)
+
+
 @attrs.frozen
 class Supports:
     tilt: float | str = option(
@@ -158,10 +164,14 @@ class Supports:
         rule=one_of("force", "displacement"),
     )
     outer_seat: float | str = option(
-        "rigid", unit="N/m3", help="outer cylinder: 'rigid' or the bed's stiffness", rule=word_or(positive(), "rigid")
+        "rigid",
+        unit="N/m3",
+        help="outer cylinder: 'rigid' or the bed's stiffness",
+        rule=word_or(positive(), "rigid"),
+        no_list=_AROUND,
     )
     inner_seat: float | str = option(
-        "rigid", unit="N/m3", help="bore: 'rigid' or the bed's stiffness", rule=word_or(positive(), "rigid")
+        "rigid", unit="N/m3", help="bore: 'rigid' or the bed's stiffness", rule=word_or(positive(), "rigid"), no_list=_AROUND
     )
 
 

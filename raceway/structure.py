@@ -144,6 +144,8 @@ def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
     """Type first, then the field's own rule, so that every field of a table is looked at."""
 
     def hook(value: Any, _type: Any) -> Any:
+        if isinstance(value, list | dict) and attribute.metadata.get("no_list"):
+            raise ValueError(attribute.metadata["no_list"])
         result = converter.structure(value, attribute.type)
         if attribute.validator is not None:
             attribute.validator(None, attribute, result)

@@ -1,0 +1,1 @@
+"""Condensed bodies with resultants: kernels, structural compliances, whole bearings."""

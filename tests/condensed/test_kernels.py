@@ -1,0 +1,150 @@
+"""Kernels of condensed bodies with chosen compliances: zero is rigid, tangents are exact, loops keep their energy."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway.core.energy import energy_balance
+from raceway.core.orbit import steady_orbit
+from raceway.core.record import Schedule
+from raceway.core.start import from_orbit, static_orbit
+from tests.condensed.bodies import elastic
+
+ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
+#: What ball and contacts can be, each another kernel or branch.
+SCENES = {
+    "weightless": {"kinematics": {"ball_inertia": False}},
+    "inertial": {},
+    "penalty": {"contact": {"kind": "penalty"}},
+    "damped": {"contact": {"damping": 50.0}},
+    "gyroscopic": {"kinematics": {"gyroscopic": "outer_race"}},
+    "shared": {"kinematics": {"gyroscopic": "shared"}},
+    "stick": {"contact": {"friction": 0.03}},
+    "slip": {"contact": {"friction": 0.0005}},
+    "light": {"load": {"axial": 60.0, "radial": [50.0, 0.0]}},
+}
+SYMMETRIC = ("weightless", "inertial", "penalty", "damped", "light")
+
+
+def model(built, tilt="free", load=None, **more):
+    load = {"axial": 800.0, "radial": [300.0, 100.0], **(load or {})}
+    rotor = {"mass": 2.0, "transverse_inertia": 1e-3}
+    return built(load=load, supports={"tilt": tilt}, rotor=rotor, excitation=ROTATING, **more)
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("bed", [False, True])
+def test_without_compliances_it_is_the_rigid_bearing(built, name, bed):
+    """To 1e-12: the same kernel finds the same forces, and only rounding is added."""
+    rigid = model(built, **SCENES[name])
+    q, ball, _ = rigid.system.settle(rigid.guess)
+    now = rigid.system.evaluate(q, ball=ball)
+    soft = elastic(rigid.system, factor=0.0, bed=bed)
+    mine, place, _ = soft.settle(rigid.guess)
+    then = soft.evaluate(mine, ball=place)
+    scale = np.array([1.0, 1.0, 1.0, soft.arm, soft.arm])
+    # Both are solved to 1e-11 of the forces.
+    assert np.abs((mine - q) * scale).max() < 1e-10 * np.abs(q * scale).max()
+    weight = np.outer(1.0 / scale, 1.0 / scale)
+    assert np.abs((then.stiffness - now.stiffness) * weight).max() < 1e-9 * np.abs(now.stiffness * weight).max()
+    assert np.abs(soft.structural_approach(place)).max() == 0.0
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("bed", [False, True])
+def test_tangents_are_the_derivatives(built, name, bed):
+    """Central differences with their own error: 1e-8 of the largest entry; with slip, 1e-6 where a contact turns over."""
+    soft = elastic(model(built, **SCENES[name]).system, slope=1.3e-9, bed=bed)
+    guess = model(built, **SCENES[name]).guess
+    q, ball, _ = soft.settle(guess)
+    random = np.random.default_rng(3)
+    q = q * (1.0 + 0.03 * random.standard_normal(5))
+    v = np.array([1e-3, 1e-2, 1e-2, 0.1, 0.1]) * random.standard_normal(5) if name == "damped" else np.zeros(5)
+    now = soft.evaluate(q, v, ball=ball)
+    scale = np.array([1.0, 1.0, 1.0, soft.arm, soft.arm])
+    found = np.empty((5, 5))
+    for j in range(5):
+        step = np.zeros(5)
+        step[j] = 1e-10 / scale[j]
+        ahead, behind = (soft.evaluate(q + s * step, v, ball=ball).force for s in (1.0, -1.0))
+        found[:, j] = (ahead - behind) / (2.0 * step[j])
+    weight = np.outer(1.0 / scale, 1.0 / scale)
+    largest = np.abs(now.stiffness * weight).max()
+    # Under dashpots the kernels leave out how the lines of contact turn: 1e-5 here, with rigid bodies too.
+    limit = 5e-5 if name == "damped" else 1e-6 if name == "slip" else 1e-8
+    assert np.abs((found - now.stiffness) * weight).max() < limit * largest
+    if name in SYMMETRIC:
+        assert np.abs((now.stiffness - now.stiffness.T) * weight).max() < 1e-12 * largest
+
+
+@pytest.mark.parametrize("bed", [False, True])
+def test_approach_is_law_and_structure_in_series(built, bed):
+    """At equilibrium w = C Q: checked contact by contact against the matrix that the kernels never form."""
+    rigid = model(built)
+    soft = elastic(rigid.system, bed=bed)
+    q, ball, _ = soft.settle(rigid.guess)
+    force = soft.evaluate(q, ball=ball).contact_force
+    z = soft.ball_count
+    own = np.r_[np.full(z, -0.62e-9 - 0.304e-9), np.full(z, -0.64e-9 - 0.304e-9 + (5.6e-9 if bed else 0.0))]
+    matrix = np.diag(own) + 0.167e-9 * np.kron([[0.0, 1.0], [1.0, 0.0]], np.eye(z))
+    if bed:
+        matrix[z:, z:] += soft.table[:, -z:]
+    assert soft.structural_approach(ball) == pytest.approx(matrix @ force, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["newmark", "generalized_alpha", "central_difference", "quasi_static"])
+@pytest.mark.parametrize("bed", [False, True])
+def test_every_loop_runs_and_keeps_its_energy(built, kind, bed):
+    """The drift of the rigid bearing's motion, which belongs to the integrator, may double; equilibria follow the orbit."""
+    case = model(built, tilt="locked", integrator={"kind": kind})
+    method, period = case.scene.integrator.method, case.excitation.period_s
+    steps = 1440 if kind == "central_difference" else 360
+    schedule = Schedule(period / steps, steps, 2)
+    drift = []
+    for system in (case.system, elastic(case.system, slope=1.3e-9, bed=bed)):
+        q, ball, _ = system.settle(case.guess)
+        orbit = steady_orbit(system, period, q, inertial=method.inertial)
+        start = from_orbit(system, orbit, schedule.dt) if method.inertial else static_orbit(system, q, ball, False)
+        record = method.advance(system, start, schedule, None)
+        assert record.ball.shape[2] == system.ball_columns
+        if method.inertial:
+            drift.append(energy_balance(system, record).drift)
+        # The orbit is the exact periodic motion; 360 steps a turn leave 1e-4 of it.
+        turn = np.abs(record.displacement[-1, 1:3] - orbit.displacement[0, 1:3]).max()
+        assert turn < 1e-3 * np.abs(orbit.displacement[:, 1:3]).max()
+    if drift:
+        assert drift[1] < 2.0 * drift[0] + 1e-9
+
+
+def test_structural_approach_has_a_rate(built):
+    """With strong dashpots the elastic ring takes a part of the speed: order 2 in the step needs its rate, too."""
+    case = model(built, tilt="locked", contact={"damping": 2000.0})
+    soft = elastic(case.system, outer=5e-9)
+    period = case.excitation.period_s
+    q, _, _ = soft.settle(case.guess)
+    orbit = steady_orbit(soft, period, q)
+    method, error = case.scene.integrator.method, []
+    for steps in (180, 360):
+        schedule = Schedule(period / steps, steps, 1)
+        record = method.advance(soft, from_orbit(soft, orbit, schedule.dt), schedule, None)
+        error.append(np.abs(record.displacement[-1] - orbit.displacement[0])[1:3].max())
+    assert error[1] < 0.4 * error[0]
+    assert error[1] < 1e-3 * np.abs(orbit.displacement[:, 1:3]).max()
+
+
+def test_a_contact_that_bodies_outdo_is_a_failure_and_no_number(built):
+    from raceway.errors import ConvergenceError
+
+    rigid = model(built)
+    with pytest.raises(ConvergenceError):
+        elastic(rigid.system, factor=30.0).settle(rigid.guess)
+
+
+def test_a_pair_couples_only_balls_of_one_row(built):
+    bearing = {"arrangement": "DB", "preload": 300.0}
+    case = model(built, bearing=bearing)
+    z = case.geometry.ball_count
+    table = elastic(attrs.evolve(case.system, table=case.system.table[:z], law_params=case.system.law_params[: 2 * z]), bed=True)
+    assert table.table.shape == (z, 8 + 2 * z)
