@@ -116,10 +116,15 @@ def _first_reach(scene: Scene, basis: Basis, rigid: System, guess: np.ndarray) -
 
 
 def _layout(scene: Scene, reach: Reach) -> tuple[float, float]:
-    """Points per semi-axis, and the load [N] at which they count: the mesh's, or the mean of the balls that carry."""
+    """Points per semi-axis, and the load [N] at which they count: the mesh's, or the mean of the balls that carry.
+
+    Notes
+    -----
+    The mean is rounded to two digits: states near each other then share their compliances.
+    """
     nodes = float(nodes_of(scene))
     load = getattr(scene.mesh, "ball_load", None)
-    return nodes, float(load) if load is not None else reach.mean_load
+    return nodes, float(load) if load is not None else float(f"{reach.mean_load:.1e}")
 
 
 def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Patch]]:

@@ -12,6 +12,7 @@ from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.options import nearest
 from raceway.registry import Registry, default_registry
 from raceway.studies.reference import Case, Number, reference_cases
+from raceway.studies.verify_article import article_pressures
 from raceway.studies.verify_bearings import ellipse_table, masta, nsk_pair, race_ellipse, rig_force
 from raceway.studies.verify_impacts import impact_of_spheres
 
@@ -29,6 +30,7 @@ COMPUTED: dict[str, Callable[[Case, Registry], Iterator[Number]]] = {
     "chung-ooi-1-glass": impact_of_spheres,
     "chung-ooi-3-alumina": impact_of_spheres,
     "seed-unbalance": rig_force,
+    "seed-static-pressures": article_pressures,
 }
 
 

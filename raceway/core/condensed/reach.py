@@ -37,7 +37,7 @@ class Reach:
         a, b = ellipse.semi_axes(load)
         old = self.inner if left.sense < 0.0 else self.outer
         half = AROUND * float(a) / radius + 3.0 * MARGIN
-        window = (min(old[0], left.angle - half), max(old[1], left.angle + half))
+        window = _rounded(min(old[0], left.angle - half), max(old[1], left.angle + half))
         if not left.across and window == old:
             window = (old[0] - 3.0 * MARGIN, old[1] + 3.0 * MARGIN)
         widest = max(self.widest, AROUND * float(b))
@@ -45,6 +45,11 @@ class Reach:
             widest *= room
         inner, outer = (window, self.outer) if left.sense < 0.0 else (self.inner, window)
         return Reach(inner, outer, widest, self.mean_load, load)
+
+
+def _rounded(low: float, high: float) -> Window:
+    """Outwards to whole degrees, so that states near each other share their compliances."""
+    return float(np.deg2rad(np.floor(np.rad2deg(low) + 1e-6))), float(np.deg2rad(np.ceil(np.rad2deg(high) - 1e-6)))
 
 
 def reach_of(
@@ -69,7 +74,7 @@ def reach_of(
         carrying = load > 1e-3 * heaviest
         known = angle[carrying] if carrying.any() else np.array([free])
         half = AROUND * float(a) / radius + MARGIN
-        windows.append((float(known.min()) - half, float(known.max()) + half))
+        windows.append(_rounded(float(known.min()) - half, float(known.max()) + half))
         widest, largest = max(widest, AROUND * float(b)), max(largest, heaviest)
     carrying = inner[1] > 0.1 * max(float(inner[1].max()), 1.0)
     mean = float(inner[1][carrying].mean()) if carrying.any() else largest
