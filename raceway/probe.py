@@ -88,16 +88,18 @@ def _probe_alone(kernel: Any, params: Any, state: Any, who: str) -> None:
     if not len(state):
         return
     columns = params.shape[1]
-    memory = np.full(columns + 64, np.nan)
-    memory[:columns] = params[0]
-    alone = memory[:columns].reshape(1, columns)
     for gap in _GAPS:
         where = f"at gap {gap:g} m, one contact alone"
-        force, d_gap, d_rate, _ = _call_law(kernel, alone, state[:1].copy(), gap, 0.0, who, where)
-        if not np.isfinite([force[0], d_gap[0], d_rate[0]]).all():
+        finite = []
+        for behind in (np.nan, 0.0):
+            memory = np.full(columns + 64, behind)
+            memory[:columns] = params[0]
+            alone = memory[:columns].reshape(1, columns)
+            force, d_gap, d_rate, _ = _call_law(kernel, alone, state[:1].copy(), gap, 0.0, who, where)
+            finite.append(bool(np.isfinite([force[0], d_gap[0], d_rate[0]]).all()))
+        if finite == [False, True]:
             raise PluginError(
-                f"{who}: not finite {where}: the kernel gives NaN of itself, or reads beyond the {columns} columns of "
-                "parameters that build() returned"
+                f"{who}: not finite {where}: the kernel reads beyond the {columns} columns of parameters that build() returned"
             )
 
 

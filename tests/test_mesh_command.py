@@ -95,17 +95,21 @@ FLIPPED = '{"ball_0": SimpleNamespace(points=points, cells=np.array([[4, 5, 6, 7
 
 
 @pytest.mark.parametrize(
-    ("answer", "words"),
+    ("number", "answer", "words"),
     [
-        ("None", "mesher 'wrong': mesh() returned NoneType; it must be meshes by name"),
-        (FLIPPED, "`ball_0`: 1 of 1 cells are inverted or degenerate"),
-        ('{"ball_0": points}', "mesher 'wrong': body 'ball_0' is no mesh"),
-        ('{"inner_ring": SimpleNamespace(points=1e3 * points, cells=np.arange(8)[None])}', "must return metres"),
+        (1, "None", "mesher 'wrong': mesh() returned NoneType; it must be meshes by name"),
+        (2, FLIPPED, "`ball_0`: 1 of 1 cells are inverted or degenerate"),
+        (3, '{"ball_0": points}', "mesher 'wrong': body 'ball_0' is no mesh"),
+        (4, '{"inner_ring": SimpleNamespace(points=1e3 * points, cells=np.arange(8)[None])}', "must return metres"),
     ],
 )
-def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
-    (tmp_path / "wrong.py").write_text(MESHER.replace("{answer}", answer))
-    found = invoke("mesh", MINIMAL, "--plugin", tmp_path / "wrong.py", "--set", "mesh.kind=wrong", "--out", tmp_path / "out")
+def test_what_a_plug_in_mesher_must_not_return(tmp_path, number, answer, words):
+    name = f"wrong_{number}"  # the plug-ins of a process are kept: each case has a name of its own
+    words = words.replace("'wrong'", f"'{name}'")
+    (tmp_path / "wrong.py").write_text(MESHER.replace("{answer}", answer).replace('"wrong"', f'"{name}"'))
+    found = invoke(
+        "mesh", MINIMAL, "--plugin", tmp_path / "wrong.py", "--set", f"mesh.kind={name}", "--out", tmp_path / "out"
+    )
     assert found.exit_code == 2
     assert words in " ".join(found.output.split())
 

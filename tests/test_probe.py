@@ -30,8 +30,8 @@ def _probe(kernel, state_size=0, params=None):
         ("not_a_number", "the kernel gives `force` = nan at gap 0.001 m"),
         ("incomplete", "the kernel leaves `force` as it was at gap 0.001 m"),
         ("raising", "the kernel raises ValueError: too deep at gap -1e-05 m"),
-        ("other_signature", "is compiled for .* not for LAW; decorate the function with @jit"),
-        ("plain_python", "is not compiled; decorate the function with @jit"),
+        ("other_signature", "its kernel has .* the rule is .*: decorate it with @jit"),
+        ("plain_python", "which is not compiled: decorate it with @jit"),
     ],
 )
 def test_broken_kernels_are_refused(kernel, found):
@@ -97,7 +97,7 @@ def undefined(t, params, out):
         (half, "leaves `out` as it was at t = 0 s"),
         (diverging, "gives `out` = inf"),
         (undefined, "gives `out` = nan"),
-        (broken_laws.sticky, "not for FORCE"),
+        (broken_laws.sticky, "its kernel has .* the rule is .*: decorate it with @jit.FORCE"),
     ],
 )
 def test_broken_excitations_are_refused(kernel, found):
