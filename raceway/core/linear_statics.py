@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.core.aggregates import aggregated
 from raceway.core.multigrid import VCycle
 from raceway.core.rigid import MOTIONS, free_motions, rigid_motions
 from raceway.errors import ConvergenceError, RacewayError
@@ -93,7 +94,7 @@ def solve_static(
 
 
 class Preconditioner:
-    """One V-cycle of smoothed aggregation on the symmetrically scaled matrix.
+    """One V-cycle of smoothed aggregation on the symmetrically scaled matrix, coarsened along short edges first.
 
     Scaling with the root of the diagonal makes Chebyshev smoothing, which knows one spectral bound for all rows, work on
     graded meshes whose rows differ by orders of magnitude.
@@ -125,17 +126,22 @@ class Preconditioner:
         self.scale = scale[loose]
         self._size = len(loose)
         smoother = ("chebyshev", {"degree": 3, "iterations": 1})
+        blocks = scaled.tobsr((3, 3))
+        graph = sp.csr_matrix((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr), (len(loose) // 3,) * 2)
+        nodes = aggregated(graph, points[kept[::3]])
         state = np.random.get_state()  # pyamg starts its spectral estimates at random: the same start, the same answer
         np.random.seed(0)
         try:
             self.levels = pyamg.smoothed_aggregation_solver(
-                scaled.tobsr((3, 3)),
+                blocks,
                 B=candidates,
-                strength=("symmetric", {"theta": 0.0}),
+                strength=[("predefined", {"C": strong}) for strong in nodes.strong],
+                aggregate=[("predefined", {"AggOp": found}) for found in nodes.aggregates],
+                # Weak couplings take no part in the smoothing of the coarse space either, or it would fill up.
+                smooth=("jacobi", {"omega": 4.0 / 3.0, "filter_entries": True}),
                 presmoother=smoother,
                 postsmoother=smoother,
                 improve_candidates=None,
-                max_coarse=50,
                 coarse_solver=None,
             )
         finally:

@@ -1,0 +1,77 @@
+"""Small manners of the command line: Ctrl-C at the start and in a study, names in RACEWAY_DISABLE, one-off plug-ins listed."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import pytest
+
+from raceway import __main__ as start
+from tests.command_line import LAW, MINIMAL, invoke, raceway
+
+
+def test_ctrl_c_before_the_commands_are_loaded(monkeypatch, capsys):
+    class Interrupted:
+        def __getattr__(self, name):
+            raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "raceway.cli", Interrupted())
+    with pytest.raises(SystemExit) as ended:
+        start.main()
+    assert ended.value.code == 130
+    assert capsys.readouterr().err == "stopped by Ctrl-C\n"
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_ctrl_c_in_a_comparison_keeps_the_finished_rows(tmp_path, monkeypatch, as_json):
+    from raceway.studies import compare
+
+    run, done = compare.run, []
+
+    def stop(*given):
+        if done:
+            raise KeyboardInterrupt
+        done.append(1)
+        return run(*given)
+
+    monkeypatch.setattr(compare, "run", stop)
+    words = [
+        "compare",
+        MINIMAL,
+        "--vary",
+        "excitation.speed_rpm=12000,13000",
+        "--set",
+        "integrator.turns=1",
+        "--out",
+        tmp_path,
+    ]
+    found = invoke(*words, *(["--json"] if as_json else []))
+    assert found.exit_code == 130
+    content = json.loads((tmp_path / "compare.json").read_text())
+    assert len(content["rows"]) == 1
+    assert "12000" in found.stdout
+    assert "stopped by Ctrl-C" in found.stderr
+
+
+def test_ctrl_c_before_the_first_row_writes_nothing(tmp_path, monkeypatch):
+    def stop(*_given):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("raceway.studies.compare.run", stop)
+    found = invoke("compare", MINIMAL, "--vary", "load.axial=400,500", "--out", tmp_path)
+    assert found.exit_code == 130
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_unknown_name_in_raceway_disable_is_told():
+    found = raceway("check", MINIMAL, RACEWAY_DISABLE="no_such_thing")
+    assert found.returncode == 0
+    assert "RACEWAY_DISABLE names 'no_such_thing', which nothing is called" in found.stderr
+
+
+def test_plugins_lists_one_off_files(tmp_path):
+    (tmp_path / "listed.py").write_text(LAW.format(name="listed_law", kernel="        return None"))
+    found = raceway("plugins", "--plugin", tmp_path / "listed.py", "--json")
+    rows = json.loads(found.stdout)["plugins"]
+    assert [row["distribution"] for row in rows if row["name"] == "listed_law"] == ["listed.py"]
