@@ -131,7 +131,8 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
     shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
     if not np.isfinite(abs(shift)):
         return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness")
-    return Part(float(abs(shift)), f"second run with {other} instead of {steps} steps a turn, order {method.order}", -shift)
+    words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
+    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift)
 
 
 def _at(one: Model, model: Model, equilibrium: Equilibrium) -> Equilibrium:
