@@ -9,6 +9,9 @@ What has not died out of a transient is a free vibration, beside the lines of th
 falls with 1 / turns for a plain mean over whole turns and with 1 / turns^3 under Hann's window, so that the difference of
 both is the leakage of the plain one.  Step errors are taken from windowed lines: leakage has no order.
 
+Over a single turn of period T a free vibration f'' = -n^2 f leaves (2 / T) [f' + j w f] / (w^2 - n^2) in the 1x line, the
+bracket being what the turn does not close by.
+
 A free vibration that goes on shifts the secant stiffness itself.  A force k r (1 + c |r|^2) with a forced circle a and a
 free vibration of mean square b^2 answers at 1x with k (1 + c (a^2 + 2 b^2)) (no other term of |r|^2 r has this frequency):
 with s = 2 b^2 / a^2 the free vibration makes s / (1 + s) of the difference between this secant stiffness and the tangent.
@@ -27,7 +30,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.identification import Identification, stiffness, without_drift
+from raceway.core.identification import Identification, fourier_line, stiffness, without_drift
 from raceway.core.record import Record
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError
@@ -111,6 +114,8 @@ def _identification(model: Model, found: Identification) -> Part:
 def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex) -> Part:
     """By a second run with other steps."""
     method, first = model.scene.integrator.method, motions[-1][1]
+    if getattr(method, "steady", False):
+        return Part(first.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude")
     if not method.inertial:
         return Part(getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to")
     steps = first.whole.schedule.steps_per_turn
@@ -156,17 +161,50 @@ def other_steps(steps: int, least: float = 0.0) -> int | None:
 
 
 def _transient(model: Model, equilibrium: Equilibrium, simulation: Simulation, found: Identification) -> Part:
-    if not model.scene.integrator.method.inertial and model.plan.turns == 1:
+    method, value = model.scene.integrator.method, found.dynamic_stiffness
+    if getattr(method, "steady", False):
+        return Part(0.0, "one turn of the steady motion: nothing dies out")
+    if not method.inertial and model.plan.turns == 1:
         return Part(0.0, "one turn of equilibria: nothing dies out")
     steady = _steady(simulation.record, model)
     if steady is None or "speeds" in model.scene.identifier.method.needs:
-        if found.spread is None:
-            return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
-        return Part(found.spread, "largest deviation of a single turn from all turns that are used")
-    value = found.dynamic_stiffness
+        return _without_window(model, equilibrium, simulation, found)
     shift = (value - steady + _lasting(model, equilibrium, simulation.record, steady)) / abs(value)
     how = "free vibration: its leakage, a plain against Hann's window over all turns that are used, and its shift of Z"
     return Part(float(abs(shift)), how, shift)
+
+
+def _without_window(model: Model, equilibrium: Equilibrium, simulation: Simulation, found: Identification) -> Part:
+    """Where less than two turns of one frequency are used."""
+    if found.spread is not None:
+        return Part(found.spread, "largest deviation of a single turn from all turns that are used")
+    whole = simulation.whole
+    per_turn = whole.schedule.steps_per_turn // whole.schedule.stride
+    if model.excitation.period_s is None or len(whole.time) <= per_turn or not model.scene.integrator.method.inertial:
+        return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate of a single turn")
+    clean = _closed(model, equilibrium, simulation, per_turn)
+    shift = (found.dynamic_stiffness - clean) / abs(found.dynamic_stiffness)
+    how = "free vibration that does not close the turn, in the natural modes of the equilibrium"
+    return Part(float(abs(shift)), how, shift)
+
+
+def _closed(model: Model, equilibrium: Equilibrium, simulation: Simulation, per_turn: int) -> complex:
+    """Z of the last turn less what its free vibration leaves in the 1x line."""
+    from scipy.linalg import eigh
+
+    system, whole, w = model.system, simulation.whole, 2.0 * np.pi * model.excitation.frequency_hz
+    chosen = np.flatnonzero(system.free > 0.0)
+    tangent = 0.5 * (equilibrium.stiffness + equilibrium.stiffness.T)
+    squares, modes = eigh(system.reduced(tangent + system.stiffness), system.reduced(system.mass))
+    jump, slope = (
+        modes.T @ system.reduced(system.mass) @ (signal[-1] - signal[-1 - per_turn])[chosen]
+        for signal in (whole.displacement, whole.velocity)
+    )
+    turn = slice(-per_turn, None)
+    line = fourier_line(whole.time[turn], whole.displacement[turn], w / (2.0 * np.pi))
+    seam = np.exp(-1j * w * whole.time[-1])
+    line[chosen] -= w / np.pi * seam * modes @ ((slope + 1j * w * jump) / (w**2 - squares))
+    return stiffness(fourier_line(whole.time[turn], whole.force[turn], w / (2.0 * np.pi)), line)
 
 
 def _steady(record: Record, model: Model) -> complex | None:

@@ -105,7 +105,13 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) ->
         "reused": False,
     }
     if setting.scene is None:
-        lost = {"status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
+        lost: dict[str, Any] = {
+            "status": "refused",
+            "reason": setting.reason,
+            "quantities": {},
+            "own_error": None,
+            "cost": None,
+        }
         return {**head, **lost}
     if needs_motion(setting.scene) and setting.scene.integrator.method.inertial:
         head["expected_order"] = setting.scene.integrator.method.order

@@ -4,6 +4,7 @@ The default design is a union of small products, one for each question, not the 
 
 time step         every integrator with inertia x steps a turn, in halvings
 steady orbit      integrators that solve for the orbit itself x their tolerance
+few turns         the scene's integrator over three turns x few steps: what a rough answer costs
 turns and start   the scene's integrator x how the motion starts x turns, at steps so fine that only the transient is left
 mesh              element sizes about the scene's own, where bodies have a mesh
 models            what changes the physics, one at a time: law, discretisation, bodies, identifier, no inertia
@@ -29,9 +30,10 @@ from raceway.studies.points import refuse_mistakes, tables_at
 STEPS = (45, 90, 180, 360, 720, 1440)
 TURNS = (3, 6, 12, 24, 48)
 STARTS = ("orbit", "ramp", "static")
-TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8)
+TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
 #: Steps a turn of the transient's ladder.
 FINE_STEPS = 720
+FEW_STEPS, FEW_TURNS = (24, 45, 90, 180), 3
 #: Factors on the scene's element size.
 SIZES = (2.0, 1.414, 1.0, 0.707)
 BODIES = ("rigid", "condensed", "elastic")
@@ -155,18 +157,18 @@ def default_points(scene: Scene, registry: Registry) -> list[tuple[str, dict[str
     """Family and values of every setting of the default design that has a meaning for the scene."""
     found: list[tuple[str, dict[str, Any]]] = []
     if needs_motion(scene):
-        methods = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
+        methods: dict[str, Any] = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
         steady = [name for name, method in methods.items() if is_steady(method)]
-        for name, steps in product(
-            (n for n, m in methods.items() if getattr(m, "inertial", True) and n not in steady), STEPS
-        ):
+        for name, steps in product((n for n, m in methods.items() if m.inertial and n not in steady), STEPS):
             found.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
         for name, tolerance in product(steady, TOLERANCES):
             known = {field.name for field in attrs.fields(methods[name])}
-            values = {"integrator.kind": name}
-            found.append(("steady orbit", {**values, "integrator.tolerance": tolerance} if "tolerance" in known else values))
+            one: dict[str, Any] = {"integrator.kind": name}
+            found.append(("steady orbit", {**one, "integrator.tolerance": tolerance} if "tolerance" in known else one))
         own = scene.integrator.method
         if own.inertial and not is_steady(type(own)):
+            for steps in FEW_STEPS:
+                found.append(("few turns", {"integrator.turns": FEW_TURNS, "integrator.steps_per_turn": steps}))
             for start, turns in product(STARTS, TURNS):
                 values = {"integrator.start": start, "integrator.turns": turns, "integrator.steps_per_turn": FINE_STEPS}
                 found.append(("turns and start", values))

@@ -238,8 +238,8 @@ def _extrapolated(
     coarse, fine = (runner.at(first, {**at, "integrator.steps_per_turn": n}) for n in (steps // 2, steps))
     if coarse is None or fine is None:
         return None
-    order = runner.registry.find("integrator", name).plugin.order
-    gain = 1.0 / (2.0**order - 1.0)
+    method: Any = runner.registry.find("integrator", name).plugin
+    gain = 1.0 / (2.0**method.order - 1.0)
     change = {key: gain * part for key, part in minus(fine["quantities"], coarse["quantities"]).items()}
     values = {key: fine["quantities"][key] + part for key, part in change.items()}
     return name, values, change, fine["transient_error"] or 0.0

@@ -91,7 +91,7 @@ class Precision:
         Errors below the reference's bound count as the bound: nobody knows which of them is smaller.
         """
         bound = self.references[physics].bound
-        rows = [(r["cost"]["wall_s"], max(r["error"], bound), k) for k, r in enumerate(self.judged) if _counts(r, physics)]
+        rows = [(r["cost"]["time_s"], max(r["error"], bound), k) for k, r in enumerate(self.judged) if _counts(r, physics)]
         found, best = [], math.inf
         for _, error, place in sorted(rows):
             if error < best:
@@ -101,10 +101,10 @@ class Precision:
 
     def cheapest(self, physics: str) -> dict[str, int | None]:
         """For each threshold the place of the fastest row whose error, with the reference's bound, is below it."""
-        rows = [(r["cost"]["wall_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
+        rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
         found: dict[str, int | None] = {}
         for threshold in THRESHOLDS:
-            good = [(wall, k) for wall, k in rows if self.bounded(self.judged[k]) <= threshold]
+            good = [(time, k) for time, k in rows if self.bounded(self.judged[k]) <= threshold]
             found[_text(threshold)] = min(good)[1] if good else None
         return found
 
@@ -156,7 +156,7 @@ class Precision:
                 lines.append(f"no setting is known to be within {percent}")
             else:
                 row = self.judged[place]
-                lines.append(f"cheapest within {percent}: {words_of(row['setting'])} ({1e3 * row['cost']['wall_s']:.3g} ms)")
+                lines.append(f"cheapest within {percent}: {words_of(row['setting'])} ({1e3 * row['cost']['time_s']:.3g} ms)")
         for model in self.models:
             if not model["base"] and model["difference"] is not None:
                 lines.append(f"model error: {words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
@@ -178,7 +178,7 @@ class Precision:
         rows = []
         for row in self.judged:
             cost = row["cost"] or {}
-            named = {name: cost.get(name) for name in ("wall_s", "cpu_s", "compile_s", "steps")}
+            named = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
             rest = {"status": row["status"], "reason": row["reason"], "own_error": row["own_error"], "reused": row["reused"]}
             base = row["physics"] == self.base
             rows.append({**{name: row[name] for name in keep}, **named, **rest, "base": base, "cost": row["cost"]})
