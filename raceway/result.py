@@ -15,6 +15,7 @@ from raceway.core.lines import Line
 from raceway.core.system import COORDINATES
 from raceway.files import write_whole
 from raceway.model import Model
+from raceway.motion import motion_table
 from raceway.simulate import Simulation
 from raceway.statics import Equilibrium
 
@@ -59,6 +60,7 @@ class Result:
                 "equilibrium": equilibrium_table(self.model, self.equilibrium),
                 "identification": self._identification(),
                 "model": self.bodies,
+                "motion": None if self.simulation is None else motion_table(self.model, self.simulation.record),
                 "error": self.error,
                 "cost": self.cost,
                 "stability": self.stability,

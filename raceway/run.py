@@ -15,7 +15,7 @@ from raceway.core.friction import friction_energy
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.lines import Line, lines
-from raceway.core.system import TOLERANCE
+from raceway.error_estimate import error_table, no_error
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
@@ -23,8 +23,8 @@ from raceway.plausibility import motion_warnings, refuse_impossible
 from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
-from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds, step_error
-from raceway.statics import Equilibrium, settle
+from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds
+from raceway.statics import settle
 from raceway.unused import unused
 
 
@@ -69,7 +69,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     simulation: Simulation | None = None
     identification: Identification | None = None
     motions: list[tuple[Model, Simulation]] = []
-    error = _no_error("the scene is static: nothing is identified")
+    error, error_s = no_error("the scene is static: nothing is identified"), 0.0
     if model.bodies is not None:
         error["mesh"], error["how"]["mesh"] = model.bodies.mesh_error(model, equilibrium)
     if scene.excitation is not None:
@@ -85,7 +85,9 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
             refuse_impossible(one, equilibrium, motion.whole)
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
-        error = _errors(model, equilibrium, simulation, identification)
+        identified = working_clock()
+        error = error_table(model, equilibrium, motions, identification)
+        error_s = working_clock() - identified
     done = working_clock()
     compile_s = take_compile_seconds()
     result = Result(
@@ -94,7 +96,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         identification=identification,
         simulation=simulation,
         error=error,
-        cost=_cost([one for _, one in motions], done - wall, compile_s, built - wall, done - built),
+        cost=_cost([one for _, one in motions], done - wall, compile_s, built - wall, done - built, error_s),
         stability=_stability(motions),
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
@@ -136,48 +138,16 @@ def _refuse_no_number(found: Identification) -> None:
         raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
 
 
-def _no_error(how: str) -> dict[str, Any]:
-    names = ("total", "time_step", "transient", "mesh", "contact", "identification")
-    return {**dict.fromkeys(names), "how": dict.fromkeys(names, how)}
-
-
-def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | None, found: Identification) -> dict[str, Any]:
-    """The table ``error``: relative errors of Z, each with how it was estimated."""
-    error = _no_error("")
-    how: dict[str, str] = error["how"]
-    how["mesh"] = "rigid bodies have no mesh"
-    if model.bodies is not None:
-        error["mesh"], how["mesh"] = model.bodies.mesh_error(model, equilibrium)
-    how["contact"] = "the law is taken as exact: its own model error is not estimated"
-    if simulation is None:
-        how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
-        error["time_step"], how["time_step"] = TOLERANCE, "no time step; residual that the equilibrium is solved to"
-    else:
-        error["time_step"], how["time_step"] = step_error(model, equilibrium, simulation, found.dynamic_stiffness)
-        alone = not model.scene.integrator.method.inertial and model.plan.turns == 1
-        error["transient"] = 0.0 if alone else found.spread
-        how["transient"] = (
-            "one turn of equilibria: nothing dies out"
-            if alone
-            else "largest deviation of a single turn from all turns that are used"
-        )
-        error["identification"], how["identification"] = found.window, "Fourier line against least squares"
-        for name, value in (("transient", found.spread), ("identification", found.window)):
-            if value is None and error[name] is None:
-                how[name] = f"identifier '{model.scene.identifier.kind}' gives no estimate"
-    parts = [error[name] for name in ("time_step", "transient", "identification", "mesh") if error[name] is not None]
-    error["total"] = float(sum(parts)) if parts else None
-    how["total"] = "sum of the estimates that are not null"
-    return error
-
-
-def _cost(simulations: list[Simulation], wall: float, compile_s: float, build: float, solve: float) -> dict[str, Any]:
+def _cost(
+    simulations: list[Simulation], wall: float, compile_s: float, build: float, solve: float, error: float
+) -> dict[str, Any]:
     scale = 1 if sys.platform == "darwin" else 1024
     return {
         "wall_s": wall,
         "compile_s": compile_s,
         "build_s": max(build, 0.0),
-        "solve_s": solve,
+        "solve_s": solve - error,
+        "error_s": error,
         "steps": sum(one.whole.counts["steps"] for one in simulations),
         "newton_iterations": sum(one.whole.counts["evaluations"] for one in simulations),
         "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,

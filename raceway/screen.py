@@ -357,3 +357,19 @@ def compare_screen(
     parts += [Text(text) for text in words]
     parts += written(files)
     return Group(*parts)
+
+
+def precision_screen(
+    title: str, rows: Sequence[Mapping[str, Any]], words: Sequence[str], files: Sequence[str]
+) -> RenderableType:
+    """A line for each setting, and what they come to in words."""
+    table = Table(header_style="bold", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    for name in rows[0]:
+        table.add_column(name, justify="left" if name in ("setting", "status") else "right", overflow="fold")
+    for row in rows:
+        table.add_row(*(escape(cell) for cell in row.values()))
+    parts: list[RenderableType] = [Text(title, style="bold"), table]
+    parts.append(Text("* on the front; ~ known to the reference's bound only", style="dim"))
+    parts += [Text(text) for text in words]
+    parts += written(files)
+    return Group(*parts)

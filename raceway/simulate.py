@@ -1,4 +1,4 @@
-"""The middle of a run: from a model and its equilibrium to recorded motion, and to the error of its time step."""
+"""The middle of a run: from a model and its equilibrium to recorded motion."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Callable
 from math import ceil
 
 import attrs
-import numpy as np
 
 from raceway.core.orbit import Orbit, steady_orbit
 from raceway.core.record import Motion, Record, Schedule
@@ -45,14 +44,14 @@ def simulate(
     model: Model,
     equilibrium: Equilibrium,
     on_progress: OnProgress | None = None,
-    coarsen: int = 1,
+    steps_per_turn: int | None = None,
     orbit: Orbit | None = None,
 ) -> Simulation:
     """Integrate the plan's turns.
 
     Parameters
     ----------
-    coarsen : divides the steps per turn
+    steps_per_turn : instead of the scene's
     orbit : the steady orbit, where it is known already
 
     Raises
@@ -64,7 +63,7 @@ def simulate(
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     start, orbit, warnings = _chosen_start(model, equilibrium, orbit)
     critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
-    steps_per_turn = _steps_per_turn(model, period, critical) // coarsen
+    steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
     dt = period / steps_per_turn
     if not method.implicit and critical is not None and dt >= critical:
         least = int(period / (_SAFETY * critical)) + 1
@@ -159,23 +158,3 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
         one = build_model(scene, make_plan(scene))
         found.append((one, simulate(one, settle(one), on_progress)))
     return found
-
-
-def step_error(model: Model, equilibrium: Equilibrium, simulation: Simulation, value: complex) -> tuple[float | None, str]:
-    """Relative error of Z by the time step, from a run with half as many steps, and how it was found."""
-    method, schedule = model.scene.integrator.method, simulation.whole.schedule
-    if not method.inertial:
-        return getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to"
-    if schedule.steps_per_turn % 2 or schedule.steps_per_turn < 16:
-        return None, "steps_per_turn is odd or below 16: no run with half as many"
-    if not method.implicit and 2.0 * schedule.dt >= (simulation.critical_time_step or np.inf):
-        return None, "twice the step would exceed the stable limit"
-    if "speeds" in model.scene.identifier.method.needs:
-        return None, "several speeds are run: no second run with half as many steps"
-    try:
-        coarse = simulate(model, equilibrium, coarsen=2, orbit=simulation.orbit)
-    except ConvergenceError as why:
-        return None, f"the run with half as many steps failed: {why}"
-    other = model.scene.identifier.method.identify([coarse.record], equilibrium, model).dynamic_stiffness
-    error = abs(other - value) / abs(value) / (2.0**method.order - 1.0)
-    return float(error) if np.isfinite(error) else None, f"run with half as many steps, order {method.order}"

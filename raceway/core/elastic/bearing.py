@@ -226,7 +226,9 @@ class ElasticBearing:
                 ball = self._meshes[k + 2]
                 middle = 0.5 * g.pitch_diameter * self._radial(k)
                 found = surface_points(ball.points, ball.facet_nodes("surface"), middle)
-                side = (found.place - middle) @ np.array([np.sin(g.contact_angle), *np.cos(g.contact_angle) * self._radial(k)[1:]])
+                side = (found.place - middle) @ np.array(
+                    [np.sin(g.contact_angle), *np.cos(g.contact_angle) * self._radial(k)[1:]]
+                )
                 found = _near(found, (side < 0.0) == inner, surface, reach)
                 found = SurfacePoints(found.place, found.area, found.nodes + assembly.starts[k + 2], found.weights)
                 word = "inner" if inner else "outer"

@@ -14,7 +14,7 @@ from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
 MOST_ITERATIONS, MANY_ITERATIONS = 600, 60
-SOFT=1.0
+SOFT = 1.0
 #: Ratio of the mass' share of the matrix at which the multigrid is made anew.
 _OTHER_MASS = 4.0
 #: Relative residual to which the free nodes' following of a frame is solved.
@@ -140,7 +140,9 @@ class LinearSolver:
 
         return apply
 
-    def _preconditioner(self, c_k: float, operator: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.ndarray], np.ndarray]:
+    def _preconditioner(
+        self, c_k: float, operator: Callable[[np.ndarray], np.ndarray]
+    ) -> Callable[[np.ndarray], np.ndarray]:
         a, m, multigrid = self.assembly, self.assembly.frame_size, self._multigrid
         assert multigrid is not None
         scale, follow = 1.0 / c_k, self._follow

@@ -1,0 +1,176 @@
+"""The table ``error`` of a result: relative errors of Z, each with how it was estimated.
+
+Notes
+-----
+A method of order p leaves an error c dt^p.  A second run with n' instead of n steps a turn gives c, so that the error of
+the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
+
+What a transient leaves is in ``free_vibration``.  Step errors are taken from values without it: leakage has no order.
+
+References
+----------
+Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed., 1993), section II.4 (step halving).
+"""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.identification import Identification
+from raceway.core.system import TOLERANCE
+from raceway.errors import ConvergenceError
+from raceway.free_vibration import without_free_vibration
+from raceway.model import Model
+from raceway.simulate import Simulation, simulate
+from raceway.statics import Equilibrium, settle
+
+#: Least steps a turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
+_LEAST_STEPS = 8
+_MOST_OF_LIMIT = 0.95
+#: A second run whose step differs by less than this tells nothing.
+_LEAST_RATIO = 1.1
+#: Turns of a second run with more steps, which is shorter so that it costs no more than the first.
+_LEAST_TURNS = 4
+
+_NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
+
+
+@attrs.frozen
+class Part:
+    """One contribution: ``size`` relative to |Z|, its complex ``shift`` of Z where that is known, and how it was found."""
+
+    size: float | None
+    how: str
+    shift: complex | None = None
+
+
+def no_error(how: str) -> dict[str, Any]:
+    """The table without numbers, and one reason."""
+    return {**dict.fromkeys(_NAMES), "how": dict.fromkeys(_NAMES, how)}
+
+
+def error_table(
+    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], found: Identification
+) -> dict[str, Any]:
+    """The table ``error``.
+
+    Parameters
+    ----------
+    motions : model and motion of each speed; empty where the identifier needs no motion
+    """
+    table = no_error("")
+    how: dict[str, str] = table["how"]
+    how["mesh"] = "rigid bodies have no mesh"
+    mesh = None
+    if model.bodies is not None:
+        mesh, how["mesh"] = model.bodies.mesh_error(model, equilibrium)
+    how["contact"] = "the law is taken as exact: its own model error is not estimated"
+    if not motions:
+        how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
+        parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
+    else:
+        parts = {
+            "time_step": _time_step(model, equilibrium, motions, found.dynamic_stiffness),
+            "transient": _transient(model, equilibrium, motions[-1][1], found),
+            "identification": _identification(model, found),
+        }
+    parts["mesh"] = Part(mesh, how["mesh"])
+    for name, part in parts.items():
+        table[name], how[name] = part.size, part.how
+    table["total"] = _total(parts)
+    how["total"] = "time step and transient with their phases, at least half the larger; plus identification"
+    return table
+
+
+def _total(parts: dict[str, Part]) -> float | None:
+    """Errors whose phases are known may cancel; half the larger is kept, because each is known to that only."""
+    known = [part for part in parts.values() if part.size is not None]
+    if not known:
+        return None
+    sizes = [part.size or 0.0 for part in known if part.shift is None]
+    shifts = [part.shift for part in known if part.shift is not None]
+    together = max(abs(sum(shifts)), *(0.5 * abs(shift) for shift in shifts)) if shifts else 0.0
+    return float(together + sum(sizes))
+
+
+def _identification(model: Model, found: Identification) -> Part:
+    if found.window is None:
+        return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
+    return Part(found.window, "Fourier line against least squares")
+
+
+def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex) -> Part:
+    """By a second run with other steps."""
+    method, first = model.scene.integrator.method, motions[-1][1]
+    if getattr(method, "steady", False):
+        return Part(first.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude")
+    if not method.inertial:
+        return Part(getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to")
+    steps = first.whole.schedule.steps_per_turn
+    limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
+    explicit = not method.implicit and bool(limits)
+    bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
+    other = other_steps(steps, bound)
+    turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
+    try:
+        again = [
+            simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, orbit=m.orbit)
+            for one, m in motions
+        ]
+    except ConvergenceError as why:
+        return Part(None, f"the run with {other} steps a turn failed: {why}")
+    fine, coarse = value, 0j
+    clean = [without_free_vibration(model, equilibrium, one) for one in (first, again[-1])]
+    if len(motions) == 1 and clean[0] is not None and clean[1] is not None:
+        fine, coarse = clean[0].value, clean[1].value
+    else:
+        coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
+    shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
+    if not np.isfinite(abs(shift)):
+        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness")
+    words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
+    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift)
+
+
+def _at(one: Model, model: Model, equilibrium: Equilibrium) -> Equilibrium:
+    """The equilibrium that belongs to the model of one speed."""
+
+    return equilibrium if one is model else settle(one)
+
+
+def _over(model: Model, turns: int) -> Model:
+    return model if turns == model.plan.turns else attrs.evolve(model, plan=attrs.evolve(model.plan, turns=turns))
+
+
+def other_steps(steps: int, least: float = 0.0) -> int:
+    """Steps a turn of the second run: half, or as few as the stable limit leaves; half as many more where that tells nothing.
+
+    Parameters
+    ----------
+    least : steps a turn that the stable limit asks for; 0 for an implicit method
+    """
+    fewer = max(steps // 2, _LEAST_STEPS, ceil(least))
+    if steps >= _LEAST_RATIO * fewer:
+        return fewer
+    return ceil(1.5 * steps)
+
+
+def _transient(model: Model, equilibrium: Equilibrium, simulation: Simulation, found: Identification) -> Part:
+    method, value = model.scene.integrator.method, found.dynamic_stiffness
+    if getattr(method, "steady", False):
+        return Part(0.0, "one turn of the steady motion: nothing dies out")
+    if not method.inertial and model.plan.turns == 1:
+        return Part(0.0, "one turn of equilibria: nothing dies out")
+    if found.spread is None and "speeds" in model.scene.identifier.method.needs:
+        return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
+    clean = without_free_vibration(model, equilibrium, simulation)
+    if clean is None:
+        if found.spread is None:
+            return Part(None, "a single turn tells nothing of a transient")
+        return Part(found.spread, "largest deviation of a single turn from all turns that are used")
+    shift = (value - clean.value + clean.lasting) / abs(value)
+    return Part(float(abs(shift)), clean.how, shift)

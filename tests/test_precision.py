@@ -1,0 +1,225 @@
+"""`raceway precision`: the design, rows that survive, references with a bound, fronts, orders; and the estimates of errors."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from benchmarks.evidence import error_estimate as evidence
+from raceway.errors import RacewayError, SceneError
+from raceway.free_vibration import hann_line
+from raceway.motion import peak
+from raceway.registry import default_registry
+from raceway.scene_file import read_toml, scene_from_dict
+from raceway.studies import precision as module
+from raceway.studies.precision import precision
+from raceway.studies.precision_design import make_design
+from raceway.studies.precision_result import THRESHOLDS
+from raceway.studies.row_store import RowStore, row_key
+from tests.command_line import ARTICLE, invoke
+
+TABLES = read_toml(ARTICLE)
+FEW = {**TABLES, "integrator": {"kind": "newmark", "turns": 4}}
+LADDER = ["integrator.kind=newmark,central_difference", "integrator.steps_per_turn=45,90,180"]
+
+
+@pytest.fixture(scope="module")
+def ladder():
+    return precision(FEW, LADDER, repeats=1)
+
+
+def test_the_default_design_has_each_axis_and_says_what_it_leaves_out():
+    design = make_design(TABLES, [], 30.0, default_registry())
+    keys = {key for setting in design.settings for key in setting.values}
+    assert {"integrator.kind", "integrator.steps_per_turn", "integrator.turns", "integrator.start"} <= keys
+    assert {"contact.kind", "identifier.kind"} <= keys
+    assert all(why for _, _, why in design.left_out)
+    # Two laws and two discretisations, four starts of three integrators and so on would be thousands.
+    assert len(design.settings) < 80
+    cheap = make_design(TABLES, [], 0.61, default_registry())
+    assert len(cheap.settings) < len(design.settings)
+    assert any("above the limit" in why for _, _, why in cheap.left_out)
+
+
+def test_errors_fall_with_the_order_of_the_methods_and_in_the_order_of_theory(ladder):
+    rows = ladder.judged
+    assert [row["status"] for row in rows] == ["completed"] * 6
+    found = [row["order"] for row in rows if row["order"] is not None]
+    # Both methods are of second order; 0.1 is left for the terms of fourth order at 45 steps a turn.
+    assert len(found) == 4 and all(order == pytest.approx(2.0, abs=0.1) for order in found)
+    assert all(row["expected_order"] == 2 for row in rows)
+    # w^2 becomes (2 / dt tan)^2 with dt^2 / 6 against (2 / dt sin)^2 with dt^2 / 12: twice the error.
+    for newmark, explicit in zip(rows[:3], rows[3:], strict=True):
+        assert newmark["error"] / explicit["error"] == pytest.approx(2.0, rel=0.05)
+
+
+def test_the_reference_is_more_accurate_than_the_rows_and_says_how(ladder):
+    content = ladder.as_dict()
+    assert content["reference"]["error"] < 0.1 * min(row["error"] for row in content["rows"])
+    assert "extrapolated" in content["reference"]["how"] or "steady orbit" in content["reference"]["how"]
+    assert not any(row["at_bound"] for row in content["rows"])
+    # The rows' own estimates are those that the evidence holds within a factor of three.
+    for row in content["rows"]:
+        assert row["error"] / 3.0 <= row["own_error"] <= 3.0 * row["error"]
+
+
+def test_the_front_falls_and_the_cheapest_are_on_it(ladder):
+    content = ladder.as_dict()
+    front = [content["rows"][place] for place in content["front"]]
+    times, errors = [row["time_s"] for row in front], [row["error"] for row in front]
+    assert times == sorted(times) and errors == sorted(errors, reverse=True)
+    assert [float(name) for name in content["cheapest"]] == list(THRESHOLDS)
+    assert all(place in content["front"] for place in content["cheapest"].values())
+
+
+def test_json_is_what_the_design_promises(ladder, tmp_path):
+    files = {path.name: path for path in ladder.write(tmp_path, pictures=True)}
+    content = json.loads(files["precision.json"].read_text())
+    assert {"value", "error", "how"} <= set(content["reference"])
+    wanted = {"setting", "value", "error", "wall_s", "cpu_s", "compile_s", "steps", "status", "reason", "order", "cost"}
+    assert all(wanted <= set(row) for row in content["rows"])
+    assert {"z_real", "z_imag", "axial_displacement", "peak_ball_load", "p0"} <= set(content["rows"][0]["quantities"])
+    page = files["precision.md"].read_text()
+    assert "central_difference" in page and "| order |" in page
+    assert files["precision.png"].stat().st_size > 10_000
+
+
+def test_model_error_and_numerical_error_are_told_apart():
+    found = precision(FEW, ["contact.kind=hertz,penalty"], repeats=1)
+    base, other = found.models
+    assert base["base"] and other["model"] == {"contact.kind": "penalty"}
+    hertz, penalty = (row["value"] for row in found.judged)
+    # The difference of the references is that of the runs, to their own errors of 1e-6.
+    assert other["difference"] == pytest.approx(abs(penalty - hertz) / hertz, rel=1e-3)
+    assert all(row["error"] < 1e-5 for row in found.judged), "each row is held against its own model"
+    assert found.front(found.base) == [0]
+
+
+def test_what_is_refused_or_fails_stays_in_the_table_with_its_reason():
+    steps = "integrator.steps_per_turn=16,180"
+    found = precision(
+        FEW, ["integrator.kind=central_difference", steps, "contact.discretisation=resultant,nodal"], repeats=1
+    )
+    states = [(row["status"], bool(row["reason"])) for row in found.judged]
+    assert states == [("failed", True), ("refused", True), ("completed", False), ("refused", True)]
+    assert "stable limit" in found.judged[0]["reason"]
+
+
+def test_finished_rows_survive_a_stop_and_are_reused(tmp_path):
+    store, seen = tmp_path / "rows.jsonl", []
+
+    def stop(what, done, total):
+        seen.append(what)
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        precision(FEW, LADDER, repeats=1, store=store, on_progress=stop)
+    assert len(RowStore(store).rows) == 2
+    with store.open("ab") as file:
+        file.write(b'{"key": "cut off by a ful')
+    found = precision(FEW, LADDER, repeats=1, store=store)
+    assert [row["reused"] for row in found.judged] == [True, True, False, False, False, False]
+    again = precision(FEW, LADDER, repeats=1, store=store)
+    assert all(row["reused"] for row in again.judged)
+    assert again.as_dict()["reference"] == found.as_dict()["reference"]
+
+
+def test_a_disk_that_takes_no_more_rows_does_not_stop_the_study(tmp_path):
+    found = precision(FEW, ["integrator.steps_per_turn=90"], repeats=1, store=tmp_path)  # a folder takes no lines
+    assert found.judged[0]["error"] is not None
+    assert isinstance(found.fault, RacewayError) and "takes no more rows" in str(found.fault)
+
+
+def test_the_key_of_a_row_follows_the_scene_and_the_files_it_names(tmp_path):
+    registry = default_registry()
+
+    def key(**tables):
+        return row_key(scene_from_dict({**TABLES, **tables}, registry), registry)
+
+    assert key() == key() and key() != key(load={"axial": 999.0})
+    assert row_key(scene_from_dict(TABLES), registry, 1) != row_key(scene_from_dict(TABLES), registry, 2)
+    file = tmp_path / "force.csv"
+    keys = []
+    for force in (100.0, 200.0):
+        lines = [f"{k / 1000:.4f},{force * math.cos(k):.4f},{force * math.sin(k):.4f}" for k in range(50)]
+        file.write_text("\n".join(["time_s,fy_n,fz_n", *lines]) + "\n")
+        keys.append(key(excitation={"kind": "measured", "file": str(file), "frequency_hz": 200.0}))
+    assert keys[0] != keys[1]
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["--vary", "integrator.stepz=1,2"], 2, "stepz"),
+        (["--vary", "nothing"], 2, "nothing"),
+        (["--reference", "integrator.stepz=3"], 2, "stepz"),
+        (["--limit", "0"], 2, "limit"),
+        (["--repeats", "0"], 2, "repeats"),
+    ],
+)
+def test_mistakes_are_found_before_anything_runs(words, code, said, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "measured", lambda *_: pytest.fail("it ran"))
+    found = invoke("precision", ARTICLE, *words, "--out", tmp_path)
+    assert found.exit_code == code and said in found.output
+
+
+def test_a_reference_that_is_no_better_than_the_rows_is_refused_after_the_rows_are_shown(tmp_path):
+    words = ["--vary", "integrator.steps_per_turn=45,90", "--set", "integrator.turns=4", "--repeats", "1"]
+    found = invoke("precision", ARTICLE, *words, "--reference", "integrator.steps_per_turn=30", "--out", tmp_path)
+    assert found.exit_code == 2
+    assert "--reference" in found.output and "not more accurate than the rows" in found.output
+    assert (tmp_path / "precision.json").is_file()
+
+
+def test_no_converging_row_is_a_numerical_failure_with_the_reason(tmp_path):
+    words = ["--vary", "integrator.steps_per_turn=8,16", "--set", "integrator.kind=central_difference", "--repeats", "1"]
+    found = invoke("precision", ARTICLE, *words, "--out", tmp_path)
+    assert found.exit_code == 1 and "no setting converged" in found.output and "stable limit" in found.output
+    rows = json.loads((tmp_path / "precision.json").read_text())["rows"]
+    assert [row["status"] for row in rows] == ["failed", "failed"]
+
+
+def test_a_static_scene_has_models_only():
+    static = {name: table for name, table in TABLES.items() if name != "excitation"}
+    found = precision(static, ["contact.kind=hertz,penalty"], repeats=1)
+    assert [row["error"] for row in found.judged] == [0.0, 0.0]
+    assert found.models[1]["difference"] > 0.0
+
+
+HARD = (
+    "newmark", "central differences at 0.89 of their limit", "61 steps a turn (odd), force of one direction",
+    "ramp, 3 turns, tilt free: one turn is used", "sudden load", "lift-off, 200 N, 13 000 r/min",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_estimates_are_within_a_factor_of_three(name):
+    one = next(case for case in evidence.CASES if case.name == name)
+    estimate, true, _ = evidence.judge(one)
+    assert evidence.right(estimate, true), (estimate, true)
+
+
+def test_hanns_line_of_a_periodic_signal_is_exact_and_leaks_less_of_another():
+    t = np.arange(1, 1441) / 1440.0 * 4.0  # four turns of 1 Hz
+    periodic = 3.0 + 2.0 * np.cos(2.0 * np.pi * t - 0.3) + 0.5 * np.cos(4.0 * np.pi * t)
+    exact = 2.0 * np.exp(-0.3j)
+    # Rounding of 1440 terms.
+    assert abs(hann_line(t, periodic[:, None], 1.0)[0] - exact) < 1e-12
+    free = periodic + np.cos(2.0 * np.pi * 5.37 * t)
+    plain = 2.0 * (np.exp(-2j * np.pi * t) * free).mean()
+    assert abs(hann_line(t, free[:, None], 1.0)[0] - exact) < 0.05 * abs(plain - exact)
+
+
+def test_a_peak_between_samples_is_found():
+    t = np.linspace(-1.0, 1.0, 21)
+    assert peak(np.column_stack([4.0 - (t - 0.03) ** 2, 0.0 * t])) == pytest.approx(4.0, rel=1e-12)  # a parabola: rounding
+    assert peak(t[:, None]) == 1.0
+
+
+def test_an_axis_that_leaves_no_setting_says_why():
+    with pytest.raises(SceneError, match="above the limit"):
+        make_design(TABLES, ["integrator.turns=1000,2000"], 0.1, default_registry())
