@@ -18,7 +18,7 @@ from raceway.core.periodic.newton import (
     newton,
 )
 from raceway.core.periodic.rule import Rule, rule
-from raceway.core.periodic.sweep import forces
+from raceway.core.periodic.sweep import differentiate, forces
 from raceway.core.periodic.symmetry import Symmetry
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
@@ -31,7 +31,8 @@ class Problem:
     Attributes
     ----------
     speed : of the force, w [rad/s]: a turn of theta is a turn of the force
-    share : of the excitation that acts
+    share : of the excitation that acts;  clock : speed that belongs to the excitation's own time, ``speed`` unless a branch
+        is followed over speed while the bodies keep theirs
     free : (n,) numbers of the unknown coordinates
     weight : (5,) makes moments forces; lengths of tilts are tilts over it
     closing : (2 n, 2 n) rotation of an unknown state (q, v) by the span
@@ -41,11 +42,16 @@ class Problem:
     speed: float
     symmetry: Symmetry
     share: float = 1.0
+    clock: float = attrs.field()
     rule: Rule = attrs.field(factory=rule)
 
     free: np.ndarray = attrs.field(init=False)
     weight: np.ndarray = attrs.field(init=False)
     closing: np.ndarray = attrs.field(init=False)
+
+    @clock.default
+    def _clock(self) -> float:
+        return self.speed
 
     @free.default
     def _free(self) -> np.ndarray:
@@ -72,12 +78,22 @@ class Problem:
         """The whole excitation at the Gauss points (m s, 5)."""
         angles = self.angles(nodes)
         force = np.empty((len(angles), 5))
-        forces(self.system.force, self.system.force_params, angles / self.speed, force)
+        forces(self.system.force, self.system.force_params, angles / self.clock, force)
         return force
 
     def push(self, nodes: np.ndarray) -> np.ndarray:
         """Load and excitation at the Gauss points (m s, 5)."""
         return self.system.load + self.share * self.force(nodes)
+
+    def fill_rates(self, path: Path) -> None:
+        """The balls' rates of a motion from their places; those of the next and the last span are this one's, renumbered."""
+        order, h = self.symmetry.order, np.diff(path.nodes)
+        before, after = path.ball[-2:][:, np.argsort(order)], path.ball[:2][:, order]
+        ball = np.ascontiguousarray(np.concatenate([before, path.ball, after])[:, :, :2])
+        nodes = np.concatenate([[path.nodes[0] - h[-1]], path.nodes, [path.nodes[-1] + h[0]]])
+        rate = np.empty_like(ball)
+        differentiate(nodes, self.rule.points, self.speed, ball, rate)
+        path.rate[:, :, :2] = rate[2:-2]
 
 
 @attrs.frozen(eq=False)

@@ -49,7 +49,7 @@ def newton(
     for sweep in range(1, limit + 1):
         report[SWEEPS] = sweep
         done = condense(
-            system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, 0.0, nodes,
+            system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, nodes,
             rule, q, v, a, ball, rate, push, slope, stages, transfer, whole, noted,
         )  # fmt: skip
         # The accelerations of a first guess are rough: its imbalance tells nothing.

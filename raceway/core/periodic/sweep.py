@@ -65,19 +65,19 @@ def eliminate(matrix, n, columns):
 
 @jit(
     int64(
-        *MODEL, MATRIX, MATRIX, MATRIX, VECTOR, INDICES, float64, float64, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE,
+        *MODEL, MATRIX, MATRIX, MATRIX, VECTOR, INDICES, float64, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE,
         MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR,
     ),
     allocates=True,
 )  # fmt: skip
 def condense(
-    system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, start, nodes, rule, q, v,
+    system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, nodes, rule, q, v,
     a, ball, rate, push, slope, stages, transfer, whole, report,
 ):  # fmt: skip
     """Linearise and eliminate interval by interval; the number of intervals done, less than m at a failure.
 
     ``report``: largest weighted imbalance at a Gauss point [N], largest weighted jump between intervals [m], greatest
-    internal force [N].  ``start`` is the time [s] of angle zero.
+    internal force [N].
     """
     m, s, n = nodes.size - 1, rule.shape[1], free.size
     size = s * n
@@ -106,7 +106,7 @@ def condense(
                     V[c] += h * rule[i, j] * a[k * s + j, c]
             for c in range(5):
                 V[c] *= speed
-            t = start + (nodes[k] + u * h) / speed
+            t = (nodes[k] + u * h) / speed
             status = system(
                 t, 0.0, Q, V, ball[at], 0.0, rate[at], law, law_params, law_state, law_new, scalars, table, work, f, K, C
             )
@@ -205,13 +205,13 @@ def spread(free, stages, transfer, first, parameter, dq, dv, da):
 )  # fmt: skip
 def try_between(
     system, law, law_params, scalars, table, law_state, force, force_params, mass, damping, stiffness, inverse, load, free,
-    share, speed, start, nodes, rule, tried, q, v, a, ball, rate, defect,
+    share, speed, clock, nodes, rule, tried, q, v, a, ball, rate, defect,
 ):  # fmt: skip
     """defect (m, 2 n): what q and v at the end of each interval gain when the balance of forces is integrated with more points.
 
     Parameters
     ----------
-    inverse : (n, n) of the mass;  load : (5,) constant, share : of the excitation that acts
+    inverse : (n, n) of the mass;  load : (5,) constant, share : of the excitation that acts, by an own clock [rad/s]
     tried : ``Rule.try_packed``
     """
     m, s, n = nodes.size - 1, rule.shape[1], free.size
@@ -242,13 +242,13 @@ def try_between(
             for c in range(5):
                 V[c] *= speed
             place[:, :] = ball[at]
-            t = start + (nodes[k] + u * h) / speed
+            t = (nodes[k] + u * h) / speed
             status = system(
                 t, 0.0, Q, V, place, 0.0, rate[at], law, law_params, law_state, law_new, scalars, table, work, f, none, none
             )
             if status != 0:
                 return k
-            force(t, force_params, outer)
+            force((nodes[k] + u * h) / clock, force_params, outer)
             for r in range(n):
                 c = free[r]
                 total = load[c] + share * outer[c] - f[c]
@@ -300,3 +300,86 @@ def differentiate(nodes, points, speed, ball, rate):
                         if j != i:
                             total += w[j] / w[i] / (x[i] - x[j]) * (ball[k * s + j, ball_number, c] - here)
                     rate[k * s + i, ball_number, c] = total * speed / h
+
+
+@jit(void(INDICES, MATRIX, VECTOR, MATRIX, MATRIX, MATRIX))
+def carry(free, transfer, first, defect, dq, dv):
+    """dq, dv (m + 1, 5) that defects (m, 2 n) at the ends of intervals and a first state (2 n,) make."""
+    n = free.size
+    m = transfer.shape[0] // (2 * n)
+    for r in range(n):
+        dq[0, free[r]], dv[0, free[r]] = first[r], first[n + r]
+    for k in range(m):
+        for i in range(2 * n):
+            total = defect[k, i]
+            for r in range(n):
+                total += transfer[2 * n * k + i, r] * dq[k, free[r]] + transfer[2 * n * k + i, n + r] * dv[k, free[r]]
+            if i < n:
+                dq[k + 1, free[i]] = total
+            else:
+                dv[k + 1, free[i - n]] = total
+
+
+@jit(
+    int64(*MODEL, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX),
+    allocates=True,
+)
+def contacts(system, law, law_params, scalars, table, law_state, times, q, v, ball, rate, gap, force):
+    """gap, force (n, 2 Z) at n states with velocities v (n, 5) in seconds; ball is a guess and becomes the places."""
+    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
+    law_new = law_state.copy()
+    f, none = np.empty(5), np.empty((0, 0))
+    for i in range(times.size):
+        status = system(
+            times[i], 0.0, q[i], v[i], ball[i], 0.0, rate[i], law, law_params, law_state, law_new, scalars, table, work, f,
+            none, none,
+        )  # fmt: skip
+        if status != 0:
+            return i
+        for c in range(gap.shape[1]):
+            gap[i, c] = work[0, c]
+            force[i, c] = work[2, c]
+    return times.size
+
+
+@jit(
+    int64(*MODEL, MATRIX, MATRIX, MATRIX, float64, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX),
+    allocates=True,
+)
+def imbalances(
+    system, law, law_params, scalars, table, law_state, mass, damping, stiffness, speed, nodes, rule, q, v, a, ball, rate, push,
+    out,
+):  # fmt: skip
+    """out (m s, 5): what is left of the balance of forces at the Gauss points [N, N m]; ball is left as it is."""
+    m, s = nodes.size - 1, rule.shape[1]
+    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
+    law_new = law_state.copy()
+    f, none = np.empty(5), np.empty((0, 0))
+    Q, V = np.empty(5), np.empty(5)
+    place = np.empty((table.shape[0], ball.shape[2]))
+    for k in range(m):
+        h = nodes[k + 1] - nodes[k]
+        for i in range(s):
+            at = k * s + i
+            u = rule[2 * s + 2, i]
+            for c in range(5):
+                Q[c] = q[k, c] + u * h * v[k, c]
+                V[c] = v[k, c]
+                for j in range(s):
+                    Q[c] += h * h * rule[s + i, j] * a[k * s + j, c]
+                    V[c] += h * rule[i, j] * a[k * s + j, c]
+            for c in range(5):
+                V[c] *= speed
+            place[:, :] = ball[at]
+            t = (nodes[k] + u * h) / speed
+            status = system(
+                t, 0.0, Q, V, place, 0.0, rate[at], law, law_params, law_state, law_new, scalars, table, work, f, none, none
+            )
+            if status != 0:
+                return k
+            for c in range(5):
+                total = f[c] - push[at, c]
+                for d in range(5):
+                    total += speed * speed * mass[c, d] * a[at, d] + damping[c, d] * V[d] + stiffness[c, d] * Q[d]
+                out[at, c] = total
+    return m
