@@ -139,10 +139,11 @@ def _errors(model: Model, equilibrium: Equilibrium, simulation: Simulation | Non
         error["time_step"], how["time_step"] = TOLERANCE, "no time step; residual that the equilibrium is solved to"
     else:
         error["time_step"], how["time_step"] = step_error(model, equilibrium, simulation, found.dynamic_stiffness)
-        alone = not model.scene.integrator.method.inertial and model.plan.turns == 1
+        steady = getattr(model.scene.integrator.method, "steady", False)
+        alone = steady or (not model.scene.integrator.method.inertial and model.plan.turns == 1)
         error["transient"] = 0.0 if alone else found.spread
         how["transient"] = (
-            "one turn of equilibria: nothing dies out"
+            f"one turn of {'the steady motion' if steady else 'equilibria'}: nothing dies out"
             if alone
             else "largest deviation of a single turn from all turns that are used"
         )
@@ -175,7 +176,9 @@ def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
     drifts = [drift for drift in (_drift(*motion) for motion in motions) if drift is not None]
     rubbing = [friction_energy(m.system, s.whole).lost[-1] for m, s in motions if m.scene.contact.friction > 0.0]
     limits = [s.critical_time_step for _, s in motions if s.critical_time_step is not None]
+    fates = [s.whole.counts["floquet"] for _, s in motions if s.whole.counts.get("floquet") is not None]
     return {
+        "floquet": max(fates, key=lambda fate: fate["largest"], default=None),
         "friction_energy_j": float(sum(rubbing)) if rubbing else None,
         "critical_time_step_s": min(limits, default=None),
         "energy_drift": max(drifts, default=None),

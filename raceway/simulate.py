@@ -87,14 +87,17 @@ def simulate(
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
     whole = method.advance(system, motion, schedule, progress)
     used = model.plan.turns - ceil(ramp_turns)
-    if start == "static" and method.inertial:
+    if start == "static" and method.inertial and not getattr(method, "steady", False):
         used = max(model.plan.turns // 3, 1)
+    warnings += tuple(whole.counts.get("warnings", ()))
     return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings, orbit)
 
 
 def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -> tuple[str, Orbit | None, tuple[str, ...]]:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     scene, method = model.scene, model.scene.integrator.method
+    if getattr(method, "steady", False):
+        return "static", None, ()
     start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
     if start != "orbit" or not method.inertial:
         return start, None, ()
@@ -164,6 +167,8 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
 def step_error(model: Model, equilibrium: Equilibrium, simulation: Simulation, value: complex) -> tuple[float | None, str]:
     """Relative error of Z by the time step, from a run with half as many steps, and how it was found."""
     method, schedule = model.scene.integrator.method, simulation.whole.schedule
+    if getattr(method, "steady", False):
+        return simulation.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude"
     if not method.inertial:
         return getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to"
     if schedule.steps_per_turn % 2 or schedule.steps_per_turn < 16:
