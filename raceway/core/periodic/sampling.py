@@ -9,6 +9,7 @@ import numpy as np
 from raceway.core.periodic.collocation import Path, Problem, Solved
 from raceway.core.periodic.rule import integrals
 from raceway.core.periodic.sweep import contacts, forces
+from raceway.core.periodic.symmetry import rotations
 from raceway.core.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError
 
@@ -46,26 +47,23 @@ def record(solved: Solved, schedule: Schedule, counts: dict[str, Any]) -> Record
     if a_turn * schedule.stride != schedule.steps_per_turn or abs(inside * every - span) > 1e-9 * span:
         inside = total
     inside = min(inside, total)
-    before = angles[-1] - problem.speed * schedule.dt
-    wanted = np.concatenate([angles[:inside], [angles[-1], before]])
-    q, v, a, ball, rate, gap, force = _states(solved, wanted)
-    last = Motion(
-        q[-2], v[-2] * problem.speed, a[-2] * problem.speed**2 * (system.free > 0.0), ball[-2].copy(), ball[-1].copy()
-    )
+    q, v, a, ball, rate, gap, force = _states(solved, angles[:inside])
     repeat = _Repeat(problem, inside, total)
     push = np.empty((total, 5))
     time = schedule.dt * schedule.stride * np.arange(1, total + 1)
     forces(system.force, system.force_params, time, push)
-    gaps, loads = repeat.contacts(gap[:inside]), repeat.contacts(force[:inside])
+    displacement, velocity, places = repeat.states(q), repeat.states(v) * problem.speed, repeat.balls(ball)
+    before = places[-2] if schedule.stride == 1 and total > 1 else places[-1] - schedule.dt * repeat.balls(rate)[-1]
+    acceleration = repeat.states(a)[-1] * problem.speed**2 * (system.free > 0.0)
     return Record(
         time=time,
-        displacement=repeat.states(q[:inside]),
-        velocity=repeat.states(v[:inside]) * problem.speed,
+        displacement=displacement,
+        velocity=velocity,
         force=push,
-        gap=gaps,
-        contact_force=loads,
-        ball=repeat.balls(ball[:inside]),
-        final=last,
+        gap=repeat.contacts(gap),
+        contact_force=repeat.contacts(force),
+        ball=places,
+        final=Motion(displacement[-1].copy(), velocity[-1].copy(), acceleration, places[-1].copy(), before.copy()),
         schedule=schedule,
         counts={
             **counts,
@@ -78,7 +76,8 @@ def record(solved: Solved, schedule: Schedule, counts: dict[str, Any]) -> Record
 def _states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
     """Motion, balls, gaps and contact forces at any angles: those beyond the span are turned there."""
     problem, symmetry = solved.problem, solved.problem.symmetry
-    spans = np.floor(angles / symmetry.span + 1e-12).astype(int)
+    # A sample at the very end of a span belongs to it: nothing has to be turned then.
+    spans = np.maximum(np.ceil(angles / symmetry.span - 1e-12).astype(int) - 1, 0)
     q, v, a, ball, rate = motion_at(problem, solved.path, angles - spans * symmetry.span)
     if spans.any():
         repeat = _Repeat(problem, 1, int(spans.max()) + 1)
@@ -105,15 +104,15 @@ class _Repeat:
         self.inside, self.total = inside, total
         spans = -(-total // inside)
         z = problem.system.ball_count
-        self.turns, self.orders = np.empty((spans, 5, 5)), np.empty((spans, z), dtype=int)
-        turn, order = np.eye(5), np.arange(z)
-        for k in range(spans):
-            self.turns[k], self.orders[k] = turn, order
-            turn, order = problem.symmetry.rotation @ turn, problem.symmetry.order[order]
+        self.turns = rotations(problem.symmetry.angle * np.arange(spans))
+        self.orders = np.empty((spans, z), dtype=int)
+        self.orders[0] = np.arange(z)
+        for k in range(1, spans):
+            self.orders[k] = problem.symmetry.order[self.orders[k - 1]]
 
     def states(self, values: np.ndarray) -> np.ndarray:
         """(total, 5) from (inside, 5)."""
-        return np.einsum("kij,nj->kni", self.turns, values).reshape(-1, 5)[: self.total]
+        return (values @ self.turns.transpose(0, 2, 1)).reshape(-1, 5)[: self.total]
 
     def contacts(self, values: np.ndarray) -> np.ndarray:
         """(total, 2 Z) from (inside, 2 Z)."""

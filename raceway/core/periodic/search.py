@@ -43,20 +43,15 @@ class Found:
     fold: float | None = None
 
 
-def problem_of(system: System, speed: float, q: np.ndarray, tangent: np.ndarray, symmetric: bool = True) -> Problem:
+def problem_of(system: System, speed: float, q: np.ndarray, symmetric: bool = True) -> Problem:
     """The boundary-value problem of one pitch where forces and bodies allow it, else of one turn.
 
     Parameters
     ----------
-    speed : of the force [rad/s];  q : (5,) static equilibrium;  tangent : (5, 5) stiffness of its contacts
+    speed : of the force [rad/s];  q : (5,) static equilibrium
     """
-    whole = Problem(system, speed, one_turn(system))
-    if not symmetric:
-        return whole
-    _, lines = response(whole, tangent)
-    off = q + lines.real.sum(axis=0) + 0.3 * lines.imag.sum(axis=0)
-    pitch = one_pitch(system, speed, off)
-    return whole if pitch is None else Problem(system, speed, pitch)
+    pitch = one_pitch(system, speed, q) if symmetric else None
+    return Problem(system, speed, pitch or one_turn(system))
 
 
 def mesh_of(problem: Problem, tangent: np.ndarray, factor: int = 1) -> np.ndarray:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from raceway.core.address import by_address
 from raceway.core.bodies.ring import CAGE, FRICTION
 from raceway.core.periodic.floquet import Floquet, floquet
 from raceway.core.periodic.sampling import record
@@ -13,6 +14,9 @@ from raceway.core.periodic.search import Found, find, problem_of
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.system import System
 from raceway.errors import SceneError
+
+#: Imbalance of an equilibrium over the contact forces that the settled state is known by.
+_SETTLED = 1e-8
 
 
 def steady(
@@ -36,12 +40,11 @@ def steady(
     ConvergenceError
         No such motion found.
     """
+    system = by_address(system)
     refuse(system, schedule)
     speed = 2.0 * np.pi / (schedule.dt * schedule.steps_per_turn)
-    still = system.without(CAGE)
-    q, _, _ = still.settle(start.q)
-    tangent = still.evaluate(q).stiffness
-    problem = problem_of(system, speed, q, tangent, symmetric)
+    q, tangent = _equilibrium(system.without(CAGE), start)
+    problem = problem_of(system, speed, q, symmetric)
     if system.scalars[CAGE] != 0.0 and not problem.symmetry.pitch:
         why = (
             "balls that orbit pass at another frequency than the force, so that no motion repeats itself every turn; only a "
@@ -62,6 +65,17 @@ def steady(
     if on_chunk is not None:
         on_chunk(schedule.steps, schedule.steps)
     return out
+
+
+def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """The static equilibrium (5,) that the start is at or near, and its tangent (5, 5)."""
+    now = system.evaluate(start.q, ball=start.ball)
+    rest = np.abs((now.force + system.stiffness @ start.q - system.load) * system.free)
+    largest = max(float(np.abs(now.contact_force).sum()), float(np.abs(system.load).max()))
+    if rest.max() <= _SETTLED * largest:
+        return start.q, now.stiffness
+    q, ball, _ = system.settle(start.q)
+    return q, system.evaluate(q, ball=ball).stiffness
 
 
 def refuse(system: System, schedule: Schedule) -> None:
