@@ -160,10 +160,10 @@ def make_plan(scene: Scene) -> Plan:
     repeats = (
         repeats and uses_record and scene.excitation.period_s is not None and "phase" not in scene.identifier.method.needs
     )
-    if uses_record and not scene.integrator.method.inertial and repeats and turns > 1:
-        left_out.append(
-            Part(f"{turns - 1} of {turns} turns", "a series of equilibria without memory repeats itself every turn")
-        )
+    steady = getattr(scene.integrator.method, "steady", False)
+    if uses_record and (steady or not scene.integrator.method.inertial) and repeats and turns > 1:
+        what = "the steady motion" if steady else "a series of equilibria without memory"
+        left_out.append(Part(f"{turns - 1} of {turns} turns", f"{what} repeats itself every turn"))
         turns = 1
     steps_per_turn = _predicted_steps_per_turn(scene) if uses_record else 0
     steps = steps_per_turn * turns
@@ -244,6 +244,8 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
     if scene.excitation is not None:
         _refuse_identifier(scene, refuse)
+        if getattr(method, "steady", False) and "record" in scene.identifier.method.needs:
+            _refuse_steady(scene, refuse)
     if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
         mass, tilt = ring_inertia(scene)
         if scene.rotor.mass + mass <= 0.0:
@@ -302,6 +304,25 @@ def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], Non
             refuse(bad, "identifier.kind", kind, why)
             if bad:
                 break
+
+
+def _refuse_steady(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+    """What has no motion that repeats itself every turn and depends on the force alone."""
+    kind, excitation = scene.integrator.kind, scene.excitation
+    other = "use 'newmark'"
+    why = f"needs a force that repeats every turn, which excitation '{excitation.name}' does not: {other}"
+    refuse(excitation.period_s is None, "integrator.kind", kind, why)
+    why = f"contact.friction: where a contact sticks depends on how the motion began, there is no single one: {other}"
+    refuse(scene.contact.friction > 0.0, "integrator.kind", kind, why)
+    why = f"contact law '{scene.contact.kind}' has a memory: its motion cannot be solved for by itself: {other}"
+    refuse(scene.contact.law.state_size > 0, "integrator.kind", kind, why)
+    alone = (
+        excitation.sense != 0
+        and not any(scene.load.radial)
+        and not (any(scene.load.moment) and scene.supports.tilt != "locked")
+    )
+    why = f"kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the force turns and no radial load acts: {other}"
+    refuse(scene.kinematics.orbiting and not alone, "integrator.kind", kind, why)
 
 
 def _turns(scene: Scene) -> int:

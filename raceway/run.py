@@ -24,7 +24,7 @@ from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
 from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds
-from raceway.statics import settle
+from raceway.statics import Equilibrium, settle
 from raceway.unused import unused
 
 
@@ -160,7 +160,9 @@ def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
     drifts = [drift for drift in (_drift(*motion) for motion in motions) if drift is not None]
     rubbing = [friction_energy(m.system, s.whole).lost[-1] for m, s in motions if m.scene.contact.friction > 0.0]
     limits = [s.critical_time_step for _, s in motions if s.critical_time_step is not None]
+    fates = [s.whole.counts["floquet"] for _, s in motions if s.whole.counts.get("floquet") is not None]
     return {
+        "floquet": max(fates, key=lambda fate: fate["largest"], default=None),
         "friction_energy_j": float(sum(rubbing)) if rubbing else None,
         "critical_time_step_s": min(limits, default=None),
         "energy_drift": max(drifts, default=None),

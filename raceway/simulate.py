@@ -86,14 +86,17 @@ def simulate(
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
     whole = method.advance(system, motion, schedule, progress)
     used = model.plan.turns - ceil(ramp_turns)
-    if start == "static" and method.inertial:
+    if start == "static" and method.inertial and not getattr(method, "steady", False):
         used = max(model.plan.turns // 3, 1)
+    warnings += tuple(whole.counts.get("warnings", ()))
     return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings, orbit)
 
 
 def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -> tuple[str, Orbit | None, tuple[str, ...]]:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     scene, method = model.scene, model.scene.integrator.method
+    if getattr(method, "steady", False):
+        return "static", None, ()
     start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
     if start != "orbit" or not method.inertial:
         return start, None, ()

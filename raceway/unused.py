@@ -35,6 +35,15 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     told(not dynamic, "the scene has no [excitation]", *integration)
     still = dynamic and not recorded
     told(still, f"identifier '{scene.identifier.kind}' needs no recorded motion", *integration)
+    steady = recorded and getattr(scene.integrator.method, "steady", False)
+    told(
+        steady,
+        f"integrator '{scene.integrator.kind}' solves for the steady motion",
+        "integrator.start",
+        "excitation.ramp_turns",
+    )
+    one = steady and "phase" not in scene.identifier.method.needs and not scene.kinematics.orbiting
+    told(one, f"integrator '{scene.integrator.kind}' needs one turn", "integrator.turns")
     slow = recorded and not scene.integrator.method.inertial
     rotor = [f"rotor.{key}" for key in ("mass", "transverse_inertia", "polar_inertia", "damping")]
     why = f"integrator '{scene.integrator.kind}' knows neither inertia nor rates"

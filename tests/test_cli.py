@@ -328,7 +328,12 @@ def test_ctrl_c_ends_with_130_and_one_line(tmp_path):
         "--out",
         str(tmp_path / "out"),
     ]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+
+    def listen() -> None:  # a background job of a shell has its children ignore the signal
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(words, preexec_fn=listen, **streams) as process:
         time.sleep(2.5)  # past the imports, inside the 360 million steps
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=30)

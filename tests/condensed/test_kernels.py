@@ -146,5 +146,7 @@ def test_a_pair_couples_only_balls_of_one_row(built):
     bearing = {"arrangement": "DB", "preload": 300.0}
     case = model(built, bearing=bearing)
     z = case.geometry.ball_count
-    table = elastic(attrs.evolve(case.system, table=case.system.table[:z], law_params=case.system.law_params[: 2 * z]), bed=True)
+    table = elastic(
+        attrs.evolve(case.system, table=case.system.table[:z], law_params=case.system.law_params[: 2 * z]), bed=True
+    )
     assert table.table.shape == (z, 8 + 2 * z)

@@ -13,7 +13,6 @@ from raceway.errors import ConvergenceError
 NEWTON_LIMIT, HALVINGS, SMALLEST_PART = 40, 8, 1.0 / 16.0
 #: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
 TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-4, 1e-2, 1e-4
-DEBUG = 0
 
 
 @attrs.frozen(eq=False)
@@ -94,11 +93,6 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
                 break
             part *= 0.5 if now > 0.0 or slope - now <= 0.0 else min(max(slope / (slope - now), 0.1), 0.8)
         y = trial
-        if DEBUG:
-            print(
-                done,
-                f"rel {relative:.2e} forcing {forcing:.1e} its {system.solver.last_iterations} part {part:.2f} active {(system.contact.gap < 0).sum()}",
-            )
         if system.locate(y):
             rest = system.load - system.static_internal(y)
     raise ConvergenceError(f"Newton's residual stands at {history[-1]:.1e} of the load after {NEWTON_LIMIT} iterations.")

@@ -86,14 +86,13 @@ class Structured:
         self._refuse(bearing)
         bodies: dict[str, float] = {}
         u, v, w, layers, _ = self._ball_lines(bearing)
-<<<<<<< HEAD
         ball = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1)
         for suffix in self._suffixes(bearing):
             for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
                 shape = ring_shape(bearing, inner)
                 left, arc, right, depth, _ = self._ring_lines(bearing, shape)
                 profile = (len(left) + len(arc) + len(right) - 3) * (len(depth) - 1)
-                bodies[word + suffix] = profile * self._divisions(bearing, shape)
+                bodies[word + suffix] = profile * len(self._azimuths(bearing, shape))
             bodies.update({name + suffix: ball for name in ball_names(bearing)})
         found = Prediction.of(bodies)
         remedy = "take larger elements, fewer nodes_per_semi_axis or azimuth_cells, or a larger growth"
@@ -104,15 +103,6 @@ class Structured:
         """What follows the names of the bodies of each row."""
         count = len(bearing.rows)
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
-=======
-        balls = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1) * bearing.ball_count
-        rings = 0
-        for inner in (True, False):
-            shape = ring_shape(bearing, inner)
-            left, arc, right, depth, _ = self._ring_lines(bearing, shape)
-            rings += (len(left) + len(arc) + len(right) - 3) * (len(depth) - 1) * len(self._azimuths(bearing, shape))
-        return Prediction.of((balls + rings) * len(bearing.rows))
->>>>>>> elastic
 
     def _refuse(self, bearing: Any) -> None:
         from raceway.core.meshing.ring_shape import ring_shape

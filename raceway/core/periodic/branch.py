@@ -1,0 +1,217 @@
+"""Pseudo-arclength continuation of periodic motions over a parameter: load, speed, share of the force, anything.
+
+Notes
+-----
+The state y0 = (q, q') at the start of the span and the parameter p are followed together along their common arc, so that a
+fold, where p turns back, is passed like any other point.  Newton's corrector adds one row to the closing condition
+(P - T) dy0 - T_p dp = T_r: the correction stands across the predictor.  The derivative of the balance of forces by p is a
+difference quotient at the same angles.
+
+References
+----------
+Keller, in Rabinowitz (ed.), Applications of Bifurcation Theory (1977); Seydel, Practical Bifurcation and Stability
+Analysis, 3rd ed. (2010), chapter 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import attrs
+import numpy as np
+
+from raceway.core.periodic.collocation import Path, Problem, Solved
+from raceway.core.periodic.floquet import Floquet, floquet
+from raceway.core.periodic.refinement import divided, estimate, resampled
+from raceway.core.periodic.sweep import condense, imbalances, spread
+from raceway.errors import ConvergenceError
+
+_LIMIT = 12
+#: Relative step of the difference quotient by the parameter.
+_DIFFERENCE = 1e-6
+
+
+@attrs.frozen(eq=False)
+class Point:
+    """One motion of a branch.
+
+    Attributes
+    ----------
+    parameter : p;  solved : the motion;  error : estimated, over its size
+    tangent : (2 n + 1,) direction of the branch in scaled state and parameter;  folded : the parameter turned back since
+        the point before
+    """
+
+    parameter: float
+    solved: Solved
+    error: float
+    tangent: np.ndarray
+    folded: bool
+
+    @property
+    def floquet(self) -> Floquet:
+        return floquet(self.solved)
+
+
+@attrs.define(eq=False)
+class Branch:
+    """Follows one branch of periodic motions.
+
+    Parameters
+    ----------
+    problem_at : parameter -> Problem; unknown coordinates, span and balls' numbers stay the same
+    unit : a typical change of the parameter;  length : a typical size of the motion [m]
+    tolerance : error of the motion over its size that meshes are kept fit for;  most_intervals : that they may have
+    """
+
+    problem_at: Callable[[float], Problem]
+    unit: float
+    length: float
+    tolerance: float = 1e-6
+    most_intervals: int = 2048
+
+    def start(self, solved: Solved, parameter: float, sense: float = 1.0) -> Point:
+        """The first point, from a motion that is known; ``sense``: the side to which the parameter goes."""
+        n2 = 2 * len(solved.problem.free)
+        across = np.zeros(n2 + 1)
+        across[-1] = sense
+        path, _, tangent, linear = self._correct(solved.path, parameter, across, None)
+        return self._point(path, parameter, tangent, linear, False)
+
+    def follow(
+        self, first: Point, step: float, until: Callable[[Point], bool], most: int = 400, longest: float | None = None
+    ) -> list[Point]:
+        """Points from ``first`` on until a condition holds or ``most`` are found.
+
+        Parameters
+        ----------
+        step : first length along the branch, in units; ``longest`` : of all steps, four times the first by default
+
+        Raises
+        ------
+        ConvergenceError
+            Where the branch cannot be followed further; ``state["points"]`` holds what was found.
+        """
+        points = [first]
+        longest = 4.0 * step if longest is None else longest
+        size = step
+        while len(points) < most and not until(points[-1]):
+            here = points[-1]
+            try:
+                found, iterations = self._step(here, size)
+            except ConvergenceError as why:
+                size *= 0.5
+                if size < 1e-6 * step:
+                    raise ConvergenceError(f"the branch ends at {here.parameter:.6g}: {why}", {"points": points}) from why
+                continue
+            points.append(found)
+            size = min(size * (1.5 if iterations <= 4 else 0.7 if iterations > 7 else 1.0), longest)
+        return points
+
+    def _step(self, here: Point, size: float) -> tuple[Point, int]:
+        n = len(here.solved.problem.free)
+        path, dp = here.solved.path, size * here.tangent[-1] * self.unit
+        problem = self.problem_at(here.parameter)
+        # Predictor: the linearised problem carries the tangent at the start through the span.
+        linear = self._linearise(problem, path, here.parameter, True)
+        if linear is None:
+            raise ConvergenceError("the balls find no place between the races")
+        dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
+        spread(problem.free, linear[0], linear[1], size * self.length * here.tangent[: 2 * n], dp, dq, dv, da)
+        moved = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da, ball=path.ball.copy(), rate=path.rate.copy())
+        at = here.parameter + dp
+        path, parameter, tangent, last = self._correct(moved, at, here.tangent, (moved, at))
+        error = estimate(last).error
+        for _ in range(4):
+            if error <= self.tolerance or 2 * path.intervals > self.most_intervals:
+                break
+            found = estimate(last)
+            parts = np.where((found.defect > 0.1 * found.defect.max()) | (found.between > 0.1 * found.between.max()), 2, 1)
+            nodes, parent = divided(path.nodes, parts)
+            finer = resampled(last.problem, path, nodes, parent)
+            path, parameter, tangent, last = self._correct(finer, parameter, here.tangent, (finer, parameter))
+            error = estimate(last).error
+        # Back where it came from: a corrector that turned round.
+        if float(tangent @ here.tangent) < 0.5:
+            raise ConvergenceError("the branch bends too much for the step")
+        return self._point(path, parameter, tangent, last, tangent[-1] * here.tangent[-1] < 0.0), last.sweeps
+
+    def _point(self, path: Path, parameter: float, tangent: np.ndarray, linear: Solved, folded: bool) -> Point:
+        return Point(parameter, linear, estimate(linear).error, tangent, folded)
+
+    def _linearise(self, problem: Problem, path: Path, parameter: float, slope: bool) -> tuple[np.ndarray, ...] | None:
+        """stages, transfer, whole, report; with the derivative by the parameter."""
+        system, free = problem.system, problem.free
+        m, s, n = path.intervals, len(problem.rule.points), len(free)
+        push = problem.push(path.nodes)
+        by = np.zeros_like(push)
+        if slope:
+            h = _DIFFERENCE * self.unit
+            both = [self._imbalance(self.problem_at(parameter + off), path) for off in (-h, h)]
+            by = (both[1] - both[0]) / (2.0 * h)
+        out = np.empty((m * s * n, 2 * n + 2)), np.empty((2 * m * n, 2 * n + 2)), np.empty((2 * n, 2 * n + 2))
+        report = np.zeros(3)
+        done = condense(
+            *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.weight, free,
+            problem.speed, path.nodes, problem.rule.packed, path.q, path.v, path.a, path.ball, path.rate, push, by, *out,
+            report,
+        )  # fmt: skip
+        return (*out, report) if done == m and np.isfinite(report).all() else None
+
+    def _imbalance(self, problem: Problem, path: Path) -> np.ndarray:
+        system = problem.system
+        push = problem.push(path.nodes)
+        out = np.zeros_like(push)
+        done = imbalances(
+            *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.speed, path.nodes,
+            problem.rule.packed, path.q, path.v, path.a, path.ball, path.rate, push, out,
+        )  # fmt: skip
+        if done < path.intervals:
+            raise ConvergenceError("the balls find no place between the races")
+        return out
+
+    def _correct(
+        self, path: Path, parameter: float, across: np.ndarray, predicted: tuple[Path, float] | None
+    ) -> tuple[Path, float, np.ndarray, Solved]:
+        """Newton across the predictor; without one, the parameter stays.  Path, parameter, tangent, last linearisation."""
+        worst = np.inf
+        for sweeps in range(1, _LIMIT + 1):
+            problem = self.problem_at(parameter)
+            free = problem.free
+            n = len(free)
+            linear = self._linearise(problem, path, parameter, True)
+            if linear is None:
+                raise ConvergenceError("the balls find no place between the races")
+            stages, transfer, whole, report = linear
+            bordered = np.zeros((2 * n + 1, 2 * n + 1))
+            bordered[: 2 * n, : 2 * n] = problem.closing - whole[:, : 2 * n]
+            bordered[: 2 * n, 2 * n] = -whole[:, 2 * n + 1] * self.unit / self.length
+            bordered[2 * n] = across
+            right = np.zeros((2 * n + 1, 2))
+            right[: 2 * n, 0] = whole[:, 2 * n] / self.length
+            right[2 * n, 1] = 1.0
+            if predicted is not None:
+                off = np.concatenate([(path.q[0] - predicted[0].q[0])[free], (path.v[0] - predicted[0].v[0])[free]])
+                right[2 * n, 0] = -across[: 2 * n] @ off / self.length
+                right[2 * n, 0] -= across[-1] * (parameter - predicted[1]) / self.unit
+            try:
+                found = np.linalg.solve(bordered, right)
+            except np.linalg.LinAlgError as why:
+                raise ConvergenceError("the branch has no single direction here") from why
+            first, dp = self.length * found[: 2 * n, 0], self.unit * found[2 * n, 0]
+            dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
+            spread(free, stages, transfer, first, dp, dq, dv, da)
+            correction = float(np.abs(dq / problem.weight).max())
+            if not np.isfinite(correction) or (sweeps > 2 and report[0] > 10.0 * worst and report[0] > 1e-9 * report[2]):
+                raise ConvergenceError("the corrector diverges")
+            worst = report[0]
+            path = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da)
+            parameter += dp
+            problem.fill_rates(path)
+            size = float(np.abs(path.v / problem.weight).max())
+            place = float(np.abs(path.q / problem.weight).max())
+            if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * place:
+                tangent = found[:, 1] / np.linalg.norm(found[:, 1])
+                solved = Solved(problem, path, stages, transfer, whole, size, True, sweeps, correction)
+                return path, parameter, tangent, solved
+        raise ConvergenceError("the corrector does not converge")

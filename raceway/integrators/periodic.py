@@ -1,0 +1,50 @@
+"""The steady orbit, solved for directly."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway.options import inside, one_of, option
+
+if TYPE_CHECKING:
+    from raceway.core.advance import OnChunk
+    from raceway.core.record import Motion, Record, Schedule
+    from raceway.core.system import System
+
+
+@attrs.frozen
+class Periodic:
+    """The motion that repeats itself every turn, by collocation at Gauss points; its mesh follows the error.
+
+    Notes
+    -----
+    No transient, so ``integrator.turns`` and ``start`` count for nothing; ``steps_per_turn`` is the number of samples of the
+    answer, not of the method.  A force that turns over equal balls is solved over one ball pitch.  result.json tells the
+    Floquet multipliers in ``stability``.
+    """
+
+    name: ClassVar[str] = "periodic"
+    order: ClassVar[int] = 8
+    implicit: ClassVar[bool] = True
+    inertial: ClassVar[bool] = True
+    dissipative: ClassVar[bool] = False
+    steady: ClassVar[bool] = True
+
+    tolerance: float = option(
+        1e-7, help="estimated error of the displacement over the amplitude of the motion", rule=inside(1e-12, 1e-2)
+    )
+    symmetry: str = option(
+        "auto", help="'auto': one ball pitch where forces and bodies allow it; 'none': always one turn", rule=one_of("auto", "none")
+    )  # fmt: skip
+
+    @classmethod
+    def examples(cls) -> list[Periodic]:
+        """Instances for the conformance suite."""
+        return [cls(), cls(symmetry="none")]
+
+    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
+        from raceway.core.periodic.steady import steady
+
+        return steady(system, start, schedule, self.tolerance, self.symmetry == "auto", on_chunk)
