@@ -175,7 +175,9 @@ def step() -> list[Row]:
     for word, inertia, more in (
         ("weightless balls", False, {}), ("centrifugal forces", True, {}), ("on a bed of 500 N/mm3", True, soft_seat)
     ):  # fmt: skip
-        model = model_of({**rotating(1000.0, "locked", 12000.0, inertia, "newmark"), "bodies": {"kind": "condensed"}, **more})
+        model = model_of(
+            {**rotating(1000.0, "locked", 12000.0, inertia, "newmark"), "bodies": {"kind": "condensed"}, **more}
+        )
         times = []
         for _ in range(20):
             begin = time.process_time()
