@@ -47,11 +47,13 @@ def settle(model: Model) -> Equilibrium:
     system = model.system
     _refuse_no_load(model)
     q, ball, iterations = system.settle(model.guess)
-    now = system.without(CAGE).evaluate(q, ball=ball)
-    _refuse_free_motion(model, now.stiffness, q)
+    still = system.without(CAGE)
+    now = still.evaluate(q, ball=ball)
+    stiffness = still.stiffness_at(q, ball)
+    _refuse_free_motion(model, stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
     warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
 
 def contact_angles(
