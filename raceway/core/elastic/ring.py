@@ -8,7 +8,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.bodies.ring import OUTER_SHARE
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.stepping.elastic import SteppedElastic
 from raceway.core.system import Evaluation, System
@@ -74,8 +73,8 @@ class ElasticRing(System):
         """
         if self._y is None:
             place, places, _ = self.companion.settle(q)
-            if not places.any():  # weightless balls of rigid bodies have no place of their own
-                places = self._between(place)
+            if not places[:, 1].any():
+                places = self._on_the_line(place, places)
             guess = self.bodies.guess(place, places)
         else:
             guess = self._y
@@ -189,10 +188,7 @@ class ElasticRing(System):
         found = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
         return np.asarray(0.5 * (found + found.T))
 
-    def _between(self, q: np.ndarray) -> np.ndarray:
-        """(Z, 2) places of weightless balls: both contacts share the approach as Hertz's would."""
+    def _on_the_line(self, q: np.ndarray, places: np.ndarray) -> np.ndarray:
+        """(Z, 2) places of weightless balls, which lie between the groove centres: their first column is the distance."""
         centre, _ = self.centre_vectors(q)
-        length = np.linalg.norm(centre, axis=1, keepdims=True)
-        inner, outer = self.bodies.setup.geometry.offset_inner, self.bodies.setup.geometry.offset_outer
-        share = self.table[:, [OUTER_SHARE]]
-        return np.asarray(centre / length * (outer + share * (length - inner - outer)))
+        return np.asarray(centre / np.linalg.norm(centre, axis=1, keepdims=True) * places[:, :1])
