@@ -89,11 +89,12 @@ class Problem:
         """The balls' rates of a motion from their places; those of the next and the last span are this one's, renumbered."""
         order, h = self.symmetry.order, np.diff(path.nodes)
         before, after = path.ball[-2:][:, np.argsort(order)], path.ball[:2][:, order]
-        ball = np.ascontiguousarray(np.concatenate([before, path.ball, after])[:, :, :2])
+        rated = self.system.rated_columns
+        ball = np.ascontiguousarray(np.concatenate([before, path.ball, after])[:, :, rated])
         nodes = np.concatenate([[path.nodes[0] - h[-1]], path.nodes, [path.nodes[-1] + h[0]]])
         rate = np.empty_like(ball)
         differentiate(nodes, self.rule.points, self.speed, ball, rate)
-        path.rate[:, :, :2] = rate[2:-2]
+        path.rate[:, :, rated] = rate[2:-2]
 
 
 @attrs.frozen(eq=False)
@@ -103,7 +104,7 @@ class Path:
     Attributes
     ----------
     nodes : (m + 1,) angles, from 0 to the span;  q, v : (m + 1, 5) at nodes;  a : (m s, 5) at Gauss points
-    ball, rate : (m s, Z, 2 or 4) positions [m] and their rates [m/s]
+    ball, rate : (m s, Z, c) columns of ``System.evaluate`` and their rates [m/s]
     """
 
     nodes: np.ndarray
@@ -162,8 +163,8 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
     status = newton(
         *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.weight, free, problem.speed,
-        problem.closing, problem.symmetry.order, path.nodes, problem.rule.points, problem.rule.packed, q, v, a, ball, rate,
-        push, np.zeros_like(push), tolerance, limit, patience, *out, report,
+        problem.closing, problem.symmetry.order, np.array(system.rated_columns), path.nodes, problem.rule.points,
+        problem.rule.packed, q, v, a, ball, rate, push, np.zeros_like(push), tolerance, limit, patience, *out, report,
     )  # fmt: skip
     if status != SOLVED:
         why = {STALLED: "the iteration stalls", SINGULAR: "the motion is singular"}.get(

@@ -174,7 +174,7 @@ def _detour(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: flo
 def from_rest(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> list[Point]:
     """The branch from the resting ring to the whole force, or to where it is lost or back at no force."""
     _, lines = response(problem, tangent)
-    length = max(float(np.abs(lines / problem.weight).max()), 1e-12)
+    length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
     branch = Branch(lambda share: attrs.evolve(problem, share=share), 1.0, length, _ROUGH, _MOST)
     still = attrs.evolve(problem, share=0.0)
     n, none = len(problem.free), np.empty((0, 0))
