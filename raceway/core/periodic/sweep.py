@@ -205,14 +205,14 @@ def spread(free, stages, transfer, first, parameter, dq, dv, da):
 )  # fmt: skip
 def try_between(
     system, law, law_params, scalars, table, law_state, force, force_params, mass, damping, stiffness, inverse, load, free,
-    share, speed, clock, nodes, rule, tried, q, v, a, ball, rate, defect,
+    share, speed, clock, nodes, rule, tried, q, v, a, ball, rate_tried, defect,
 ):  # fmt: skip
     """defect (m, 2 n): what q and v at the end of each interval gain when the balance of forces is integrated with more points.
 
     Parameters
     ----------
     inverse : (n, n) of the mass;  load : (5,) constant, share : of the excitation that acts, by an own clock [rad/s]
-    tried : ``Rule.try_packed``
+    tried : ``Rule.try_packed``;  rate_tried : (m e, Z, c) [m/s] at the points that are tried
     """
     m, s, n = nodes.size - 1, rule.shape[1], free.size
     e = tried.shape[1] - s
@@ -244,8 +244,9 @@ def try_between(
             place[:, :] = ball[at]
             t = (nodes[k] + u * h) / speed
             status = system(
-                t, 0.0, Q, V, place, 0.0, rate[at], law, law_params, law_state, law_new, scalars, table, work, f, none, none
-            )
+                t, 0.0, Q, V, place, 0.0, rate_tried[k * e + i], law, law_params, law_state, law_new, scalars, table, work, f,
+                none, none,
+            )  # fmt: skip
             if status != 0:
                 return k
             force((nodes[k] + u * h) / clock, force_params, outer)
