@@ -11,6 +11,7 @@ and Newton's iteration takes over: (I - D T) dr = D b - r with T = db/dr of each
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,7 @@ from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
     from raceway.core.periodic.collocation import Path, Problem
+    from raceway.core.periodic.rule import Rule
 
 #: Lag times the largest entry of D above which the rates are solved for: a fifth leaves seven sweeps for 1e-5.
 _STIFF = 0.02
@@ -41,10 +43,11 @@ def derivative(problem: Problem, path: Path) -> np.ndarray:
 
 def stiff(problem: Problem, path: Path) -> bool:
     """Whether putting rates in does not converge."""
-    # All contacts that ever close are closed at the equilibrium, more or less: the first state of the path tells the lag.
-    lag = float(np.abs(_lags(problem, path, np.zeros(1, dtype=int))).max())
+    # One state tells how much dashpots do: balls that are closed anywhere are closed at most times.
+    here, moved = _places(problem, path, np.zeros(1, dtype=int), [[], problem.system.rated_columns])
+    lag = float(np.abs(moved - here).max()) / _step(problem, path)
     h = float(np.diff(path.nodes).min())
-    return bool(lag * problem.speed * _steepest(problem) / h > _STIFF)
+    return bool(lag * problem.speed * _steepest(problem.rule) / h > _STIFF)
 
 
 def renew(problem: Problem, path: Path, solved: bool) -> None:
@@ -76,26 +79,38 @@ def _longer(nodes: np.ndarray) -> np.ndarray:
     return np.concatenate([[nodes[0] - h[-1]], nodes, [nodes[-1] + h[0]]])
 
 
-def _steepest(problem: Problem) -> float:
+@cache
+def _steepest(rule: Rule) -> float:
     """Largest entry of the derivative on an interval of length 1 among equals."""
-    return float(np.abs(_weights(problem, np.array([0.0, 1.0]))).max() / problem.speed)
+    return float(np.abs(_weights(rule, np.array([0.0, 1.0]))).max())
 
 
-def _weights(problem: Problem, nodes: np.ndarray) -> np.ndarray:
-    """D (m s, s + 4) [1/s]: row i has the weights of samples k s - 2 to k s + s + 1, k the interval of sample i."""
-    m, s = len(nodes) - 1, len(problem.rule.points)
+def _weights(rule: Rule, nodes: np.ndarray) -> np.ndarray:
+    """D (m s, s + 4) by the angle: row i has the weights of samples k s - 2 to k s + s + 1, k the interval of sample i."""
+    m, s = len(nodes) - 1, len(rule.points)
     width = s + 4
     rows = np.arange(m * s + 4)
     # Any s + 4 samples in a row have different remainders: one signal for each remainder tells every weight.
     signal = np.ascontiguousarray((rows[:, None] % width == np.arange(width)).astype(float)[:, :, None])
     out = np.empty_like(signal)
-    differentiate(_longer(nodes), problem.rule.points, problem.speed, signal, out)
+    differentiate(_longer(nodes), rule.points, 1.0, signal, out)
     of = (np.arange(m * s) // s * s)[:, None] + np.arange(width)
     return np.take_along_axis(out[2:-2, :, 0], of % width, axis=1)
 
 
-def _lags(problem: Problem, path: Path, chosen: np.ndarray) -> np.ndarray:
-    """T (n, Z, r, r) [s]: places by rates at some of the Gauss points."""
+def _lags(problem: Problem, path: Path) -> np.ndarray:
+    """T (m s, Z, r, r) [s]: places by rates."""
+    columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
+    here, *moved = _places(problem, path, np.arange(len(path.a)), [[], *columns])
+    return np.stack([(one - here) / _step(problem, path) for one in moved], axis=-1)
+
+
+def _step(problem: Problem, path: Path) -> float:
+    return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
+
+
+def _places(problem: Problem, path: Path, chosen: np.ndarray, moved: list[list[int]]) -> list[np.ndarray]:
+    """Columns (n, Z, r) of the balls at some of the Gauss points, for each set of columns with the rates of that set moved."""
     system, rule = problem.system, problem.rule
     s, rated = len(rule.points), system.rated_columns
     k, i = chosen // s, chosen % s
@@ -104,21 +119,15 @@ def _lags(problem: Problem, path: Path, chosen: np.ndarray) -> np.ndarray:
     v = (path.v[k] + h * np.einsum("ns,nsc->nc", rule.velocity[i], a)) * problem.speed
     times = (path.nodes[k] + rule.points[i] * h[:, 0]) / problem.speed
     gap, force = np.empty((2, len(chosen), 2 * system.ball_count))
-    size = max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
-
-    def places(column: int | None) -> np.ndarray:
+    found = []
+    for columns in moved:
         ball, rate = path.ball[chosen].copy(), path.rate[chosen].copy()
-        if column is not None:
-            rate[:, :, column] += _STEP * size
-        done = contacts(
-            *system.model, system.law_state, times, np.ascontiguousarray(q), np.ascontiguousarray(v), ball, rate, gap, force
-        )
+        rate[:, :, columns] += _step(problem, path)
+        done = contacts(*system.model, system.law_state, times, q, v, ball, rate, gap, force)
         if done < len(chosen):
             raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
-        return ball[:, :, rated]
-
-    here = places(None)
-    return np.stack([(places(c) - here) / (_STEP * size) for c in rated], axis=-1)
+        found.append(ball[:, :, rated])
+    return found
 
 
 def _solve(problem: Problem, path: Path, rest: np.ndarray) -> np.ndarray:
@@ -128,7 +137,7 @@ def _solve(problem: Problem, path: Path, rest: np.ndarray) -> np.ndarray:
 
     n, z, r = rest.shape
     s, order = len(problem.rule.points), problem.symmetry.order
-    lags, weights = _lags(problem, path, np.arange(n)), _weights(problem, path.nodes)
+    lags, weights = _lags(problem, path), problem.speed * _weights(problem.rule, path.nodes)
     back = np.argsort(order)
     ball, sample = np.meshgrid(np.arange(z), np.arange(n), indexing="ij")
     at = sample[:, :, None] // s * s + np.arange(s + 4) - 2
