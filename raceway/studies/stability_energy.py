@@ -80,7 +80,9 @@ def impact(case: Case, registry: Registry) -> list[Row]:
     method: Any = registry.find("integrator", a["integrator"]).plugin()
     dt = pi * depth / speed / a["steps"]
     balls = np.zeros((1, 2))
-    first = Motion(np.array([-0.4 * dt * speed, 0, 0, 0, 0]), np.array([speed, 0, 0, 0, 0.0]), np.zeros(5), balls, balls.copy())
+    first = Motion(
+        np.array([-0.4 * dt * speed, 0, 0, 0, 0]), np.array([speed, 0, 0, 0, 0.0]), np.zeros(5), balls, balls.copy()
+    )
     setting = {"integrator": a["integrator"], **a["shown"], "speed [m/s]": speed, "steps a contact": a["steps"]}
     record = method.advance(system, first, Schedule(dt, 2 * a["steps"], 1))
     left = -float(record.velocity[-1, 0])
@@ -121,7 +123,9 @@ def deep_penetration(case: Case, registry: Registry) -> list[Row]:
         worst = energy_balance(found.system, record).drift
         return worst, worst
 
-    bound = AtMost(0.03, "the energy of so coarse a motion swings by (w dt)^2 / 4 = 0.3 % where smooth, more where contacts open")
+    bound = AtMost(
+        0.03, "the energy of so coarse a motion swings by (w dt)^2 / 4 = 0.3 % where smooth, more where contacts open"
+    )
     return [judged(case.name, setting, "largest change of energy over the motion's", bound, 0.0, drift)]
 
 
@@ -144,36 +148,38 @@ def settled_from_afar(case: Case, registry: Registry) -> list[Row]:
 
 
 def chatter(case: Case, registry: Registry) -> list[Row]:
-    """A mass falls on a damped contact that is far stiffer than the steps can follow; in truth it comes to rest.
+    """A mass on a damper falls on a contact that is far stiffer than the steps can follow; in truth it comes to rest.
 
     Notes
     -----
-    Newmark's average acceleration keeps all of what a step cannot follow: the force flips from step to step and contacts
-    open and close for ever.  Generalised-alpha with a small radius at infinity forgets it in some steps.
+    Newmark's average acceleration keeps all of what a step cannot follow: the contact opens and closes every other step for
+    ever.  Generalised-alpha with a small radius at infinity forgets it in some steps, and so do steps that are fine enough.
     """
     a = case.arguments
     found = still(scene_at(a["tables"], a["changes"], registry))
     load, mass = 100.0, 2.0
-    law, params = found.system.law, a["stiffer"] * found.system.law_params[:1]
+    law, params = found.system.law, 1e3 * found.system.law_params[:1]
     at_rest = impact_system(mass, law, params, load=load)
     q, _, _ = at_rest.settle(np.zeros(5))
     k = float(at_rest.evaluate(q, ball=np.zeros((1, 2))).stiffness[0, 0])
-    system = impact_system(mass, law, params, load=load, contact_damping=2.0 * 0.2 * sqrt(k * mass))
+    system = impact_system(mass, law, params, load=load, damping=2.0 * 0.2 * sqrt(k * mass))
     period = 2.0 * pi * sqrt(mass / k)
-    method: Any = attrs.evolve(registry.find("integrator", a["integrator"]).plugin(), **a.get("options", {}))
-    name = {"integrator": a["integrator"], **a.get("options", {}), "law": a["law"], "step/period": a["step"]}
+    method: Any = attrs.evolve(registry.find("integrator", a["integrator"]).plugin(), **a["options"])
+    setting = {"integrator": a["integrator"], **a["options"], **a["shown"], "step/period": a["step"]}
+    note: list[str] = []
 
     def unrest() -> Measured:
-        record = method.advance(system, _falling(load / mass, 5e-6), Schedule(a["step"] * period, 400, 1))
+        record = method.advance(system, _falling(load / mass, 5.0 * q[0]), Schedule(a["step"] * period, 400, 1))
         late = record.contact_force[-100:, 0]
+        note.append(f"open in {100.0 * (late <= 0.0).mean():.0f} % of these steps")
         return float(np.sqrt(np.mean((late / load - 1.0) ** 2))), None
 
-    expected = AtLeast(0.1, "the known fault of average acceleration") if a["chatters"] else AtMost(1e-3, "at rest after 400 steps")
-    return [judged(case.name, name, "contact force less the load over the load, rms of steps 301 to 400", expected, None, unrest)]
+    expected = AtLeast(0.1, "the known fault of average acceleration") if a["chatters"] else AtMost(1e-3, "at rest by then")
+    quantity = "contact force less the load over the load, rms of steps 301 to 400"
+    row = judged(case.name, setting, quantity, expected, 0.0, unrest)
+    return [attrs.evolve(row, note="; ".join([*note, row.note]).strip("; "))]
 
 
 def _falling(acceleration: float, gap: float) -> Motion:
     balls = np.zeros((1, 2))
     return Motion(np.array([-gap, 0, 0, 0, 0.0]), np.zeros(5), np.array([acceleration, 0, 0, 0, 0.0]), balls, balls.copy())
-
-

@@ -26,7 +26,9 @@ FACTORS = (0.5, 0.9, 0.98, 1.02, 1.1)
 _STEPS = 400
 #: Perturbation over the axial approach: small enough to be linear, far above the tolerance of implicit steps (1e-9).
 _SMALL = 1e-6
-_BOUNDED = AtMost(20.0, "at 0.98 of the limit a bounded motion swings to 1 / sqrt(1 - 0.98^2) = 5 times its start, and modes add up")
+_BOUNDED = AtMost(
+    20.0, "at 0.98 of the limit a bounded motion swings to 1 / sqrt(1 - 0.98^2) = 5 times its start, and modes add up"
+)
 _GROWING = AtLeast(1e3, "1.49 a step at 1.02 of the limit; a nonlinear contact stops the growth where it opens")
 #: Part of the limit at the orbit's largest tangent that is safe, and turns.
 SAFE, _TURNS = 0.9, 50
@@ -113,7 +115,9 @@ def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
         return float(np.abs(record.displacement[-steps:, 1:3] - true[:, 1:3]).max() / size), None
 
     setting = {"integrator": a["integrator"], **a["shown"], "contacts open": opens, "steps a turn": steps}
-    bound = AtMost(1.0, "an unstable motion leaves its orbit by many times its size; a stable one carries the error of so long steps")
+    bound = AtMost(
+        1.0, "an unstable motion leaves its orbit by many times its size; a stable one carries the error of so long steps"
+    )
     rows.append(judged(case.name, setting, "distance from the orbit in turn 50 over its size", bound, None, follow))
     return rows
 
