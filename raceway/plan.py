@@ -316,12 +316,19 @@ def _refuse_steady(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) 
     refuse(scene.contact.friction > 0.0, "integrator.kind", kind, why)
     why = f"contact law '{scene.contact.kind}' has a memory: its motion cannot be solved for by itself: {other}"
     refuse(scene.contact.law.state_size > 0, "integrator.kind", kind, why)
+    large = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
+    what = "bodies.kind is elastic" if scene.bodies.kind == "elastic" else "contact.discretisation is nodal"
+    why = f"{what}: it linearises thousands of states and needs forces that are compiled, those of resultants: {other}"
+    refuse(large, "integrator.kind", kind, why)
     alone = (
         excitation.sense != 0
         and not any(scene.load.radial)
         and not (any(scene.load.moment) and scene.supports.tilt != "locked")
     )
-    why = f"kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the force turns and no radial load acts: {other}"
+    why = (
+        "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
+        f"force turns and no radial load acts: {other}"
+    )
     refuse(scene.kinematics.orbiting and not alone, "integrator.kind", kind, why)
 
 
