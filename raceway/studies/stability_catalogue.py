@@ -76,6 +76,14 @@ SCENES: tuple[tuple[str, Changes, bool, str], ...] = (
     ("no damping", dict(UNDAMPED), True, "orbit"),
 )  # fmt: skip
 
+#: Those that are run with elastic rings and balls, too.
+CONDENSED = (
+    "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "conformity 0.501",
+    "lift-off: rotating 3000 N at 1000 N axial", "Poisson's ratio 0.4999", "rubber balls in ceramic rings",
+    "ceramic balls in steel rings", "friction 0.3", "tilt free",
+)  # fmt: skip
+#: A penalty that is scaled at small loads is stiffer than what finite elements would take off it; refused, see REFUSALS.
+TOO_STIFF = (("axial load 100 kN", "penalty"), ("rubber balls in ceramic rings", "penalty"))
 PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
 
 #: name, changes, words of the message, why there is no answer.
@@ -112,6 +120,12 @@ REFUSALS: tuple[tuple[str, Changes, str, str], ...] = (
         "would take",
         "it is refused before it fills the memory",
     ),
+    (
+        "penalty stiffer than elastic bodies allow",
+        {"bodies.kind": "condensed", "contact.kind": "penalty", "load.axial": 1e5},
+        "is stiffer than elastic bodies allow",
+        "what finite elements take off a contact's compliance would leave none",
+    ),
     ("Poisson's ratio 0.5", {"bearing.rings": {"poisson": 0.5}}, "poisson", "the moduli are infinite"),
     ("no mass", {**_BARE, **_B7206C, "rotor.mass": 0.0}, "nothing has mass", "no acceleration is defined"),
 )  # fmt: skip
@@ -144,7 +158,7 @@ def catalogue(registry: Registry, tables: Mapping[str, Any] | None = None) -> tu
     cases = [*_limits(base, registry), *_orbits(base, registry, tables is None), *_energy(base, registry, tables is None)]
     cases += _penalties(base, registry)
     if tables is None:
-        cases += [*_scenes(base, registry), *_refusals(base), *_elements()]
+        cases += [*_scenes(base, registry), *_without_penetration(base, registry), *_refusals(base), *_elements()]
     return tuple(cases)
 
 
@@ -236,6 +250,36 @@ def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
                 "judge": judge,
             }  # fmt: skip
             yield Case(name, "stability_scenes:extreme", arguments, 1.5)
+            if name in CONDENSED and (name, law) not in TOO_STIFF:
+                elastic = {
+                    **arguments, "changes": {**arguments["changes"], "bodies.kind": "condensed"}, "closed_form": False,
+                    "shown": {"law": law, "bodies": "condensed"},
+                }  # fmt: skip
+                yield Case(name, "stability_scenes:extreme", elastic, 8.0)
+
+
+def _without_penetration(base: Changes, registry: Registry) -> Iterator[Case]:
+    """Laws for surface points only, on elastic bodies: few points and few steps, as each takes a tenth of a second."""
+    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    for law in (e.name for e in entries if e.plugin.discretisations == {"nodal"}):
+        same: Changes = {"bodies.kind": "condensed", **_STATIC}
+        changes: Changes = {
+            "contact.kind": law, "contact.discretisation": "nodal", "integrator.turns": 1, "integrator.steps_per_turn": 40,
+            "mesh": {"kind": "structured", "nodes_per_semi_axis": 2},
+        }  # fmt: skip
+        for name in transient(registry):
+            shown = {"law": law, "bodies": "condensed", "integrator": name}
+            arguments: Changes = {"tables": base, "integrator": name, "shown": shown, "same": same, "changes": changes}
+            if name in _THROUGH_POINTS:
+                yield Case("contact without penetration", "stability_scenes:points", arguments, 12.0)
+                continue
+            arguments["changes"] = {**same, **changes, "integrator.kind": name}
+            arguments |= {"words": "through too many steps", "reason": "a step takes a tenth of a second"}
+            yield Case("contact without penetration", "stability_scenes:refusal", arguments, 0.5)
+
+
+#: Integrators that take surface points through a turn.
+_THROUGH_POINTS = ("newmark",)
 
 
 def _refusals(base: Changes) -> Iterator[Case]:

@@ -28,9 +28,12 @@ def million_steps(case: Case, registry: Registry) -> list[Row]:
     """Undamped free motion; the trend of the energy's block means over the motion's energy."""
     a = case.arguments
     found = still(scene_at(a["tables"], {**UNDAMPED, **a.get("changes", {})}, registry))
-    method: Any = registry.find("integrator", a["integrator"]).plugin()
     opens = a["amplitude"] > 1.0
-    setting = {"integrator": a["integrator"], **a["shown"], "steps": a["steps"], "step/limit": a["factor"]}
+    method: Any = registry.find("integrator", a["integrator"]).plugin()
+    options: dict[str, float] = {}
+    if not opens:  # where contacts open, rounding ends some iterations above so small a tolerance
+        method, options = _sharp(method)
+    setting = {"integrator": a["integrator"], **options, **a["shown"], "steps": a["steps"], "step/limit": a["factor"]}
     note: list[str] = []
 
     def trend() -> Measured:
@@ -47,6 +50,14 @@ def million_steps(case: Case, registry: Registry) -> list[Row]:
     expected = _LIFTS_OFF if opens else _NEVER_GROWS if method.dissipative else _NOTHING_OPENS
     row = judged(case.name, setting, "trend of the energy's block means over the motion's energy", expected, 0.0, trend)
     return [attrs.evolve(row, note="; ".join([*note, row.note]).strip("; "))]
+
+
+def _sharp(method: Any) -> tuple[Any, dict[str, float]]:
+    """An implicit method with steps solved as far as rounding allows: 1e-9 of the load a step adds up to 1e-5 of a small
+    motion's energy in a million steps."""
+    if "tolerance" not in {field.name for field in attrs.fields(type(method))}:
+        return method, {}
+    return attrs.evolve(method, tolerance=1e-12), {"tolerance": 1e-12}
 
 
 def _trend(found: Still, record: Record) -> tuple[float, float]:

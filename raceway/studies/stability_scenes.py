@@ -18,6 +18,9 @@ from raceway.studies.stability_case import AS_EXPECTED, FAILED, AtMost, Case, Me
 from raceway.studies.stability_systems import scene_at, transient
 
 _BALANCE = Near(1e-8, "an equilibrium is solved to a residual of 1e-11")
+_BALANCE_ELASTIC = Near(
+    0.05, "structural compliances vary with the contact angle, which pushes a ball along the groove: 0.1 %, at 100 kN 4 %"
+)
 _ROUGH = Near(0.05, "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)")
 _ORBIT = Near(0.01, "time steps cost 0.02 %, what is left of the transient after 12 turns 0.1 %; ten times that")
 #: Drift of the energy that a completed motion may show: 360 steps a turn and light contacts.
@@ -93,7 +96,8 @@ def _at_rest(case: Case, shown: dict[str, Any], changes: dict[str, Any], registr
         return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(found.angle_inner)), 0.0))), None
 
     scene = scene_at(a["tables"], quiet, registry)
-    rows.append(judged(case.name, shown, "sum of the balls' axial forces [N]", _BALANCE, scene.load.axial, axial))
+    balance = _BALANCE if scene.bodies.kind == "rigid" else _BALANCE_ELASTIC
+    rows.append(judged(case.name, shown, "sum of the balls' axial forces [N]", balance, scene.load.axial, axial))
     if a.get("closed_form"):
         alone = {**quiet, "kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}
 
@@ -115,6 +119,21 @@ def _default_penalty(tables: dict[str, Any], changes: dict[str, Any], registry: 
 def _inner_factor(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
     scene = scene_at(tables, changes, registry)
     return float(build_model(scene, make_plan(scene)).system.law_params[0, 0])
+
+
+def points(case: Case, registry: Registry) -> list[Row]:
+    """Surface points against the calibrated law on the same bodies."""
+    a = case.arguments
+    scene = scene_at(a["tables"], {**a["same"], "integrator.kind": "periodic", "contact.kind": "hertz"}, registry)
+    known = abs(_dynamic(run(scene, registry)))
+    changes = {**a["same"], **a["changes"], "integrator.kind": a["integrator"]}
+    setting = {**a["shown"], "integrator": a["integrator"]}
+
+    def motion() -> Measured:
+        return abs(_dynamic(run(scene_at(a["tables"], changes, registry), registry))), None
+
+    close = Near(0.05, "two points along a semi-axis are off by percents; converged ones differ by 1 %")
+    return [judged(case.name, setting, "|Z| [N/m], predicted by Hertz on these bodies", close, known, motion)]
 
 
 def refusal(case: Case, registry: Registry) -> list[Row]:
