@@ -96,10 +96,12 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
             except ConvergenceError:
                 continue
             return Found(refined, "from a higher speed" if ratio > 1.0 else "from a lower speed", fold)
+    turns_back = any(p.folded for p in points)
+    why = "where its branch turns back (an internal resonance)" if turns_back else "beyond which it could not be followed"
     raise ConvergenceError(
         f"no motion of the period of the force was found: the one that grows out of rest ends at {100 * fold:.3g} % of the "
-        "force, where its branch turns back (an internal resonance), and none leads here from other speeds. A transient "
-        "integrator with start = 'ramp' shows what the ring does instead.",
+        f"force, {why}, and none leads here from other speeds. A transient integrator with start = 'ramp' shows what the "
+        "ring does instead.",
         {"q": q.copy(), "points": points},
     )
 
@@ -174,7 +176,7 @@ def _detour(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: flo
 def from_rest(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> list[Point]:
     """The branch from the resting ring to the whole force, or to where it is lost or back at no force."""
     _, lines = response(problem, tangent)
-    length = max(float(np.abs(lines / problem.weight).max()), 1e-12)
+    length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
     branch = Branch(lambda share: attrs.evolve(problem, share=share), 1.0, length, _ROUGH, _MOST)
     still = attrs.evolve(problem, share=0.0)
     n, none = len(problem.free), np.empty((0, 0))
