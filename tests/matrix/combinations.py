@@ -37,27 +37,29 @@ class Combination:
         return "-".join(str(value) for value in attrs.astuple(self))
 
 
-#: Rigid bodies run in every combination.  What bodies of other kinds have of their own meets every choice in cells that
-#: differ from one of these in at most so many words: the loops, laws and identifiers behind them are the same.
-NEAR = {
-    "resultant": (("bidirectional", "hertz", "resultant", "newmark", "fft_1x", "locked"), 2),
-    "nodal": (("bidirectional", "hertz", "nodal", "quasi_static", "tangent", "locked"), 1),
-}
-
-
 def combinations() -> Iterator[Combination]:
-    """Every registered excitation x law x discretisation x integrator x identifier x tilt boundary x bodies kind.
-
-    Of bodies that are not rigid those ``NEAR`` a plain one.
-    """
+    """Every registered excitation x law x discretisation x integrator x identifier x tilt boundary x bodies kind."""
     excitations, laws, integrators, identifiers = (default_registry().names(kind) for kind in KINDS)
     for cell in product(excitations, laws, DISCRETISATIONS, integrators, identifiers, TILTS, BODIES):
-        plain, words = NEAR[cell[2]]
-        near = sum(a != b for a, b in zip(cell, plain, strict=False)) <= words
-        # Several speeds or many turns of points at every step say nothing new of the identifier, and take half a minute.
-        cheap = cell[2] != "nodal" or cell[4] in ("tangent", "fft_1x")
-        if cell[-1] == "rigid" or (near and cheap):
-            yield Combination(*cell)
+        yield Combination(*cell)
+
+
+#: Rigid bodies run in every combination.  Of the cells of condensed bodies that the plan accepts, those run that differ from
+#: a plain one in so many options: loops, laws and identifiers behind them are the same.
+RESULTANT = Combination("bidirectional", "hertz", "resultant", "newmark", "fft_1x", "locked", "condensed")
+#: Contacts at surface points take milliseconds a step.
+PLAIN = Combination("bidirectional", "unilateral", "nodal", "newmark", "fft_1x", "locked", "condensed")
+#: In more than one option, because its neighbour does not fit.
+RUN_UP = attrs.evolve(PLAIN, excitation="run_up", identifier="order_tracking")
+
+
+def only_planned(cell: Combination) -> bool:
+    """Whether a cell is judged by the plan alone."""
+    if cell.bodies != "condensed":
+        return False
+    plain, options = (PLAIN, 1) if cell.discretisation == "nodal" else (RESULTANT, 2)
+    changed = sum(a != b for a, b in zip(attrs.astuple(cell), attrs.astuple(plain), strict=True))
+    return changed > options and cell != RUN_UP
 
 
 class NeedsOptions(Exception):
@@ -82,12 +84,13 @@ def options(kind: str, name: str) -> dict[str, Any]:
 
 
 def tables(cell: Combination) -> dict[str, Any]:
-    """A short run: 6 turns of 120 steps; more steps where an explicit method asks for them."""
+    """A short run: 6 turns of 120 steps; more steps where an explicit method asks for them, fewer where they are costly."""
     implicit = default_registry().find("integrator", cell.integrator).plugin.implicit
-    # Few points where pressures at points are computed: every path of the program, not every digit.
-    mesh = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 2}} if cell.discretisation == "nodal" else {}
+    nodal = (cell.discretisation, cell.bodies) == (PLAIN.discretisation, PLAIN.bodies)
+    turns, steps = (2 if cell.identifier in ("fft_1x", "sine_fit") else 6, 24) if nodal else (6, 120)
+    points = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 2, "element_size": 1.2e-3}}
     return {
-        **(mesh if cell.bodies != "rigid" else {}),
+        **(points if nodal else {}),
         "title": str(cell),
         "bearing": {"preset": "B7206C"},
         "load": {"axial": 2000.0},
@@ -98,8 +101,8 @@ def tables(cell: Combination) -> dict[str, Any]:
         "contact": {"kind": cell.law, "discretisation": cell.discretisation, **options("contact_law", cell.law)},
         "integrator": {
             "kind": cell.integrator,
-            "turns": 6,
-            "steps_per_turn": 120 if implicit else "auto",
+            "turns": turns,
+            "steps_per_turn": steps if implicit else "auto",
             **options("integrator", cell.integrator),
         },
         "identifier": {"kind": cell.identifier, **options("identifier", cell.identifier)},
