@@ -17,7 +17,7 @@ from __future__ import annotations
 import pytest
 
 from raceway.registry import default_registry
-from tests.matrix.combinations import Combination, NeedsOptions, Outcome, combinations, options, outcome, reference
+from tests.matrix.combinations import ELASTIC, Combination, NeedsOptions, Outcome, combinations, options, outcome, reference
 from tests.matrix.conftest import KEY
 
 
@@ -44,7 +44,7 @@ def test_combination(cell, record_property):
     found = outcome(cell)
     if not isinstance(found, Outcome):
         record_property(KEY, "refused with a reason")
-        assert all(m.path.split(".")[0] in ("bodies", "contact", "identifier", "mesh") for m in found.mistakes), str(found)
+        assert all(m.path.split(".")[0] in ("bodies", "contact", "identifier", "integrator", "mesh") for m in found.mistakes), str(found)
         assert all(len(m.message) > 20 for m in found.mistakes)
         return
     record_property(KEY, "run")
@@ -75,6 +75,11 @@ def test_the_built_in_combinations_run():
             assert isinstance(outcome(cell), Outcome), str(cell)
 
 
+def test_the_cells_with_elastic_bodies_run():
+    for cell in ELASTIC:
+        assert isinstance(outcome(Combination(*cell, "elastic")), Outcome), cell
+
+
 def test_elastic_rings_and_balls_on_rigid_seats_are_stiffer_by_some_percent():
     """5 to 8 % of the contacts' stiffness (physics.md, section 10); less where free tilts share the displacement."""
     for tilt in ("locked", "free"):
@@ -90,7 +95,8 @@ def test_refusals_name_the_way_out():
         return str(outcome(evolve(cell, **changes)))
 
     assert "supports 'resultant'" in reason(discretisation="nodal")
-    assert "use 'rigid'" in reason(bodies="elastic")
+    assert "is required by elastic bodies" in reason(bodies="elastic")
+    assert "use 'nodal'" in reason(bodies="elastic")
     assert "use 'order_tracking'" in reason(excitation="run_up")
     assert "several speeds" in reason(excitation="run_up", identifier="impedance_fit")
     assert "does not repeat every turn at 7200 r/min" in reason(excitation="measured", identifier="impedance_fit")
