@@ -83,7 +83,10 @@ class ElasticBodies:
         scene = model.scene
         return {
             "bodies": "elastic: every node of rings and balls, pressures at surface points",
-            "rigid_rings": {"displacement": dict(zip(COORDINATES, q.tolist(), strict=True)), "stiffness": stiffness.tolist()},
+            "rigid_rings": {
+                "displacement": dict(zip(COORDINATES, q.tolist(), strict=True)),
+                "stiffness": stiffness.tolist(),
+            },
             "mesh": {
                 "cells": self.bearing.cells,
                 "nodes": bodies.assembly.nodes,
