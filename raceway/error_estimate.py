@@ -82,7 +82,7 @@ def error_table(
     for name, part in parts.items():
         table[name], how[name] = part.size, part.how
     table["total"] = _total(parts)
-    how["total"] = "time step and transient with their phases, at least half the larger; plus identification"
+    how["total"] = "time step and transient with their phases, at least half the larger; plus identification and mesh"
     return table
 
 
