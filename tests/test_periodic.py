@@ -15,7 +15,7 @@ from raceway.core.orbit import steady_orbit
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import Problem
 from raceway.core.periodic.rates import stiff
-from raceway.core.periodic.search import find, from_rest, mesh_of
+from raceway.core.periodic.search import find, from_rest, highest_order, mesh_of
 from raceway.core.periodic.symmetry import one_turn
 from raceway.core.record import Schedule
 from raceway.errors import SceneError
@@ -135,7 +135,7 @@ def softening():
 
 def test_a_branch_passes_its_folds(softening):
     problem, q, tangent = softening
-    points = from_rest(problem, q, tangent, mesh_of(problem, tangent))
+    points = from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
     shares = np.array([point.parameter for point in points])
     assert points[-1].parameter >= 1.0
     assert any(point.folded for point in points)
