@@ -110,6 +110,8 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
         return Part(first.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude")
     if not method.inertial:
         return Part(getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to")
+    if model.scene.bodies.kind == "elastic":
+        return Part(None, "not estimated: a second run of all nodes would cost as much as the first")
     steps = first.whole.schedule.steps_per_turn
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)

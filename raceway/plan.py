@@ -11,6 +11,7 @@ from typing import Any
 
 import attrs
 
+from raceway.elastic_plan import elastic_cost, elastic_faults, memory_faults, steps_per_turn, words
 from raceway.errors import Mistake, SceneError
 from raceway.estimate import highest_frequency
 from raceway.mesh_plan import mesh_faults, predicted_mesh
@@ -26,7 +27,7 @@ _CONDENSED_STEP_S = {"weightless": 10.5e-6, "inertial": 13.5e-6, "tangential": 2
 _BETWEEN_S, _RINGS_S = 23.0e-6, 1.5
 _START_S = 0.6
 #: Kinds of bodies that this version can compute.
-BODIES = ("rigid", "condensed")
+BODIES = ("rigid", "condensed", "elastic")
 #: Name of what repeats itself, for ``make_plan``'s ``force``.
 OTHER_TURNS = "other turns"
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
@@ -139,9 +140,11 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     decide(orbiting, "orbiting balls", "kinematics.orbiting at cage speed", "kinematics.orbiting is false")
     pair = f"bearing.arrangement is {scene.bearing.arrangement}"
     decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
-    condensed = scene.bodies.kind == "condensed"
+    condensed, elastic = scene.bodies.kind == "condensed", scene.bodies.kind == "elastic"
     why = f"bodies.kind is {scene.bodies.kind}: finite elements of rings and balls"
     why += ", reduced to structural compliances" if condensed else ""
+    cost = elastic_cost(scene) if elastic else None
+    why += f", every node: {words(cost)}" if cost is not None else ""
     decide(scene.bodies.kind != "rigid", "elastic rings and balls", why, "bodies.kind is rigid: only contacts deform")
     nodal = condensed and scene.contact.discretisation == "nodal"
     coupled = condensed and _balls_meet(scene) and not nodal
@@ -157,6 +160,11 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     elif condensed:
         why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
         coupled = decide(coupled, "effect of balls on each other through the rings", "soft seats or thick rings", why_not)
+    if elastic:
+        kept.append(Part("pressures at surface points", "elastic bodies touch at the points of the balls' surfaces"))
+        kept.append(Part("ideal cage", "holds each ball at its azimuth and keeps it from turning"))
+        why_not = "balls do not orbit: the cage holds them, their centrifugal force is kept where the plan says so"
+        left_out.append(Part("travel of the balls", why_not))
     rotor_moments = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
     decide(
         rotor_moments,
@@ -192,6 +200,11 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     if nodal:
         each = 12.0 / count * patches.step_s
     each *= count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
+    before = _bodies_seconds(scene)
+    if cost is not None:
+        # Two thirds: the factor 1.5 below is for what compiled loops share out differently.
+        each, before = cost.step_s / 1.5, cost.equilibrium_s + (cost.start_s if uses_record else 0.0)
+    ring = sum(free) + count * (1 if balls == "weightless" else 2)
     period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
     return Plan(
         kept=tuple(kept),
@@ -202,10 +215,10 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         coupled=coupled,
         free=free,
         turns=turns,
-        dofs=sum(free) + count * (1 if balls == "weightless" else 2),
+        dofs=ring if cost is None else cost.unknowns,
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
-        predicted_wall_s=_START_S + _bodies_seconds(scene) + 1.5 * steps * each,
+        predicted_wall_s=_START_S + before + 1.5 * steps * each,
         mesh=predicted_mesh(scene),
         modules=optional_modules(scene, balls, inertia, uses_record),
     )
@@ -248,7 +261,9 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
     listed = " or ".join(f"'{kind}'" for kind in BODIES)
     refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
-    faults += mesh_faults(scene)
+    if scene.bodies.kind == "elastic":
+        faults += elastic_faults(scene)
+    faults += mesh_faults(scene) or (memory_faults(scene) if scene.bodies.kind == "elastic" and not faults else [])
     rigid, condensed = scene.bodies.kind == "rigid", scene.bodies.kind == "condensed"
     if condensed:
         _refuse_condensed(scene, refuse)
@@ -406,4 +421,6 @@ def _predicted_steps_per_turn(scene: Scene) -> int:
     if scene.integrator.method.implicit:
         return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
+    if scene.bodies.kind == "elastic":
+        return max(STEPS_PER_TURN, steps_per_turn(scene, period, 0.8) or 0)
     return max(STEPS_PER_TURN, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)

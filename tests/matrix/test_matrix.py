@@ -89,7 +89,7 @@ def test_refusals_name_the_way_out():
 
         return str(outcome(evolve(cell, **changes)))
 
-    assert "supports 'resultant'" in reason(discretisation="nodal")
+    assert "rigid bodies have no surface points: use 'resultant'" in reason(discretisation="nodal")
     assert "use 'rigid'" in reason(bodies="elastic")
     assert "use 'order_tracking'" in reason(excitation="run_up")
     assert "several speeds" in reason(excitation="run_up", identifier="impedance_fit")

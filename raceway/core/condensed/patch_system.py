@@ -83,6 +83,18 @@ class PatchSystem(System):
         where, row.force, row.last = row.balls.settle(centre, where, row.force, rate, _BALLS)
         return self._answer(row.balls, centre, jacobian, where, rate, row.last)
 
+    def stiffness_at(self, q: np.ndarray, ball: np.ndarray) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
+
+        def found() -> np.ndarray:
+            row, still = self.pool.row(self.table), np.zeros((2 * self.ball_count, 2))
+            centre, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
+            where, row.force, row.last = row.balls.settle(centre, self._places(centre, ball), row.force, still, _BALLS)
+            smooth = row.balls.without_ripple(row.last, centre, where)
+            return np.asarray(jacobian.T @ row.balls.tangent(smooth) @ jacobian)
+
+        return self.pool.widened(found)
+
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:

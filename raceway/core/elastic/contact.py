@@ -42,7 +42,7 @@ class Friction(Protocol):
        [m]; traction (n, 3) on the points [Pa] and minus its derivative by ``moved`` (n, 3, 3) [Pa/m].
     2. ``commit()``, ``rollback()``: as for the system;  ``dissipated``: density (n,) [J/m2] up to the last commit;
        ``stored()``: density (n,) in what sticks.
-    3. ``state()``: arrays by name that ``restore(arrays)`` takes back.
+    3. ``begin(moved)``: nothing carries or has lost anything there.  ``state()``: arrays by name that ``restore(arrays)`` takes back.
     """
 
     dissipated: np.ndarray
@@ -51,6 +51,7 @@ class Friction(Protocol):
         self, moved: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]: ...
     def stored(self) -> np.ndarray: ...
+    def begin(self, moved: np.ndarray) -> None: ...
     def commit(self) -> None: ...
     def rollback(self) -> None: ...
     def state(self) -> dict[str, np.ndarray]: ...
@@ -114,6 +115,12 @@ class NodalContact:
     def move(self) -> Any:
         """(3 n, 3 nodes) sparse B: displacement of the points against the second surface."""
         return self._move
+
+    def restore(self, projected: np.ndarray, memory: np.ndarray) -> None:
+        """Where the points were looked up last, and the law's memory, as another contact had them."""
+        self._projected[:] = np.inf
+        self.update(projected)
+        self.memory[:] = memory
 
     def update(self, where: np.ndarray) -> bool:
         """Look up where the points lie on the second surface; whether anything changed."""

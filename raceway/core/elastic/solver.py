@@ -9,6 +9,7 @@ import numpy as np
 from raceway.core.blocks import BlockMatrix
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contact import NodalContact
+from raceway.core.elastic.factorised import MOST_UNKNOWNS, Factorised
 from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
@@ -32,7 +33,7 @@ class LinearSolver:
 
     def __init__(self, assembly: Assembly, contact: NodalContact | None, modulus: float) -> None:
         self.assembly, self.contact, self.modulus = assembly, contact, modulus
-        self._multigrid: Preconditioner | None = None
+        self._multigrid: Preconditioner | Factorised | None = None
         self._built = 0.0
         self._fresh = False
         #: Iterations of the last solve, of all solves, number of solves and of multigrid set-ups.
@@ -82,7 +83,9 @@ class LinearSolver:
 
         held = np.ones(3 * a.nodes, dtype=bool)
         held[a.free] = False
-        self._multigrid = Preconditioner((matrix + diags_array(extra)).tocsr(), a.points, held)
+        whole = (matrix + diags_array(extra)).tocsr()
+        small = len(a.free) <= MOST_UNKNOWNS
+        self._multigrid = Factorised(whole, held) if small else Preconditioner(whole, a.points, held)
         self._built, self._fresh = c_m / c_k, True
         self.setups += 1
         self._extend(c_k, c_m)

@@ -74,6 +74,8 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
         size = system.measure(rest)
         relative = size / scale if scale > 0.0 else np.inf
         history.append(float(relative))
+        if system.on_residual is not None:
+            system.on_residual(float(relative))
         if not np.isfinite(size):
             raise ConvergenceError("forces are not finite.")
         if relative <= tolerance and (done > 0 or share == 0.0):
