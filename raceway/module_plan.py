@@ -61,7 +61,8 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
     base = "inertial" if centrifugal else "weightless"
     for word, what in _BALLS.items():
         here = word in (balls, base)
-        decide(here and kind != "elastic", f"{_BODIES}.rigid_{word}", what, f"the balls are {balls}")
+        # Condensed and elastic bodies have a model of rigid rings beside them.
+        decide(here, f"{_BODIES}.rigid_{word}", what, f"the balls are {balls}")
         decide(
             here and kind == "condensed",
             f"{_BODIES}.condensed_{word}",
