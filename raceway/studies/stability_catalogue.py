@@ -245,13 +245,13 @@ def _penalties(base: Changes, registry: Registry) -> Iterator[Case]:
 def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
     for name, changes, closed, judge in SCENES:
         for law in pair_laws(registry):
-            arguments = {
+            arguments: Changes = {
                 "tables": base, "changes": {**changes, "contact.kind": law}, "shown": {"law": law}, "closed_form": closed,
                 "judge": judge,
             }  # fmt: skip
             yield Case(name, "stability_scenes:extreme", arguments, 1.5)
             if name in CONDENSED and (name, law) not in TOO_STIFF:
-                elastic = {
+                elastic: Changes = {
                     **arguments, "changes": {**arguments["changes"], "bodies.kind": "condensed"}, "closed_form": False,
                     "shown": {"law": law, "bodies": "condensed"},
                 }  # fmt: skip
