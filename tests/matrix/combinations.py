@@ -45,9 +45,8 @@ def combinations() -> Iterator[Combination]:
 
 
 #: Contacts at surface points take milliseconds a step: of the cells that the plan accepts, those run that differ from this
-#: one in one option, or in what its neighbour does not fit.
+#: one in one option; a run-up or several speeds would take thousands of steps.
 PLAIN = Combination("bidirectional", "unilateral", "nodal", "newmark", "fft_1x", "locked", "condensed")
-RUN_UP = attrs.evolve(PLAIN, excitation="run_up", identifier="order_tracking")
 
 
 def only_planned(cell: Combination) -> bool:
@@ -55,7 +54,7 @@ def only_planned(cell: Combination) -> bool:
     if (cell.discretisation, cell.bodies) != (PLAIN.discretisation, PLAIN.bodies):
         return False
     changed = sum(a != b for a, b in zip(attrs.astuple(cell), attrs.astuple(PLAIN), strict=True))
-    return changed > 1 and cell != RUN_UP
+    return changed > 1 or "speeds" in default_registry().find("identifier", cell.identifier).plugin.needs
 
 
 class NeedsOptions(Exception):
@@ -84,7 +83,7 @@ def tables(cell: Combination) -> dict[str, Any]:
     implicit = default_registry().find("integrator", cell.integrator).plugin.implicit
     nodal = (cell.discretisation, cell.bodies) == (PLAIN.discretisation, PLAIN.bodies)
     turns, steps = (2 if cell.identifier in ("fft_1x", "sine_fit") else 6, 24) if nodal else (6, 120)
-    points = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 2, "element_size": 1.2e-3}}
+    points = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3}}
     return {
         **(points if nodal else {}),
         "title": str(cell),
