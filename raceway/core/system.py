@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import attrs
@@ -101,6 +102,20 @@ class System:
     def companion(self) -> System:
         """A compiled system of the same ring: this one; another, near it, where this one is stepped from Python."""
         return self
+
+    @property
+    def starts(self) -> Any:
+        """The functions of ``raceway.core.start`` for a system that has more unknowns than these; None where they are all."""
+        return None
+
+    def follow(self, on_residual: Callable[[float], None] | None) -> None:
+        """What to call with the residual of every iteration of an equilibrium that takes long."""
+
+    def stepped(self) -> Any:
+        """The ``SteppedSystem`` that loops in Python step."""
+        from raceway.core.stepping.bearing import SteppedBearing
+
+        return SteppedBearing(self)
 
     @property
     def ball_columns(self) -> int:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -39,6 +40,8 @@ class ElasticSystem:
     ) -> None:
         self.assembly, self.contact, self.load = assembly, contact, np.array(load, dtype=float)
         self.excitation = excitation
+        #: Called with the relative residual of every iteration of ``settle``.
+        self.on_residual: Callable[[float], None] | None = None
         self.solver = LinearSolver(assembly, contact, modulus)
         self.size = assembly.size
         m = assembly.frame_size
@@ -161,6 +164,19 @@ class ElasticSystem:
         if loose:
             raise ConvergenceError("nothing holds " + "; ".join(loose))
         return settle(self, np.array(guess, dtype=float), tolerance)
+
+    @contextmanager
+    def without_friction(self) -> Iterator[None]:
+        """Contacts carry no friction inside; its history is kept."""
+        contact = self.contact
+        if contact is None:
+            yield
+            return
+        kept, contact.friction = contact.friction, None
+        try:
+            yield
+        finally:
+            contact.friction = kept
 
     def locate(self, y: np.ndarray) -> bool:
         """Look up where the points lie on the second surfaces at a state; whether that changed anything."""
