@@ -121,7 +121,9 @@ def model(load: float, nodes: float, formulation: str = "incompatible", hourglas
         bodies.append(Body(name, operator, held, frame))
     assembly = Assembly(bodies)
     found = surface_points(ball.points, ball.facet_nodes("surface"), np.zeros(3))
-    near = (np.abs(found.place[:, 0]) < REACH * major) & (np.abs(found.place[:, 1]) < REACH * minor) & (found.place[:, 2] < 0)
+    near = (
+        (np.abs(found.place[:, 0]) < REACH * major) & (np.abs(found.place[:, 1]) < REACH * minor) & (found.place[:, 2] < 0)
+    )
     surface = groove(np.array([0.0, 0.0, -(RADIUS + ROLLING)]), ROLLING + GROOVE, GROOVE)
     facets = Facets(block.points, block.facet_nodes("raceway"))
     points = found[near]
