@@ -54,6 +54,10 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     whole = scene.bodies.kind == "elastic"
     told(not whole, f"bodies.kind is '{scene.bodies.kind}'", "bodies.formulation", "bodies.hourglass")
     plain = whole and scene.bodies.formulation != "one_point"
-    told(plain, f"bodies.formulation is '{scene.bodies.formulation}': only 'one_point' has hourglass modes", "bodies.hourglass")
+    told(
+        plain,
+        f"bodies.formulation is '{scene.bodies.formulation}': only 'one_point' has hourglass modes",
+        "bodies.hourglass",
+    )
     told(scene.bearing.arrangement == "single", "the bearing has one row", "bearing.row_distance")
     return found

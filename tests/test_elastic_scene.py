@@ -58,7 +58,8 @@ def test_a_static_scene_balances_and_tells_what_it_found(static):
     assert model["reaction_n"]["x"] == pytest.approx(-250.0, rel=1e-5)
     assert model["unbalanced_n"] < 1e-3
     assert sum(b["load_inner_n"] * np.sin(np.radians(b["contact_angle_inner_deg"])) for b in balls) == pytest.approx(
-        250.0, rel=0.01  # the angle is that of the ball's centre, not of the resultant
+        250.0,
+        rel=0.01,  # the angle is that of the ball's centre, not of the resultant
     )
     # Three balls alike, on a mesh that repeats itself three times.
     assert np.ptp([b["load_inner_n"] for b in balls]) < 1e-3 * balls[0]["load_inner_n"]
@@ -99,7 +100,9 @@ def test_the_plan_tells_size_and_cost_and_builds_nothing():
 
 def test_a_step_above_the_stable_limit_is_refused_with_the_limit():
     with pytest.raises(StabilityError, match=r"above the stable limit of 'central_difference', [0-9.e-]+ s. Take at least"):
-        run(scene(**EXCITED, integrator={"kind": "central_difference", "turns": 1, "steps_per_turn": 360, "start": "static"}))
+        run(
+            scene(**EXCITED, integrator={"kind": "central_difference", "turns": 1, "steps_per_turn": 360, "start": "static"})
+        )
 
 
 REFUSED = [

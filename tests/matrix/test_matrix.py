@@ -44,7 +44,9 @@ def test_combination(cell, record_property):
     found = outcome(cell)
     if not isinstance(found, Outcome):
         record_property(KEY, "refused with a reason")
-        assert all(m.path.split(".")[0] in ("bodies", "contact", "identifier", "integrator", "mesh") for m in found.mistakes), str(found)
+        assert all(
+            m.path.split(".")[0] in ("bodies", "contact", "identifier", "integrator", "mesh") for m in found.mistakes
+        ), str(found)
         assert all(len(m.message) > 20 for m in found.mistakes)
         return
     record_property(KEY, "run")

@@ -119,8 +119,9 @@ class LinearSolver:
         if self._matrix is None:
             self._matrix = BlockMatrix(a.stiffness())
         matrix = self._matrix
-        blocks = None if contact is None else c_k * contact.stiffness + c_c * contact.rate_stiffness
-        if blocks is not None:
+        blocks = None
+        if contact is not None:
+            blocks = c_k * contact.stiffness + c_c * contact.rate_stiffness
             chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
             move = contact.move[(3 * chosen[:, None] + np.arange(3)).ravel()]
             transposed, blocks = move.T.tocsr(), blocks[chosen]
