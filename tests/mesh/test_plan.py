@@ -111,6 +111,15 @@ def test_a_body_of_another_bearing_is_warned_of(millimetres):
         mesh_scene(scene(**mesh))
 
 
+def test_balls_of_another_size_are_warned_of_once(tmp_path):
+    ball = Structured(element_size=2.4e-3, nodes_per_semi_axis=1, growth=2.0).mesh(BEARING)["ball_00"]
+    centred = ball.points - 0.5 * (ball.points.max(axis=0) + ball.points.min(axis=0))
+    Abaqus().write(tmp_path / "ball.inp", attrs.evolve(ball, points=0.8 * centred))
+    with pytest.warns(UserWarning, match="`ball_diameter` of the bearing") as found:
+        mesh_scene(scene(kind="file", ball=str(tmp_path / "ball.inp")))
+    assert len(found) == 1
+
+
 GEO = {
     "box": 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 10, 8, 6};\n',
     "ball": 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 4};\n',

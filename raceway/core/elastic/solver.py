@@ -13,8 +13,7 @@ from raceway.core.elastic.factorised import MOST_UNKNOWNS, Factorised
 from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
-MOST_ITERATIONS, MANY_ITERATIONS = 600, 60
-SOFT = 1.0
+MOST_ITERATIONS, MANY_ITERATIONS = 600, 120
 #: Iterations of a solve with factors that still fit, and how many more all solves together may take before new factors pay.
 FEW_ITERATIONS, WORTH_FACTORS = 3, 30
 #: Ratio of the mass' share of the matrix at which the multigrid is made anew.
@@ -80,7 +79,7 @@ class LinearSolver:
         a = self.assembly
         matrix = a.stiffness()
         if self.contact is not None:
-            matrix = matrix + self.contact.tangent(SOFT * self.contact.stiffness)
+            matrix = matrix + self.contact.tangent(self.contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
         if a.cage is not None:
             extra += a.cage.nodal

@@ -12,7 +12,7 @@ from raceway.errors import ConvergenceError
 #: Iterations of one load step, halvings of one line search, halvings of the load.
 NEWTON_LIMIT, HALVINGS, SMALLEST_PART = 40, 8, 1.0 / 16.0
 #: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
-TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-4, 1e-2, 1e-4
+TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 
 
 @attrs.frozen(eq=False)
