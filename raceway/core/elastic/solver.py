@@ -154,10 +154,11 @@ class LinearSolver:
         assert multigrid is not None
         scale, follow = 1.0 / c_k, self._follow
         inverse = np.zeros((m, m))
-        if m:
-            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in range(m)], axis=1)
-            block = (images[:m] + follow.T @ images[m:])[np.ix_(a.frame_free, a.frame_free)]
-            inverse[np.ix_(a.frame_free, a.frame_free)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
+        if a.frame_free.any():
+            chosen = np.flatnonzero(a.frame_free)
+            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in chosen], axis=1)
+            block = images[chosen] + follow[:, chosen].T @ images[m:]
+            inverse[np.ix_(chosen, chosen)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
 
         def apply(r: np.ndarray) -> np.ndarray:
             out = np.empty_like(r)
