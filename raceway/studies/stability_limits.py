@@ -117,7 +117,7 @@ def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
 
     setting = {"integrator": a["integrator"], **a["shown"], "contacts open": opens, "steps a turn": steps}
     bound = AtMost(
-        1.0, "an unstable motion leaves its orbit by many times its size; a stable one carries the error of so long steps"
+        0.5, "an unstable motion leaves its orbit by many times its size; steps so long cost a stable one percents"
     )
     return [judged(case.name, setting, "distance from the orbit in turn 50 over its size", bound, None, follow)]
 
