@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from raceway.errors import SceneError
 from raceway.registry import Registry
 from raceway.studies.stability_case import Case
 from raceway.studies.stability_systems import BASE, UNDAMPED, pair_laws, transient
@@ -153,8 +154,16 @@ def catalogue(registry: Registry, tables: Mapping[str, Any] | None = None) -> tu
     Parameters
     ----------
     tables : plain tables of a user's scene; the base scene and the whole catalogue when None
+
+    Raises
+    ------
+    SceneError
+        A scene whose contacts are surface points.
     """
     base = dict(tables) if tables is not None else BASE
+    if base.get("contact", {}).get("discretisation") == "nodal":
+        why = "the cases move bearings through a million steps, which takes forces of whole contacts: use 'resultant'"
+        raise SceneError.at("contact.discretisation", "nodal", why)
     cases = [*_limits(base, registry), *_orbits(base, registry, tables is None), *_energy(base, registry, tables is None)]
     cases += _penalties(base, registry)
     if tables is None:
@@ -245,13 +254,13 @@ def _penalties(base: Changes, registry: Registry) -> Iterator[Case]:
 def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
     for name, changes, closed, judge in SCENES:
         for law in pair_laws(registry):
-            arguments = {
+            arguments: Changes = {
                 "tables": base, "changes": {**changes, "contact.kind": law}, "shown": {"law": law}, "closed_form": closed,
                 "judge": judge,
             }  # fmt: skip
             yield Case(name, "stability_scenes:extreme", arguments, 1.5)
             if name in CONDENSED and (name, law) not in TOO_STIFF:
-                elastic = {
+                elastic: Changes = {
                     **arguments, "changes": {**arguments["changes"], "bodies.kind": "condensed"}, "closed_form": False,
                     "shown": {"law": law, "bodies": "condensed"},
                 }  # fmt: skip
