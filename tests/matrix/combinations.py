@@ -101,7 +101,7 @@ def elastic_tables(cell: Combination) -> dict[str, Any]:
         "bodies": {"kind": "elastic", "formulation": "one_point"},
         "mesh": {"kind": "structured", "ball_load": 300.0, **mesh},
         "load": {"axial": 500.0},
-        "integrator": {"kind": cell.integrator, "turns": 1, "steps_per_turn": 8},
+        "integrator": {"kind": cell.integrator, "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5},
     }
 
 

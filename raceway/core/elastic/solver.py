@@ -118,8 +118,9 @@ class LinearSolver:
         if self._matrix is None:
             self._matrix = BlockMatrix(a.stiffness())
         matrix = self._matrix
-        blocks = None if contact is None else c_k * contact.stiffness + c_c * contact.rate_stiffness
-        if blocks is not None:
+        blocks = None
+        if contact is not None:
+            blocks = c_k * contact.stiffness + c_c * contact.rate_stiffness
             chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
             move = contact.move[(3 * chosen[:, None] + np.arange(3)).ravel()]
             transposed, blocks = move.T.tocsr(), blocks[chosen]
@@ -153,10 +154,11 @@ class LinearSolver:
         assert multigrid is not None
         scale, follow = 1.0 / c_k, self._follow
         inverse = np.zeros((m, m))
-        if m:
-            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in range(m)], axis=1)
-            block = (images[:m] + follow.T @ images[m:])[np.ix_(a.frame_free, a.frame_free)]
-            inverse[np.ix_(a.frame_free, a.frame_free)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
+        if a.frame_free.any():
+            chosen = np.flatnonzero(a.frame_free)
+            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in chosen], axis=1)
+            block = images[chosen] + follow[:, chosen].T @ images[m:]
+            inverse[np.ix_(chosen, chosen)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
 
         def apply(r: np.ndarray) -> np.ndarray:
             out = np.empty_like(r)
