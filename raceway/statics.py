@@ -57,7 +57,7 @@ def settle(model: Model, on_progress: Callable[[str, int, int], None] | None = N
     q, ball, iterations = system.settle(model.guess)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
-    stiffness = still.stiffness_at(q, ball)
+    stiffness = still.stiffness_at(q, now)
     _refuse_free_motion(model, stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
     warnings = _warnings(model, inner, outer, now.contact_force)

@@ -241,9 +241,9 @@ class System:
         guess[:, 2:4] = self.rolled_in(q_now, guess)
         return q_now, guess, total
 
-    def stiffness_at(self, q: np.ndarray, ball: np.ndarray) -> np.ndarray:
-        """Stiffness of the contacts (5, 5) at an equilibrium."""
-        return self.evaluate(q, ball=ball).stiffness
+    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""
+        return now.stiffness
 
     def _by_parts(
         self, solver: Any, q: np.ndarray, ball: np.ndarray | None, tolerance: float, load: np.ndarray | None, parts: Any

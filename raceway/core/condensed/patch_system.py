@@ -83,14 +83,14 @@ class PatchSystem(System):
         where, now = row.settle(centre, where, rate, _BALLS)
         return self._answer(row.balls, centre, jacobian, where, rate, now)
 
-    def stiffness_at(self, q: np.ndarray, ball: np.ndarray) -> np.ndarray:
+    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
 
         def found() -> np.ndarray:
             row, still = self.pool.row(self.table), np.zeros((2 * self.ball_count, 2))
             centre, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
-            where, now = row.settle(centre, self._places(centre, ball), still, _BALLS)
-            smooth = row.balls.without_ripple(now, centre, where)
+            where, last = row.settle(centre, now.ball, still, _BALLS)
+            smooth = row.balls.without_ripple(last, centre, where)
             return np.asarray(jacobian.T @ row.balls.tangent(smooth) @ jacobian)
 
         return self.pool.widened(found)
