@@ -55,11 +55,13 @@ def settle(model: Model, on_progress: Callable[[str, int, int], None] | None = N
     if on_progress is not None:
         system.follow(_telling(on_progress))
     q, ball, iterations = system.settle(model.guess)
-    now = system.without(CAGE).evaluate(q, ball=ball)
-    _refuse_free_motion(model, now.stiffness, q)
+    still = system.without(CAGE)
+    now = still.evaluate(q, ball=ball)
+    stiffness = still.stiffness_at(q, ball)
+    _refuse_free_motion(model, stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
     warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
 
 def _telling(on_progress: Callable[[str, int, int], None]) -> Callable[[float], None]:

@@ -241,6 +241,10 @@ class System:
         guess[:, 2:4] = self.rolled_in(q_now, guess)
         return q_now, guess, total
 
+    def stiffness_at(self, q: np.ndarray, ball: np.ndarray) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium."""
+        return self.evaluate(q, ball=ball).stiffness
+
     def _by_parts(
         self, solver: Any, q: np.ndarray, ball: np.ndarray | None, tolerance: float, load: np.ndarray | None, parts: Any
     ) -> tuple[np.ndarray, np.ndarray, int]:

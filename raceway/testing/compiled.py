@@ -7,7 +7,7 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.signatures import FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
+from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
 
 
 @jit(void(int64, LAW_POINTER, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, VECTOR, VECTOR))
@@ -36,6 +36,14 @@ def sample_force(repeats, force, params, times, out):
     for _ in range(repeats):
         for i in range(times.size):
             force(times[i], params, out[i])
+
+
+@jit(FORCE)
+def along_x(t, params, out):
+    """Force params[0] cos(params[1] t) along the axis."""
+    for i in range(out.size):
+        out[i] = 0.0
+    out[0] = params[0] * np.cos(params[1] * t)
 
 
 #: Gap of contacts that stay open [m].

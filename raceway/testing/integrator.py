@@ -10,6 +10,7 @@ import numpy as np
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.system import System
 from raceway.errors import ConvergenceError, StabilityError
+from raceway.testing.steady import contact_motion, forgets_the_start, linear_motion, own_error, refuses_memory
 from raceway.testing.suite import Suite, check_class, duty, require
 from raceway.testing.systems import (
     NATURAL,
@@ -24,6 +25,7 @@ from raceway.testing.systems import (
     motion,
 )
 
+_STEADY = "solves for the steady motion: no transient"
 _Y = np.array([0.0, 1.0, -0.4, 0.0, 0.0])
 _X = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 
@@ -46,17 +48,22 @@ def _static_start(system: System) -> Motion:
     return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
 
 
+def _is_steady(method: Any) -> bool:
+    return bool(getattr(method, "steady", False))
+
+
 class IntegratorSuite(Suite):
     """Duties of ``raceway.contracts.Integrator``."""
 
     kind = "integrator"
 
-    @duty("attributes: order, implicit, inertial, dissipative, options")
+    @duty("attributes: order, implicit, inertial, dissipative, options; steady, if there is one")
     def test_declaration(self, method: Any) -> None:
         check_class("integrator", method)
         require(type(method.order) is int and method.order >= 1, f"`order` = {method.order!r} must be 1 or more")
         for word in ("implicit", "inertial", "dissipative"):
             require(type(getattr(method, word)) is bool, f"`{word}` must be True or False")
+        require(type(getattr(method, "steady", False)) is bool, "`steady` must be True or False")
 
     @duty("a Record of every stride-th step with time, force, motion and counts; start and system untouched")
     def test_record(self, method: Any) -> None:
@@ -79,7 +86,10 @@ class IntegratorSuite(Suite):
         require(np.allclose(record.final.q, record.displacement[-1]), "`final` is not the last sample")
         missing = {"steps", "evaluations", "max_penetration_m"} - set(record.counts)
         require(not missing, f"`counts` has no {', '.join(sorted(missing))}")
-        require(record.counts["steps"] == 180, f"counts['steps'] = {record.counts['steps']}, not 180")
+        if _is_steady(method):
+            own_error(record)
+        else:
+            require(record.counts["steps"] == 180, f"counts['steps'] = {record.counts['steps']}, not 180")
         after = (start.q, start.v, start.a, system.load, system.law_state, system.mass)
         require(all(np.array_equal(a, b) for a, b in zip(before, after, strict=True)), "start or system were changed")
 
@@ -90,6 +100,10 @@ class IntegratorSuite(Suite):
     @duty("converges with its `order` on a vibrating contact that stays closed")
     def test_order_contact(self, method: Any) -> str:
         return self._order(method, contact_system(), 4.0 * PERIOD, (96, 192, 384))
+
+    @duty("`steady`: the closed form of a linear system and the motion of a forced contact, within counts['error']")
+    def test_steady_motion(self, method: Any) -> str:
+        return f"{linear_motion(method)}; {contact_motion(method)}" if _is_steady(method) else "not steady"
 
     @duty("each sample is an equilibrium, where the method has no inertia")
     def test_equilibria(self, method: Any) -> str:
@@ -108,6 +122,8 @@ class IntegratorSuite(Suite):
         """A free mass at 0.1 m/s; the error falls as the step falls, to below 1 % at 800 steps a contact."""
         if not method.inertial:
             return "no inertia: no impact"
+        if _is_steady(method):
+            return _STEADY
         system = contact_system(load=0.0, clearance=1e-6)
         speed = 0.1
         k, m = float(system.law_params[0, 0]), float(system.mass[0, 0])
@@ -130,6 +146,8 @@ class IntegratorSuite(Suite):
     def test_energy(self, method: Any) -> str:
         if not method.inertial:
             return "no inertia: no energy balance"
+        if _is_steady(method):
+            return _STEADY
         notes = []
         for word, system in (("linear", linear_system(damped=False, forced=False)), ("contact", contact_system())):
             start = _start(system)
@@ -154,6 +172,8 @@ class IntegratorSuite(Suite):
     def test_stability(self, method: Any) -> str:
         if not method.inertial:
             return "no inertia: no stable limit"
+        if _is_steady(method):
+            return _STEADY
         system = linear_system(damped=False, forced=False)
         critical = system.critical_time_step(np.zeros((5, 5)))
         factor = 20.0 if method.implicit else 0.95
@@ -172,8 +192,10 @@ class IntegratorSuite(Suite):
             )
         return ""
 
-    @duty("2 N steps equal N steps and N more from Record.final")
-    def test_restart(self, method: Any) -> None:
+    @duty("2 N steps equal N steps and N more from Record.final; `steady`: the same motion from any start")
+    def test_restart(self, method: Any) -> str:
+        if _is_steady(method):
+            return forgets_the_start(method)
         for system in (linear_system(), contact_system()):
             start = _start(system) if method.inertial else _static_start(system)
             period = 2.0 * np.pi / SPEED
@@ -187,9 +209,12 @@ class IntegratorSuite(Suite):
                 # iteration that ends at 1e-9 of the forces may leave 1e-9 of the motion.
                 wrong = np.abs(a - b).max() / max(np.abs(a).max(), 1e-300)
                 require(wrong < 1e-8, f"`{word}` differs by {wrong:.2g} of the motion after a restart")
+        return ""
 
-    @duty("a law's memory is committed once with every accepted step, never with a trial")
-    def test_memory(self, method: Any) -> None:
+    @duty("a law's memory is committed once with every accepted step, never with a trial; `steady`: or refused")
+    def test_memory(self, method: Any) -> str:
+        if _is_steady(method):
+            return refuses_memory(method)
         system = counting_system()
         start = _start(contact_system()) if method.inertial else _static_start(contact_system())
         record = method.advance(system, start, Schedule(PERIOD / 60, 60, 2))
@@ -199,6 +224,7 @@ class IntegratorSuite(Suite):
             not len(wrong), f"in step {wrong[:1] + 1} the memory has been committed {commits[wrong[:1]] - 1} times before"
         )
         require(not system.law_state.any(), "the system's own memory was changed")
+        return ""
 
     @duty("on_chunk(done, total) is called up to the end, and what it raises passes through")
     def test_progress(self, method: Any) -> None:
@@ -236,6 +262,8 @@ class IntegratorSuite(Suite):
     def _order(self, method: Any, system: System, time: float, counts: tuple[int, ...]) -> str:
         if not method.inertial:
             return "no inertia: see equilibria"
+        if _is_steady(method):
+            return _STEADY
         start = _start(system)
         q, v = exact(system, start, np.array([0.5 * time, time]))
         errors = []

@@ -11,6 +11,7 @@ from raceway.contact_laws.hertz import Hertz
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark
+from raceway.integrators.periodic import Periodic
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.identifiers.sine_fit import SineFit
 from raceway.testing import ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
@@ -138,9 +139,20 @@ class Late(Newmark):
         return attrs.evolve(record, time=record.time + schedule.dt)
 
 
+class Boasting(Periodic):
+    """Another amplitude than it says."""
+
+    name = "boasting"
+
+    def advance(self, system, start, schedule, on_chunk=None):
+        record = super().advance(system, start, schedule, on_chunk)
+        return attrs.evolve(record, displacement=1.0001 * record.displacement)
+
+
 @pytest.mark.parametrize(
     ("plugin", "checks"),
     [
+        (Boasting(), {"steady_motion"}),
         (Unstable(), {"stability"}),
         (Overrated(), {"order_linear", "order_contact"}),
         (Conservative(rho_infinity=0.2), {"energy"}),

@@ -40,7 +40,8 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
     ConvergenceError
         Nothing found; ``state`` holds the last good state ``y``, the part of the load that it carries, and ``residuals``.
     """
-    load, history = system.load.copy(), []
+    load = system.load.copy()
+    history: list[float] = []
     good, part, step, count, before = guess.copy(), 0.0, 1.0, 0, system.solver.iterations
     try:
         while True:

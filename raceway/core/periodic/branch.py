@@ -22,6 +22,7 @@ import numpy as np
 
 from raceway.core.periodic.collocation import Path, Problem, Solved
 from raceway.core.periodic.floquet import Floquet, floquet
+from raceway.core.periodic.rates import renew, stiff
 from raceway.core.periodic.refinement import divided, estimate, resampled
 from raceway.core.periodic.sweep import condense, imbalances, spread
 from raceway.errors import ConvergenceError
@@ -207,7 +208,7 @@ class Branch:
             worst = report[0]
             path = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da)
             parameter += dp
-            problem.fill_rates(path)
+            renew(problem, path, stiff(problem, path))
             size = float(np.abs(path.v / problem.weight).max())
             place = float(np.abs(path.q / problem.weight).max())
             if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * place:

@@ -17,11 +17,15 @@ from raceway.core.periodic.newton import (
     SWEEPS,
     newton,
 )
+from raceway.core.periodic.rates import renew, stiff
 from raceway.core.periodic.rule import Rule, rule
-from raceway.core.periodic.sweep import differentiate, forces
+from raceway.core.periodic.sweep import forces
 from raceway.core.periodic.symmetry import Symmetry
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
+
+#: Turns of motion and rates, and the change over the motion's size that rounding may leave.
+_RATES, _LEFT = 20, 1e-9
 
 
 @attrs.frozen(eq=False)
@@ -85,16 +89,6 @@ class Problem:
         """Load and excitation at the Gauss points (m s, 5)."""
         return self.system.load + self.share * self.force(nodes)
 
-    def fill_rates(self, path: Path) -> None:
-        """The balls' rates of a motion from their places; those of the next and the last span are this one's, renumbered."""
-        order, h = self.symmetry.order, np.diff(path.nodes)
-        before, after = path.ball[-2:][:, np.argsort(order)], path.ball[:2][:, order]
-        ball = np.ascontiguousarray(np.concatenate([before, path.ball, after])[:, :, :2])
-        nodes = np.concatenate([[path.nodes[0] - h[-1]], path.nodes, [path.nodes[-1] + h[0]]])
-        rate = np.empty_like(ball)
-        differentiate(nodes, self.rule.points, self.speed, ball, rate)
-        path.rate[:, :, :2] = rate[2:-2]
-
 
 @attrs.frozen(eq=False)
 class Path:
@@ -103,7 +97,7 @@ class Path:
     Attributes
     ----------
     nodes : (m + 1,) angles, from 0 to the span;  q, v : (m + 1, 5) at nodes;  a : (m s, 5) at Gauss points
-    ball, rate : (m s, Z, 2 or 4) positions [m] and their rates [m/s]
+    ball, rate : (m s, Z, c) columns of ``System.evaluate`` and their rates [m/s]
     """
 
     nodes: np.ndarray
@@ -149,11 +143,35 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
     tolerance : largest last correction over the motion's size
     patience : halvings of a step that may follow each other
 
+    Notes
+    -----
+    Where dashpots make the balls lag, the motion with given rates and the rates of that motion are found in turn.
+
     Raises
     ------
     ConvergenceError
         With the state at the start of the span that the iteration ended at, finite or the first guess.
     """
+    if not stiff(problem, path):
+        return _newton(problem, path, tolerance, patience, limit, np.array(problem.system.rated_columns))
+    sweeps, change = 0, np.inf
+    for turn in range(_RATES):
+        found = _newton(problem, path, tolerance, patience, limit, np.empty(0, dtype=np.int64))
+        sweeps += found.sweeps
+        last, change = change, float(np.abs((found.path.q - path.q) / problem.weight).max())
+        path = found.path
+        if turn > 0 and (change <= 10.0 * tolerance * found.size or (change >= last and change <= _LEFT * found.size)):
+            return attrs.evolve(found, sweeps=sweeps)
+        renew(problem, path, True)
+    raise ConvergenceError(
+        f"no periodic motion found near the first guess: the rates of the balls change it by {change:.2g} m still: too "
+        "strong dashpots in the contacts",
+        {"q": path.q[0].copy()},
+    )
+
+
+def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rated: np.ndarray) -> Solved:
+    """The compiled iteration; ``rated``: columns of the balls whose rates are put in after every sweep."""
     system, free = problem.system, problem.free
     m, s, n = path.intervals, len(problem.rule.points), len(free)
     push = problem.push(path.nodes)
@@ -162,8 +180,8 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
     status = newton(
         *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.weight, free, problem.speed,
-        problem.closing, problem.symmetry.order, path.nodes, problem.rule.points, problem.rule.packed, q, v, a, ball, rate,
-        push, np.zeros_like(push), tolerance, limit, patience, *out, report,
+        problem.closing, problem.symmetry.order, rated, path.nodes, problem.rule.points,
+        problem.rule.packed, q, v, a, ball, rate, push, np.zeros_like(push), tolerance, limit, patience, *out, report,
     )  # fmt: skip
     if status != SOLVED:
         why = {STALLED: "the iteration stalls", SINGULAR: "the motion is singular"}.get(

@@ -18,20 +18,21 @@ SOLVED, STALLED, BALLS_FAILED, SINGULAR = range(4)
 
 @jit(
     int64(
-        *MODEL, MATRIX, MATRIX, MATRIX, VECTOR, INDICES, float64, MATRIX, INDICES, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX,
-        MATRIX, CUBE, CUBE, MATRIX, MATRIX, float64, int64, int64, MATRIX, MATRIX, MATRIX, VECTOR,
+        *MODEL, MATRIX, MATRIX, MATRIX, VECTOR, INDICES, float64, MATRIX, INDICES, INDICES, VECTOR, VECTOR, MATRIX, MATRIX,
+        MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX, float64, int64, int64, MATRIX, MATRIX, MATRIX, VECTOR,
     ),
     allocates=True,
 )  # fmt: skip
 def newton(
-    system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, closing, order, nodes,
-    points, rule, q, v, a, ball, rate, push, slope, tolerance, limit, patience, stages, transfer, whole, report,
+    system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, closing, order, rated,
+    nodes, points, rule, q, v, a, ball, rate, push, slope, tolerance, limit, patience, stages, transfer, whole, report,
 ):  # fmt: skip
     """Move q, v, a, ball and rate onto the periodic motion; see ``raceway.core.periodic.sweep`` for the arrays.
 
     Parameters
     ----------
     closing : (2 n, 2 n) rotation of a state by the span;  order : (Z,) see ``raceway.core.periodic.symmetry``
+    rated : columns of ``ball`` that have rates
     tolerance : of the last correction over the size of the motion
     patience : halvings of a step that may follow each other
     """
@@ -41,7 +42,8 @@ def newton(
     safe = ball.copy()
     close = np.empty((2 * n, 2 * n + 1))
     first = np.empty(2 * n)
-    longer, more, most = np.empty(m + 3), np.empty((m * s + 4, z, 2)), np.empty((m * s + 4, z, 2))
+    columns = rated.size
+    longer, more, most = np.empty(m + 3), np.empty((m * s + 4, z, columns)), np.empty((m * s + 4, z, columns))
     longer[0], longer[m + 2] = nodes[0] - (nodes[m] - nodes[m - 1]), nodes[m] + nodes[1] - nodes[0]
     for k in range(m + 1):
         longer[k + 1] = nodes[k]
@@ -98,17 +100,19 @@ def newton(
         safe[:, :, :] = ball
         for k in range(m * s):
             for b in range(z):
-                more[k + 2, b, 0], more[k + 2, b, 1] = ball[k, b, 0], ball[k, b, 1]
+                for c in range(columns):
+                    more[k + 2, b, c] = ball[k, b, rated[c]]
         for k in range(2):
             for b in range(z):
-                for c in range(2):
+                for c in range(columns):
                     # Ball b stands one span later where ball order[b] stood.
-                    more[m * s + 2 + k, b, c] = ball[k, order[b], c]
-                    more[k, order[b], c] = ball[m * s - 2 + k, b, c]
+                    more[m * s + 2 + k, b, c] = ball[k, order[b], rated[c]]
+                    more[k, order[b], c] = ball[m * s - 2 + k, b, rated[c]]
         differentiate(longer, points, speed, more, most)
         for k in range(m * s):
             for b in range(z):
-                rate[k, b, 0], rate[k, b, 1] = most[k + 2, b, 0], most[k + 2, b, 1]
+                for c in range(columns):
+                    rate[k, b, rated[c]] = most[k + 2, b, c]
         if factor < 1.0 or sweep == 1:
             continue
         fine = fine + 1 if correction <= 1e-8 * size else 0

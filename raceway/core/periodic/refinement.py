@@ -16,6 +16,7 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Path, Problem, Solved, solve
+from raceway.core.periodic.rates import between
 from raceway.core.periodic.rule import integrals
 from raceway.core.periodic.sweep import carry, try_between
 from raceway.errors import ConvergenceError
@@ -56,7 +57,7 @@ def estimate(solved: Solved) -> Estimate:
     done = try_between(
         *system.model, system.law_state, system.force, system.force_params, system.mass, system.damping, system.stiffness,
         inverse, system.load, free, problem.share, problem.speed, problem.clock, path.nodes, problem.rule.packed,
-        problem.rule.try_packed, path.q, path.v, path.a, path.ball, path.rate, defect,
+        problem.rule.try_packed, path.q, path.v, path.a, path.ball, between(problem, path), defect,
     )  # fmt: skip
     if done < m or not np.isfinite(defect).all():
         raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
@@ -69,11 +70,11 @@ def estimate(solved: Solved) -> Estimate:
     legendre = np.abs(np.einsum("js,msc->mjc", problem.rule.legendre, path.a.reshape(m, s, 5))) / weight
     last, lower = legendre[:, -1], legendre[:, -3:].max(axis=1)
     beyond = last * np.sqrt(last / np.maximum(lower, 1e-300))
-    between = _BETWEEN * h**2 * beyond.max(axis=1)
+    tails = _BETWEEN * h**2 * beyond.max(axis=1)
     made = np.maximum(np.abs(defect[:, :n]), np.abs(defect[:, n:])) / weight[free]
     floor = max(solved.size, 1e-300)
-    error = (float(np.abs(dq / weight).max()) + float(between.max())) / floor
-    return Estimate(error, made.max(axis=1), between, dq)
+    error = (float(np.abs(dq / weight).max()) + float(tails.max())) / floor
+    return Estimate(error, made.max(axis=1), tails, dq)
 
 
 def divided(nodes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -35,7 +35,7 @@ class Rule:
     velocity, position : (s, s) first and second integrals of the Lagrange polynomials up to each point
     end : (2, s) the same up to the end of the interval
     packed : (2 s + 3, s) velocity, position, end and points one below the other, for kernels
-    tried : (e,) further points;  try_packed : (2 e + 3, s + e) integrals up to them (columns 0 to s - 1), then weights of
+    tried : (e,) further points, tried_values : (e, s) values there from those at the points;  try_packed : (2 e + 3, s + e) integrals up to them (columns 0 to s - 1), then weights of
         all s + e points for the velocity and the position at the end, then the points themselves in columns 0 to e - 1
     legendre : (s, s) Legendre coefficients of values at the points
     """
@@ -46,6 +46,7 @@ class Rule:
     end: np.ndarray
     packed: np.ndarray
     tried: np.ndarray
+    tried_values: np.ndarray
     try_packed: np.ndarray
     legendre: np.ndarray
 
@@ -69,7 +70,7 @@ def rule(stages: int = STAGES) -> Rule:
     _, v_end, q_end = integrals(points, np.ones(1))
     end = np.vstack([v_end, q_end])
     tried = np.array(_TRIED)
-    _, v_tried, q_tried = integrals(points, tried)
+    values, v_tried, q_tried = integrals(points, tried)
     both = np.concatenate([points, tried])
     _, v_all, q_all = integrals(both, np.ones(1))
     e = len(tried)
@@ -79,5 +80,5 @@ def rule(stages: int = STAGES) -> Rule:
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(x, stages - 1))
     return Rule(
         points, velocity, position, end, np.ascontiguousarray(np.vstack([velocity, position, end, points])), tried,
-        packed, legendre,
+        values, packed, legendre,
     )  # fmt: skip

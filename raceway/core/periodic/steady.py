@@ -36,12 +36,12 @@ def steady(
     Raises
     ------
     SceneError
-        Friction, a law with memory, a force that does not repeat itself, or balls that orbit without the symmetry of a pitch.
+        Bodies that are stepped from Python, friction, a law with memory, a force that does not repeat itself, or balls that orbit without the symmetry of a pitch.
     ConvergenceError
         No such motion found.
     """
-    system = by_address(system)
     refuse(system, schedule)
+    system = by_address(system)
     speed = 2.0 * np.pi / (schedule.dt * schedule.steps_per_turn)
     q, tangent = _equilibrium(system.without(CAGE), start)
     problem = problem_of(system, speed, q, symmetric)
@@ -52,7 +52,7 @@ def steady(
         )
         raise SceneError.at("integrator.kind", "periodic", why)
     found = find(problem, q, tangent, tolerance)
-    fate = floquet(found.refined.solved)
+    fate = floquet(found.refined.solved, found.highest)
     refined = found.refined
     counts = {
         "steps": refined.solved.path.intervals,
@@ -80,6 +80,9 @@ def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]
 
 def refuse(system: System, schedule: Schedule) -> None:
     """Raise ``SceneError`` for what has no motion that repeats itself every turn, or none that depends on the force alone."""
+    if system.companion is not system:
+        why = "bodies that are stepped from Python have no compiled forces to linearise thousands of states with. Use 'newmark'"
+        raise SceneError.at("integrator.kind", "periodic", why)
     if system.law_state.shape[1] > 0:
         why = "a contact law with memory has no periodic motion that can be solved for by itself. Use 'newmark'"
         raise SceneError.at("integrator.kind", "periodic", why)

@@ -9,7 +9,7 @@ dA = S_y (dq, dq') + S_r + S_p dp, which leaves the transfer (dq, dq')_next = T_
 
 Arrays: n unknown coordinates ``free`` (n,), m intervals, s points an interval, i the number of an interval
     nodes (m + 1,) angles;  rule (2 s + 3, s) of ``raceway.core.periodic.rule``
-    q, v (m + 1, 5), a (m s, 5), ball, rate (m s, Z, 2 or 4), push, slope (m s, 5): forces, and the derivative of
+    q, v (m + 1, 5), a (m s, 5), ball, rate (m s, Z, c), push, slope (m s, 5): forces, and the derivative of
         force balance by the parameter
     stages (m s n, 2 n + 2): S_y, S_r, S_p;  transfer (m 2 n, 2 n + 2): T_y, T_r, T_p;  whole (2 n, 2 n + 2): of all intervals
 """
@@ -17,7 +17,7 @@ Arrays: n unknown coordinates ``free`` (n,), m intervals, s points an interval, 
 import numpy as np
 from numba import boolean, float64, int64, void
 
-from raceway.core.bodies import WORK_ROWS
+from raceway.core.bodies.columns import work_rows
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, FORCE_POINTER, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
 
@@ -82,7 +82,7 @@ def condense(
     m, s, n = nodes.size - 1, rule.shape[1], free.size
     size = s * n
     columns = 2 * n + 2
-    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
+    work = np.zeros((work_rows(scalars, table), 2 * table.shape[0]))
     law_new = law_state.copy()
     f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
     Q, V = np.empty(5), np.empty(5)
@@ -205,18 +205,18 @@ def spread(free, stages, transfer, first, parameter, dq, dv, da):
 )  # fmt: skip
 def try_between(
     system, law, law_params, scalars, table, law_state, force, force_params, mass, damping, stiffness, inverse, load, free,
-    share, speed, clock, nodes, rule, tried, q, v, a, ball, rate, defect,
+    share, speed, clock, nodes, rule, tried, q, v, a, ball, rate_tried, defect,
 ):  # fmt: skip
     """defect (m, 2 n): what q and v at the end of each interval gain when the balance of forces is integrated with more points.
 
     Parameters
     ----------
     inverse : (n, n) of the mass;  load : (5,) constant, share : of the excitation that acts, by an own clock [rad/s]
-    tried : ``Rule.try_packed``
+    tried : ``Rule.try_packed``;  rate_tried : (m e, Z, c) [m/s] at the points that are tried
     """
     m, s, n = nodes.size - 1, rule.shape[1], free.size
     e = tried.shape[1] - s
-    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
+    work = np.zeros((work_rows(scalars, table), 2 * table.shape[0]))
     law_new = law_state.copy()
     f, none = np.empty(5), np.empty((0, 0))
     Q, V, outer, rest, acceleration = np.empty(5), np.empty(5), np.empty(5), np.empty(n), np.empty(n)
@@ -244,8 +244,9 @@ def try_between(
             place[:, :] = ball[at]
             t = (nodes[k] + u * h) / speed
             status = system(
-                t, 0.0, Q, V, place, 0.0, rate[at], law, law_params, law_state, law_new, scalars, table, work, f, none, none
-            )
+                t, 0.0, Q, V, place, 0.0, rate_tried[k * e + i], law, law_params, law_state, law_new, scalars, table, work, f,
+                none, none,
+            )  # fmt: skip
             if status != 0:
                 return k
             force((nodes[k] + u * h) / clock, force_params, outer)
@@ -267,7 +268,7 @@ def try_between(
 
 @jit(void(VECTOR, VECTOR, float64, CUBE, CUBE), allocates=True)
 def differentiate(nodes, points, speed, ball, rate):
-    """rate (m s + 4, Z, 2) [m/s] of positions ball (m s + 4, Z, 2): both with two samples beyond each end.
+    """rate (m s + 4, Z, r) [m/s] of columns ball (m s + 4, Z, r) that have rates: both with two samples beyond each end.
 
     Notes
     -----
@@ -293,7 +294,7 @@ def differentiate(nodes, points, speed, ball, rate):
                     w[j] /= x[j] - x[i]
         for i in range(2, s + 2):
             for ball_number in range(ball.shape[1]):
-                for c in range(2):
+                for c in range(ball.shape[2]):
                     total = 0.0
                     here = ball[k * s + i, ball_number, c]
                     for j in range(width):
@@ -326,7 +327,7 @@ def carry(free, transfer, first, defect, dq, dv):
 )
 def contacts(system, law, law_params, scalars, table, law_state, times, q, v, ball, rate, gap, force):
     """gap, force (n, 2 Z) at n states with velocities v (n, 5) in seconds; ball is a guess and becomes the places."""
-    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
+    work = np.zeros((work_rows(scalars, table), 2 * table.shape[0]))
     law_new = law_state.copy()
     f, none = np.empty(5), np.empty((0, 0))
     for i in range(times.size):
@@ -352,7 +353,7 @@ def imbalances(
 ):  # fmt: skip
     """out (m s, 5): what is left of the balance of forces at the Gauss points [N, N m]; ball is left as it is."""
     m, s = nodes.size - 1, rule.shape[1]
-    work = np.zeros((WORK_ROWS, 2 * table.shape[0]))
+    work = np.zeros((work_rows(scalars, table), 2 * table.shape[0]))
     law_new = law_state.copy()
     f, none = np.empty(5), np.empty((0, 0))
     Q, V = np.empty(5), np.empty(5)
