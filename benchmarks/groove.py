@@ -20,7 +20,7 @@ from raceway.core.elastic.facets import Facets
 from raceway.core.elastic.gap import groove
 from raceway.core.elastic.penalty import penalty_stiffness
 from raceway.core.elastic.recovery import peak_at_nodes, peak_at_points
-from raceway.core.elastic.statics import Settled
+from raceway.core.elastic.statics import TOLERANCE, Settled
 from raceway.core.elastic.surface import surface_points
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hertz import contact_modulus, ellipse
@@ -159,11 +159,11 @@ def guess(groove_model: Groove, approach: float) -> np.ndarray:
     return np.concatenate([[-approach], assembly.carried[assembly.free] @ np.array([-approach])])
 
 
-def solve(load: float, nodes: float, **options: float | str) -> Answer:
-    """Model and equilibrium under a load."""
+def solve(load: float, nodes: float, tolerance: float = TOLERANCE, **options: float | str) -> Answer:
+    """Model and equilibrium under a load, to a residual relative to the forces that balance."""
     begin = time.process_time()
     found = model(load, nodes, **options)  # type: ignore[arg-type]
-    state = found.system.settle(guess(found, float(HERTZ.approach(load))))
+    state = found.system.settle(guess(found, float(HERTZ.approach(load))), tolerance)
     return answer(found, state, time.process_time() - begin)
 
 
