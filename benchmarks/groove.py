@@ -20,7 +20,7 @@ from raceway.core.elastic.facets import Facets
 from raceway.core.elastic.gap import groove
 from raceway.core.elastic.penalty import penalty_stiffness
 from raceway.core.elastic.recovery import peak_at_nodes, peak_at_points
-from raceway.core.elastic.statics import Settled
+from raceway.core.elastic.statics import TOLERANCE, Settled
 from raceway.core.elastic.surface import surface_points
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hertz import contact_modulus, ellipse
@@ -106,8 +106,20 @@ def meshes(
     return ball, block
 
 
-def model(load: float, nodes: float, formulation: str = "incompatible", hourglass: float = 0.05, **mesh: float) -> Groove:
-    """The model at a load [N] with so many elements per semi-axis; ``mesh``: see ``meshes``."""
+def model(
+    load: float,
+    nodes: float,
+    formulation: str = "incompatible",
+    hourglass: float = 0.05,
+    prescribed: bool = False,
+    **mesh: float,
+) -> Groove:
+    """The model at a load [N] with so many elements per semi-axis; ``mesh``: see ``meshes``.
+
+    Parameters
+    ----------
+    prescribed : whether the first unknown keeps the value that a state gives it, and no load acts
+    """
     ball, block = meshes(load, nodes, **mesh)
     major, minor = (float(x) for x in HERTZ.semi_axes(load))
     bodies = []
@@ -115,6 +127,8 @@ def model(load: float, nodes: float, formulation: str = "incompatible", hourglas
         held = np.zeros((len(part.points), 3), dtype=bool)
         held[part.nodes("side_x"), 0] = held[part.nodes("side_y"), 1] = True
         frame = Frame.massless(part.nodes("middle"), np.zeros(3), (2,)) if name == "ball" else None
+        if frame is not None and prescribed:
+            frame = attrs.evolve(frame, free=np.zeros(1, dtype=bool))
         if name == "race":
             held[part.nodes("base")] = True
         operator = HexOperator(part.points, part.cells, YOUNG, POISSON, DENSITY, formulation, hourglass)
@@ -135,7 +149,7 @@ def model(load: float, nodes: float, formulation: str = "incompatible", hourglas
         np.full((len(points.area), 1), penalty),
     )
     forces = np.zeros(assembly.size)
-    forces[0] = -0.25 * load
+    forces[0] = 0.0 if prescribed else -0.25 * load
     return Groove(load, nodes, ball, block, ElasticSystem(assembly, contact, MODULUS, forces), penalty)
 
 
@@ -145,21 +159,18 @@ def guess(groove_model: Groove, approach: float) -> np.ndarray:
     return np.concatenate([[-approach], assembly.carried[assembly.free] @ np.array([-approach])])
 
 
-def solve(load: float, nodes: float, **options: float | str) -> Answer:
-    """Model and equilibrium under a load."""
+def solve(load: float, nodes: float, tolerance: float = TOLERANCE, **options: float | str) -> Answer:
+    """Model and equilibrium under a load, to a residual relative to the forces that balance."""
     begin = time.process_time()
     found = model(load, nodes, **options)  # type: ignore[arg-type]
-    state = found.system.settle(guess(found, float(HERTZ.approach(load))))
+    state = found.system.settle(guess(found, float(HERTZ.approach(load))), tolerance)
     return answer(found, state, time.process_time() - begin)
 
 
 def pressed(load: float, nodes: float, approach: float, **options: float | str) -> Answer:
     """The same mesh with the approach prescribed [m]: what reaction it gives."""
     begin = time.process_time()
-    found = model(load, nodes, **options)  # type: ignore[arg-type]
-    assembly = found.system.assembly
-    assembly.frame_free[:], assembly.unknown[0] = False, False
-    found.system.load[:] = 0.0
+    found = model(load, nodes, prescribed=True, **options)  # type: ignore[arg-type]
     state = found.system.settle(guess(found, approach))
     return answer(found, state, time.process_time() - begin)
 

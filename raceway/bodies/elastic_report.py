@@ -79,7 +79,7 @@ class ElasticBodies:
         y, bodies = system.equilibrium, self.bearing.system
         force = bodies.assembly.reactions(y)
         load = np.concatenate([model.system.load[:3], model.system.load[3:]])
-        energies = bodies.energies(y, np.zeros_like(y))
+        energies = bodies.energies(y, np.zeros_like(y)) | {"external": float(bodies.load @ y)}
         pushed = np.abs(self.bearing.cage_forces(y)[:, 0]).max()
         scene = model.scene
         return {

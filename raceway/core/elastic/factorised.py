@@ -9,8 +9,9 @@ import numpy as np
 from raceway.errors import ConvergenceError
 
 #: Unknowns up to which factors are made.  Rings and balls couple at their contacts only, so that factors stay small: at
-#: 97 000 unknowns of a coarse bearing 4.4 CPU-s and 0.75 GB, at 15 000 0.7 CPU-s.
-MOST_UNKNOWNS = 60_000
+#: 97 000 unknowns of a coarse bearing 4.4 CPU-s and 0.75 GB, at 15 000 0.7 CPU-s.  One compact body fills up: two of 16 000
+#: unknowns each cost more than multigrid with all its iterations.
+MOST_UNKNOWNS, MOST_OF_A_BODY = 60_000, 15_000
 
 
 class Factorised:

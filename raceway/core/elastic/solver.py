@@ -9,7 +9,7 @@ import numpy as np
 from raceway.core.blocks import BlockMatrix
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contact import NodalContact
-from raceway.core.elastic.factorised import MOST_UNKNOWNS, Factorised
+from raceway.core.elastic.factorised import MOST_OF_A_BODY, MOST_UNKNOWNS, Factorised
 from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
@@ -88,7 +88,8 @@ class LinearSolver:
         held = np.ones(3 * a.nodes, dtype=bool)
         held[a.free] = False
         whole = (matrix + diags_array(extra)).tocsr()
-        small = len(a.free) <= MOST_UNKNOWNS
+        largest = 3 * int(np.diff(a.starts).max())
+        small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
         self._multigrid = Factorised(whole, held) if small else Preconditioner(whole, a.points, held)
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1

@@ -45,17 +45,13 @@ class ElasticSystem:
         self.solver = LinearSolver(assembly, contact, modulus)
         self.size = assembly.size
         m = assembly.frame_size
-        arm = max(float(np.abs(assembly.carried[:, k]).max()) for k in range(m)) if m else 1.0
         # Moments count as the force at the arm of the rotations: columns of rotations hold lengths, of translations ones.
         reach = np.abs(assembly.carried).max(axis=0) if m else np.zeros(0)
-        del arm
         self._weight = np.concatenate([np.where(reach > 0.0, 1.0 / np.maximum(reach, 1e-30), 0.0), np.ones(self.size - m)])
         self._weight *= assembly.unknown
-        self._inverse_frame = np.linalg.pinv(assembly.frame_mass) if m else np.zeros((0, 0))
         self._u = np.zeros(3 * assembly.nodes)
         self._y = np.zeros(self.size)
         self._element_step: float | None = None
-        self._external = self.load.copy()
         self._refuse_overlap()
 
     # Forces
@@ -187,12 +183,12 @@ class ElasticSystem:
 
     def energies(self, y: np.ndarray, v: np.ndarray) -> dict[str, float]:
         """Energies [J] at the last ``internal``."""
-        a, m = self.assembly, self.assembly.frame_size
+        a = self.assembly
         u = a.nodal(y)
         elastic = a.elastic_energy(y, u)
         return {
             "elastic": elastic,
-            "kinetic": float(0.5 * v @ self.mass_times(v)) if m or len(v) else 0.0,
+            "kinetic": float(0.5 * v @ self.mass_times(v)),
             "contact": 0.0 if self.contact is None else self.contact.energy(),
             "friction": 0.0 if self.contact is None else self.contact.friction_energy(),
             "hourglass": a.hourglass_energy(u),
