@@ -272,7 +272,13 @@ def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
     ]
     if plan["mesh"] is not None:
         rows += _mesh_rows(plan["mesh"])
-    parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]), sections(rows)]
+    unused = [
+        {"part": one["module"].removeprefix("raceway.core."), "why": one["why"]}
+        for one in plan["modules"]
+        if not one["needed"]
+    ]
+    parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"])]
+    parts += [_reasons("Modules not imported, hence not compiled", unused), sections(rows)]
     return Group(Text(title, style="bold"), *parts)
 
 

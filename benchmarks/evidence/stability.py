@@ -60,7 +60,7 @@ def _orbits(found: list[dict[str, Any]]) -> list[Row]:
         below(
             "0.9 of the limit at the orbit's largest tangent: distance from the orbit in turn 50 over its size",
             worst,
-            1.0,
+            0.5,
             COMMAND,
             note,
         )

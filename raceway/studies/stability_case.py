@@ -21,7 +21,7 @@ class Case:
     Attributes
     ----------
     name : what a row is called by
-    measure : ``module:function`` of ``raceway.studies``, called as ``function(case, registry)``; returns rows
+    measure : ``module:function``, a module of ``raceway.studies`` or a whole path, called as ``function(case, registry)``; returns rows
     arguments : what the function needs, plain values
     weight : seconds that it takes, roughly: the longest are begun first
     """

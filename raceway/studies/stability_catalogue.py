@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from raceway.errors import SceneError
 from raceway.registry import Registry
 from raceway.studies.stability_case import Case
 from raceway.studies.stability_systems import BASE, UNDAMPED, pair_laws, transient
@@ -153,8 +154,16 @@ def catalogue(registry: Registry, tables: Mapping[str, Any] | None = None) -> tu
     Parameters
     ----------
     tables : plain tables of a user's scene; the base scene and the whole catalogue when None
+
+    Raises
+    ------
+    SceneError
+        A scene whose contacts are surface points.
     """
     base = dict(tables) if tables is not None else BASE
+    if base.get("contact", {}).get("discretisation") == "nodal":
+        why = "the cases move bearings through a million steps, which takes forces of whole contacts: use 'resultant'"
+        raise SceneError.at("contact.discretisation", "nodal", why)
     cases = [*_limits(base, registry), *_orbits(base, registry, tables is None), *_energy(base, registry, tables is None)]
     cases += _penalties(base, registry)
     if tables is None:

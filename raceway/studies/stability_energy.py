@@ -12,6 +12,7 @@ from raceway.core.bodies.impact import impact_system
 from raceway.core.contact import stored_energy
 from raceway.core.energy import energy_balance
 from raceway.core.record import Motion, Record, Schedule
+from raceway.errors import ConvergenceError
 from raceway.registry import Registry
 from raceway.studies.stability_case import AtLeast, AtMost, Case, Measured, Near, Row, judged
 from raceway.studies.stability_systems import UNDAMPED, Still, scene_at, still
@@ -43,7 +44,7 @@ def million_steps(case: Case, registry: Registry) -> list[Row]:
         really = bool((record.contact_force <= 0.0).any())
         note.append("contacts open" if really else "all contacts stay closed")
         if really != opens:
-            note.append("unlike what the case is for")
+            raise ConvergenceError("contacts open or stay closed, unlike what this case is for: change its amplitude")
         slope, worst = _trend(found, record)
         return slope if method.dissipative else abs(slope), worst
 

@@ -23,10 +23,11 @@ def rows_of(case: Case, registry: Registry) -> list[Row]:
 
     module, _, function = case.measure.partition(":")
     try:
-        rows: list[Row] = getattr(import_module(f"raceway.studies.{module}"), function)(case, registry)
+        place = module if "." in module else f"raceway.studies.{module}"
+        rows: list[Row] = getattr(import_module(place), function)(case, registry)
     except Exception as why:  # noqa: BLE001 - a traceback is what no case may end in: it is the finding
-        place = traceback.extract_tb(why.__traceback__)[-1]
-        return [lost(case, f"{type(why).__name__} in {Path(place.filename).name}, line {place.lineno}: {short(why)}")]
+        last = traceback.extract_tb(why.__traceback__)[-1]
+        return [lost(case, f"{type(why).__name__} in {Path(last.filename).name}, line {last.lineno}: {short(why)}")]
     return rows
 
 
@@ -36,6 +37,7 @@ def _serve(pipe: Connection, plugins: Sequence[Path]) -> None:
     for file in plugins:
         registry.load_file(file)
     try:
+        pipe.send(None)  # ready: the time of a case begins here
         while (case := pipe.recv()) is not None:
             pipe.send(rows_of(case, registry))
     except (EOFError, KeyboardInterrupt):
@@ -89,7 +91,10 @@ def in_parallel(
                 if worker.pipe in ready:
                     try:
                         rows = worker.pipe.recv()
+                        if rows is None:
+                            worker.begun = time.monotonic()
                     except EOFError:
+                        worker.process.join()
                         rows = [lost(case, f"its process died (exit code {worker.process.exitcode})")]
                 elif seconds > patience:
                     rows = [lost(case, f"no answer within {patience:g} s: it hangs")]

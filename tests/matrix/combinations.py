@@ -47,19 +47,19 @@ def combinations() -> Iterator[Combination]:
 #: Rigid bodies run in every combination.  Of the cells of condensed bodies that the plan accepts, those run that differ from
 #: a plain one in so many options: loops, laws and identifiers behind them are the same.
 RESULTANT = Combination("bidirectional", "hertz", "resultant", "newmark", "fft_1x", "locked", "condensed")
-#: Contacts at surface points take milliseconds a step.
+#: Contacts at surface points take milliseconds a step; a run-up or several speeds would take thousands of steps.
 PLAIN = Combination("bidirectional", "unilateral", "nodal", "newmark", "fft_1x", "locked", "condensed")
-#: In more than one option, because its neighbour does not fit.
-RUN_UP = attrs.evolve(PLAIN, excitation="run_up", identifier="order_tracking")
 
 
 def only_planned(cell: Combination) -> bool:
     """Whether a cell is judged by the plan alone."""
     if cell.bodies != "condensed":
         return False
+    if cell.discretisation == "nodal" and "speeds" in default_registry().find("identifier", cell.identifier).plugin.needs:
+        return True
     plain, options = (PLAIN, 1) if cell.discretisation == "nodal" else (RESULTANT, 2)
     changed = sum(a != b for a, b in zip(attrs.astuple(cell), attrs.astuple(plain), strict=True))
-    return changed > options and cell != RUN_UP
+    return changed > options
 
 
 class NeedsOptions(Exception):
@@ -109,7 +109,7 @@ def tables(cell: Combination) -> dict[str, Any]:
     implicit = default_registry().find("integrator", cell.integrator).plugin.implicit
     nodal = (cell.discretisation, cell.bodies) == (PLAIN.discretisation, PLAIN.bodies)
     turns, steps = (2 if cell.identifier in ("fft_1x", "sine_fit") else 6, 24) if nodal else (6, 120)
-    points = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 2, "element_size": 1.2e-3}}
+    points = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3}}
     return {
         **(points if nodal else {}),
         "title": str(cell),

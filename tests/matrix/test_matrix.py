@@ -8,7 +8,7 @@ same law, any inertial integrator, any 1x line of a record: 0.5 %.  The methods 
     F0 + m w^2 r (physics.md, section 6).
 ``tangent``: 10 % and 30 %: small signals against some 500 N on 2000 N axial.
 ``impedance_fit``: 10 % and 30 %: one K for several speeds, at which the unbalance's force and the balls' inertia differ.
-pressures at surface points: 3 % more: two points along a semi-axis, and 24 steps a turn.
+pressures at surface points: 4 % more: with three points along a semi-axis forces ripple by 3 % over a small orbit.
 another law: a factor 1.6 more, up or down: a law calibrated at the load has Hertz's force there, and a slope that is
     4/3 of Hertz's for the penalty's square.
 """
@@ -95,7 +95,7 @@ def test_combination(cell, record_property):
     k = expected.real + found.mass * found.speed**2
     nodal = cell.discretisation == "nodal"
     factor = 1.0 if cell.law == "hertz" or nodal else 1.6
-    within = wide(cell) + (0.03 if nodal else 0.0)
+    within = wide(cell) + (0.04 if nodal else 0.0)
     assert k / factor * (1.0 - within) < found.stiffness < k * factor * (1.0 + within)
 
 
