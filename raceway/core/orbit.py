@@ -169,7 +169,10 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
         if inertial:
             matrix += np.einsum("iab,ij->iajb", C[:, chosen[:, None], chosen[None, :]], first)
         size = samples * n
-        delta = -np.linalg.solve(matrix.reshape(size, size), r.reshape(size)).reshape(samples, n)
+        try:
+            delta = -np.linalg.solve(matrix.reshape(size, size), r.reshape(size)).reshape(samples, n)
+        except np.linalg.LinAlgError as why:
+            raise ConvergenceError(f"no periodic orbit found: singular after {iterations} iterations", {"q": q}) from why
         step = np.zeros_like(q)
         step[:, chosen] = damping_factor * delta
         q = q + step
