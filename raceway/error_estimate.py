@@ -129,8 +129,9 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
     except ConvergenceError as why:
         return Part(None, f"the run with {other} steps a turn failed: {why}")
     fine, coarse = value, 0j
-    clean = [without_free_vibration(model, equilibrium, one) for one in (first, again[-1])]
-    if len(motions) == 1 and clean[0] is not None and clean[1] is not None:
+    # Several speeds are told apart by the identifier alone.
+    clean = [without_free_vibration(model, equilibrium, one) if len(motions) == 1 else None for one in (first, again[-1])]
+    if clean[0] is not None and clean[1] is not None:
         fine, coarse = clean[0].value, clean[1].value
     else:
         coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
@@ -170,8 +171,10 @@ def _transient(model: Model, equilibrium: Equilibrium, simulation: Simulation, f
         return Part(0.0, "one turn of the steady motion: nothing dies out")
     if not method.inertial and model.plan.turns == 1:
         return Part(0.0, "one turn of equilibria: nothing dies out")
-    if found.spread is None and "speeds" in model.scene.identifier.method.needs:
-        return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
+    if "speeds" in model.scene.identifier.method.needs:
+        return Part(
+            found.spread, f"what identifier '{model.scene.identifier.kind}' says of it: its spread over turns, if any"
+        )
     clean = without_free_vibration(model, equilibrium, simulation)
     if clean is None:
         if found.spread is None:

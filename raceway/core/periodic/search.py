@@ -92,7 +92,14 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
         return Found(_grown(problem, q, tangent, tolerance), highest, "from rest")
     except ConvergenceError:
         pass
-    points = from_rest(problem, q, tangent, mesh_of(problem, highest))
+    nodes = mesh_of(problem, highest)
+    if len(nodes) > _MOST:
+        raise ConvergenceError(
+            f"no motion of the period of the force was found from rest; with natural frequencies up to {highest:.3g} times the "
+            "force's it is not looked for along branches. A transient integrator with start = 'ramp' shows what the ring does.",
+            {"q": q.copy()},
+        )
+    points = from_rest(problem, q, tangent, nodes)
     if points[-1].parameter >= 1.0:
         return Found(_from_branch(problem, points, 1.0, tolerance), highest, "from rest")
     fold = max(p.parameter for p in points)
@@ -135,7 +142,8 @@ def _grown(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: floa
             solved = solve(here, first, _ROUGH, 0, _DIRECT_LIMIT)
         except ConvergenceError:
             step *= 0.5
-            if step < _LEAST_SHARE:
+            # A large mesh makes small steps dear; none leads round a fold anyway.
+            if step < (_LEAST_SHARE if len(nodes) <= _MOST else 0.5 * _FIRST_SHARE):
                 raise
             continue
         share, gap = share + step, step
