@@ -145,4 +145,3 @@ def steps_per_turn(scene: Scene, period: float, safety: float) -> int | None:
 def words(cost: ElasticCost) -> str:
     """Size of the bodies in a sentence."""
     return f"{cost.cells} hexahedra, {cost.unknowns / 1e3:.0f} thousand unknowns, about {cost.bytes / 2**30:.2g} GiB"
-

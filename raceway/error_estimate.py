@@ -81,8 +81,11 @@ def error_table(
     parts["mesh"] = Part(mesh, how["mesh"])
     for name, part in parts.items():
         table[name], how[name] = part.size, part.how
+    how["total"] = "time step and transient with their phases, at least half the larger; plus identification and mesh"
+    if model.scene.bodies.kind == "elastic":
+        how["total"] = "not estimated: that of the mesh is not known, and is the largest"
+        return table
     table["total"] = _total(parts)
-    how["total"] = "time step and transient with their phases, at least half the larger; plus identification"
     return table
 
 

@@ -19,12 +19,13 @@ from raceway.module_plan import Module, as_dicts, optional_modules
 from raceway.patch_plan import patch_cost, patch_faults
 from raceway.ring import ring_inertia
 from raceway.scene import Scene
+from raceway.section_plan import seat_faults, section_cost, section_faults
 
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
-#: The same for condensed bodies, what the matrices between balls add, and their rings when they are not kept from before.
+#: The same for condensed bodies, and what the matrices between balls add.
 _CONDENSED_STEP_S = {"weightless": 10.5e-6, "inertial": 13.5e-6, "tangential": 22.0e-6}
-_BETWEEN_S, _RINGS_S = 23.0e-6, 1.5
+_BETWEEN_S = 23.0e-6
 _START_S = 0.6
 #: Kinds of bodies that this version can compute.
 BODIES = ("rigid", "condensed", "elastic")
@@ -160,6 +161,9 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     elif condensed:
         why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
         coupled = decide(coupled, "effect of balls on each other through the rings", "soft seats or thick rings", why_not)
+        if dynamic:
+            why = "rings and balls follow at once; what that costs is told by `model.inertia` of the result"
+            left_out.append(Part("inertia of the bodies' deformation", why))
     if elastic:
         kept.append(Part("pressures at surface points", "elastic bodies touch at the points of the balls' surfaces"))
         kept.append(Part("ideal cage", "holds each ball at its azimuth and keeps it from turning"))
@@ -244,7 +248,7 @@ def _bodies_seconds(scene: Scene) -> float:
     if scene.bodies.kind != "condensed":
         return 0.0
     if scene.contact.discretisation != "nodal":
-        return _RINGS_S
+        return section_cost(scene).seconds
     patches = patch_cost(scene)
     orbit = 150.0 * patches.step_s if scene.excitation is not None else 0.0
     return patches.setup_s + 3.0 * patches.equilibrium_s + orbit
@@ -267,12 +271,15 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     rigid, condensed = scene.bodies.kind == "rigid", scene.bodies.kind == "condensed"
     if condensed:
         _refuse_condensed(scene, refuse)
+        faults += seat_faults(scene)
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal" and condensed:
         faults += patch_faults(scene)
+    elif condensed:
+        faults += section_faults(scene)
     elif contact.discretisation == "nodal" and rigid:
         why = "rigid bodies have no surface points: use 'resultant'"
         faults.append(Mistake("contact.discretisation", "nodal", why))

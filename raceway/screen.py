@@ -61,7 +61,8 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     ----------
     result : content of result.json;  files : what was written
     """
-    rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_cost(result["cost"])]
+    rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_bodies(result.get("model"))]
+    rows += _cost(result["cost"])
     rows += _stability(result["stability"])
     parts: list[RenderableType] = [
         Text(result["title"], style="bold"),
@@ -188,6 +189,49 @@ def _error(error: Mapping[str, Any]) -> list[Row]:
         value = error.get(name)
         rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", how.get(name, "")))
     return rows
+
+
+def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
+    """What elastic bodies change, how good their mesh is, and what their inertia would; each where it is told."""
+    if not model:
+        return []
+    rows = [("Elastic bodies", "", str(model.get("bodies", "")))]
+    elasticity = model.get("elasticity")
+    if elasticity is not None:
+        told = ", ".join("-" if elasticity[i][i] is None else f"{100 * elasticity[i][i]:+.1f} %" for i in (0, 1))
+        rows.append(("kxx, kyy changed by", told, "against rigid rings and balls under the same loads"))
+    taken = model.get("compliance")
+    if taken is not None:
+        values = ", ".join(f"{1e9 * taken[name]:.2f}" for name in ("inner_m_per_n", "outer_m_per_n"))
+        angle = f"inner, outer contact at {taken['contact_angle_deg']:.1f} deg, beyond Hertz"
+        rows.append(("structural compliance", f"{values} nm/N", angle))
+    mesh = model.get("mesh") or {}
+    along, change = mesh.get("nodes_per_semi_axis"), mesh.get("change_from_coarser")
+    if along is not None:
+        how = "not estimated" if change is None else f"{mesh['how']}: {change:.1e}"
+        rows.append(("nodes per semi-axis", number(along, digits=3), how))
+    inertia = model.get("inertia")
+    if inertia is not None:
+        rows += _inertia(inertia)
+    return rows
+
+
+def _inertia(inertia: Mapping[str, Any]) -> list[Row]:
+    """The slowest motion that is taken to follow at once."""
+    names = {
+        "inner_supported": "inner ring",
+        "outer_supported": "outer ring",
+        "ball_along_grooves": "ball along its grooves",
+    }
+    known = {word: name for name, word in names.items() if inertia.get(f"{name}_hz") is not None}
+    if not known:
+        return []
+    slowest = min(known, key=lambda word: inertia[f"{known[word]}_hz"])
+    error = inertia[f"{known[slowest]}_error"]
+    costs = "" if error is None else f" follows at once, which is off by (w / w1)^2 = {error:.1e}"
+    rings = min(inertia[f"{known[word]}_hz"] for word in known if word != "ball along its grooves")
+    remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
+    return [("slowest own motion", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
 
 
 def _cost(cost: Mapping[str, Any]) -> list[Row]:

@@ -12,7 +12,7 @@ from raceway.errors import SceneError
 from raceway.run import run
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
-#: Scenes for `raceway mesh`: bodies that deform are not run yet.
+#: Scenes for `raceway mesh`: too large to run here.
 MESHES = {"b7206_article_mesh"}
 RUNNING = [path for path in sorted(FOLDER.glob("*.toml")) if path.stem not in MESHES]
 
@@ -22,6 +22,9 @@ def test_example_runs(path):
     result = run(load_scene(path)).as_dict()
     json.dumps(result, allow_nan=False)
     found = result["identification"]
+    if found is None:  # a static scene
+        assert result["equilibrium"]["stiffness"][0][0] > 1e6
+        return
     assert found["equivalent_stiffness"] > 1e6
     # Estimates of the parts of the error; a run-up changes its speed while it is looked at.
     assert result["error"]["total"] < (0.05 if found["series"] else 0.01)
@@ -29,6 +32,7 @@ def test_example_runs(path):
 
 
 @pytest.mark.parametrize("name", sorted(MESHES))
-def test_running_a_mesh_example_is_refused_with_the_reason(name):
-    with pytest.raises(SceneError, match="bodies.kind"):
+def test_running_a_mesh_example_is_refused_where_the_memory_will_not_do(name, monkeypatch):
+    monkeypatch.setattr("raceway.elastic_plan.machine_bytes", lambda: 2.0**31)
+    with pytest.raises(SceneError, match="matrices would take about .* GiB, above 1.6 GiB"):
         run(load_scene(FOLDER / f"{name}.toml"))

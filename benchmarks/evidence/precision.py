@@ -27,13 +27,19 @@ def rows() -> list[Row]:
     content = study.as_dict()
     base = [row for row in content["rows"] if row["base"] and row["error"] is not None]
     reference = content["reference"]
-    best = min(row["error"] for row in base)
+    direct = [row for row in base if row["family"] == "steady orbit"]
+    best = min(row["error"] for row in base if row not in direct)
     out = [
         below(
-            "bound of the reference over the error of the best row", reference["error"] / best, 1.0 / EXACT, COMMAND,
+            "bound of the reference over the error of the best transient row", reference["error"] / best, 1.0 / EXACT, COMMAND,
             f"|Z| = {reference['value']:.10g} N/m, bound {reference['error']:.1g}: {reference['how']}",
         )
     ]  # fmt: skip
+    marked = sum(row["at_bound"] for row in direct)
+    note = "the reference's own method to larger tolerances: their errors are known to its bound only, and the table says so"
+    good = all(row["at_bound"] or row["error"] * EXACT >= reference["error"] for row in direct)
+    out.append(Row("rows of the steady orbit that are marked as known to the bound only", f"{marked} of {len(direct)}",
+                   "those within ten bounds", good, COMMAND, note))  # fmt: skip
     for error, seconds in WANTED:
         good = [row for row in base if row["errors"]["equivalent_stiffness"] + reference["error"] <= error]
         fastest = min(good, key=lambda row: row["cost"]["solve_s"], default=None)

@@ -43,7 +43,8 @@ class ElasticBodies:
         """
         system: Any = model.system
         system.in_place(system.equilibrium)
-        contact, z, out = self.bearing.system.contact, model.system.ball_count, {}
+        contact: Any = self.bearing.system.contact
+        z, out = model.system.ball_count, {}
         centre = model.system.centre_vectors(equilibrium.displacement)[0]
         found = {
             "peak_pressure_points": peak_at_points(contact),
@@ -83,7 +84,10 @@ class ElasticBodies:
         scene = model.scene
         return {
             "bodies": "elastic: every node of rings and balls, pressures at surface points",
-            "rigid_rings": {"displacement": dict(zip(COORDINATES, q.tolist(), strict=True)), "stiffness": stiffness.tolist()},
+            "rigid_rings": {
+                "displacement": dict(zip(COORDINATES, q.tolist(), strict=True)),
+                "stiffness": stiffness.tolist(),
+            },
             "mesh": {
                 "cells": self.bearing.cells,
                 "nodes": bodies.assembly.nodes,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.bodies.inertia import inertia_table
 from raceway.core.bodies.ring import CAGE
 from raceway.core.condensed.contact import Pressed
 from raceway.core.condensed.field import PressureField, pressure_field
@@ -118,6 +119,7 @@ class PatchBodies:
                 "change_from_coarser": error,
                 "how": how,
             },
+            "inertia": inertia_table(model, equilibrium),
             "penetration_share": float(share.max(initial=0.0)),
             "tangent": "mean over all places of the points under the ellipses, which takes away its ripple",
         }

@@ -73,5 +73,7 @@ def single(points: float, load: float, inner: bool = True, angle: float | None =
     half = room * a / radius + 1.5 * spacing.along / radius
     solid = Solid(bearing.rings.young, bearing.rings.poisson)
     ring = RingBody(shape, solid, "clamped", (angle - half, angle + half))
-    ball = make_ball(radius, Solid(bearing.balls.young, bearing.balls.poisson), spacing, int(2.0 * half * radius / spacing.along) + 3)
+    ball = make_ball(
+        radius, Solid(bearing.balls.young, bearing.balls.poisson), spacing, int(2.0 * half * radius / spacing.along) + 3
+    )
     return Single(make_patch(ring, ball, spacing, bearing.ball_count), ellipse, angle)

@@ -22,6 +22,7 @@ from raceway.core.geometry import BallBearing
 from raceway.core.hertz import contact_modulus
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh import HexMesh
+from raceway.core.stepping.elastic import Seen
 from raceway.errors import MeshError
 
 #: Points of a ball count as contact points where the undeformed gap is below this many Hertz approaches at four times the
@@ -148,7 +149,7 @@ class ElasticBearing:
             u[a.part(k + 2)] = np.tile(moved[0] * np.array([1.0, 0.0, 0.0]) + moved[1] * self._radial(k), len(self._mass[k]))
         return np.concatenate([q, u[a.free]])
 
-    def look(self, system: ElasticSystem, y: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ...]:
+    def look(self, system: ElasticSystem, y: np.ndarray, v: np.ndarray) -> Seen:
         """Ring displacement and velocity (5,), smallest gaps and normal forces (2 Z,), ball places (Z, 2)."""
         contact = system.contact
         assert contact is not None

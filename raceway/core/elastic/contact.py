@@ -170,6 +170,10 @@ class NodalContact:
             self.area, self.pressure, self.d_gap, self.d_rate, self.normal, self.bend,
             self.force, self.stiffness, self.rate_stiffness,
         )  # fmt: skip
+        if share > 0.0:
+            # Pressures of such an overlap are many times too large, and so would be their geometric stiffness: leave it out.
+            across = self.normal[:, :, None] * self.normal[:, None, :]
+            self.stiffness = -(self.area * self.d_gap)[:, None, None] * across
         if self.friction is not None:
             traction, tangent = self.friction.evaluate(moved, self.normal, self.pressure, self.d_gap)
             self.force += self.area[:, None] * traction

@@ -32,9 +32,7 @@ class Factorised:
         rows = np.flatnonzero(~held)
         inner = matrix[rows][:, rows].tocsc()
         try:
-            self._factors = splu(
-                inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-            )
+            self._factors = splu(inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError as why:  # "Factor is exactly singular"
             raise ConvergenceError(f"the stiffness of the bodies is singular: something is held by nothing ({why})") from why
 

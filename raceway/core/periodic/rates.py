@@ -42,10 +42,11 @@ def derivative(problem: Problem, path: Path) -> np.ndarray:
 
 
 def stiff(problem: Problem, path: Path) -> bool:
-    """Whether putting rates in does not converge."""
+    """Whether putting rates in does not converge: balls lag about as long as the ring's damping is over its stiffness."""
     # One state tells how much dashpots do: balls that are closed anywhere are closed at most times.
-    here, moved = _places(problem, path, np.zeros(1, dtype=int), [[], problem.system.rated_columns])
-    lag = float(np.abs(moved - here).max()) / _step(problem, path)
+    now, weight = problem.system.evaluate(path.q[0], path.v[0] * problem.speed), problem.weight**2
+    damping = float(np.abs(np.diag(now.damping) * weight).max())
+    lag = damping / max(float(np.abs(np.diag(now.stiffness) * weight).max()), 1e-300)
     h = float(np.diff(path.nodes).min())
     return bool(lag * problem.speed * _steepest(problem.rule) / h > _STIFF)
 

@@ -34,11 +34,13 @@ class Found:
     Attributes
     ----------
     refined : the motion with its error
+    highest : order of the highest natural frequency at the equilibrium
     how : "directly", "from rest" (the force grows), "from a higher speed" or "from a lower speed"
     fold : share of the force at which the branch from rest turns back; None where it does not
     """
 
     refined: Refined
+    highest: float
     how: str
     fold: float | None = None
 
@@ -54,9 +56,13 @@ def problem_of(system: System, speed: float, q: np.ndarray, symmetric: bool = Tr
     return Problem(system, speed, pitch or one_turn(system))
 
 
-def mesh_of(problem: Problem, tangent: np.ndarray, factor: int = 1) -> np.ndarray:
-    """Nodes of a first mesh, equidistant over the span."""
-    highest = float(problem.system.natural_frequencies(tangent)[-1]) / problem.speed
+def highest_order(problem: Problem, tangent: np.ndarray) -> float:
+    """Highest natural frequency over the force's, with the tangent (5, 5) of the contacts."""
+    return float(problem.system.natural_frequencies(tangent)[-1]) / problem.speed
+
+
+def mesh_of(problem: Problem, highest: float, factor: int = 1) -> np.ndarray:
+    """Nodes of a first mesh, equidistant over the span, for vibrations up to an order ``highest``."""
     turn = max(_INTERVALS, _PER_ORDER * min(highest, 2000.0))
     count = max(2, ceil(factor * turn * problem.symmetry.span / (2.0 * np.pi) - 1e-9))
     return np.linspace(0.0, problem.symmetry.span, count + 1)
@@ -77,17 +83,18 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
     ConvergenceError
         No periodic motion found, with what was tried.
     """
+    highest = highest_order(problem, tangent)
     try:
-        return Found(_direct(problem, q, tangent, tolerance), "directly")
+        return Found(_direct(problem, q, tangent, tolerance, highest), highest, "directly")
     except ConvergenceError:
         pass
     try:
-        return Found(_grown(problem, q, tangent, tolerance), "from rest")
+        return Found(_grown(problem, q, tangent, tolerance), highest, "from rest")
     except ConvergenceError:
         pass
-    points = from_rest(problem, q, tangent, mesh_of(problem, tangent))
+    points = from_rest(problem, q, tangent, mesh_of(problem, highest))
     if points[-1].parameter >= 1.0:
-        return Found(_from_branch(problem, points, 1.0, tolerance), "from rest")
+        return Found(_from_branch(problem, points, 1.0, tolerance), highest, "from rest")
     fold = max(p.parameter for p in points)
     if problem.system.scalars[CAGE] == 0.0:
         for ratio in _DETOURS:
@@ -95,7 +102,7 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
                 refined = _detour(problem, q, tangent, tolerance, ratio)
             except ConvergenceError:
                 continue
-            return Found(refined, "from a higher speed" if ratio > 1.0 else "from a lower speed", fold)
+            return Found(refined, highest, "from a higher speed" if ratio > 1.0 else "from a lower speed", fold)
     turns_back = any(p.folded for p in points)
     why = "where its branch turns back (an internal resonance)" if turns_back else "beyond which it could not be followed"
     raise ConvergenceError(
@@ -106,14 +113,14 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
     )
 
 
-def _direct(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
-    first = guess(problem, q, tangent, mesh_of(problem, tangent))
+def _direct(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float) -> Refined:
+    first = guess(problem, q, tangent, mesh_of(problem, highest))
     return refine(solve(problem, first, 1e-2 * tolerance, 0, _DIRECT_LIMIT), tolerance)
 
 
 def _grown(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
     """With the force growing step by step, each begun where the last two lead; twice the mesh of a direct solve."""
-    nodes = mesh_of(problem, tangent, 2)
+    nodes = mesh_of(problem, highest_order(problem, tangent), 2)
 
     def part(share: float) -> Problem:
         return attrs.evolve(problem, share=share * problem.share)
@@ -161,7 +168,7 @@ def _detour(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: flo
 
     far = at(ratio * wanted)
     try:
-        begin = _direct(far, q, tangent, _ROUGH)
+        begin = _direct(far, q, tangent, _ROUGH, highest_order(far, tangent))
     except ConvergenceError:
         begin = _grown(far, q, tangent, _ROUGH)
     branch = Branch(at, abs(ratio - 1.0) * wanted, begin.solved.size, _ROUGH, _MOST)

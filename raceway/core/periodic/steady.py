@@ -52,7 +52,7 @@ def steady(
         )
         raise SceneError.at("integrator.kind", "periodic", why)
     found = find(problem, q, tangent, tolerance)
-    fate = floquet(found.refined.solved)
+    fate = floquet(found.refined.solved, found.highest)
     refined = found.refined
     counts = {
         "steps": refined.solved.path.intervals,

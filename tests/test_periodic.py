@@ -1,0 +1,218 @@
+"""Steady orbits solved for directly: against collocation in Fourier series, symmetry, multipliers, folds, refusals."""
+
+from __future__ import annotations
+
+import json
+
+import attrs
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from benchmarks.evidence._scenes import model_of, rotating
+from raceway import scene_from_dict
+from raceway.core.orbit import steady_orbit
+from raceway.core.periodic.branch import Branch
+from raceway.core.periodic.collocation import Problem
+from raceway.core.periodic.rates import stiff
+from raceway.core.periodic.search import find, from_rest, highest_order, mesh_of
+from raceway.core.periodic.symmetry import one_turn
+from raceway.core.record import Schedule
+from raceway.errors import SceneError
+from raceway.integrators.periodic import Periodic
+from raceway.run import run
+from raceway.statics import settle
+from raceway.testing.compiled import along_x
+from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
+
+
+def scene(kind="periodic", axial=1000.0, tilt="locked", inertia=False, **tables):
+    found = rotating(axial, tilt, 12000.0, inertia, kind)
+    for table, values in tables.items():
+        found[table] = {**found.get(table, {}), **values}
+    return found
+
+
+def solved(tables, **options):
+    return run(scene_from_dict({**tables, "integrator": {"kind": "periodic", **options}}))
+
+
+ONE_WAY = {"kind": "unidirectional"}
+
+
+@pytest.mark.parametrize(
+    "tables",
+    [
+        scene(),
+        scene(tilt="free", inertia=True),
+        scene(excitation=ONE_WAY),
+        scene(tilt="free", inertia=True, kinematics={"gyroscopic": "shared"}),
+        scene(contact={"kind": "penalty", "damping": 500.0}, supports={"tilt": 2e4}),
+        scene(inertia=True, supports={"axial": "displacement"}),
+    ],
+    ids=["locked", "free", "one way", "gyroscopic", "damped penalty", "held axially"],
+)
+def test_equals_collocation_in_fourier_series(tables):
+    result = solved(tables, tolerance=1e-9)
+    model = model_of(tables)
+    orbit = steady_orbit(model.system, model.excitation.period_s, settle(model).displacement, 65, tolerance=1e-11)
+    line = np.fft.fft(orbit.displacement, axis=0)[1, 1:3]
+    push = np.fft.fft(orbit.force, axis=0)[1, 1:3]
+    wanted = np.vdot(push, push) / np.vdot(push, line)
+    # Equal but for the tails of both: 65 samples leave 1e-10 of motions without lift-off, imbalances 1e-9.
+    assert abs(result.identification.dynamic_stiffness - wanted) < 1e-8 * abs(wanted)
+    assert result.error["total"] < 1e-8
+
+
+@pytest.mark.parametrize(
+    "tables",
+    [scene(axial=200.0), scene(tilt="free", inertia=True), scene(contact={"damping": 500.0})],
+    ids=["lift-off", "free", "damped"],
+)
+def test_a_pitch_tells_the_whole_turn(tables):
+    pitch, turn = solved(tables), solved(tables, symmetry="none")
+    assert pitch.stability["floquet"]["span_deg"] == pytest.approx(30.0)
+    assert turn.stability["floquet"]["span_deg"] == pytest.approx(360.0)
+    one, two = (result.simulation.record for result in (pitch, turn))
+    size = np.ptp(two.displacement[:, 1])
+    assert np.abs(one.displacement - two.displacement)[:, :3].max() < 2e-7 * size  # the default tolerance, twice
+    # Forces of single balls say that they are renumbered rightly.
+    assert np.abs(one.contact_force - two.contact_force).max() < 1e-5 * two.contact_force.max()
+    found = [sorted(m["abs"] for m in result.stability["floquet"]["multipliers"]) for result in (pitch, turn)]
+    assert found[0] == pytest.approx(found[1], abs=1e-6)
+
+
+def test_orbiting_balls_by_their_own_pitch():
+    """Fixed balls under the same force, but seen from balls that travel: K is that of fixed balls, to their small ripple."""
+    still, orbiting = solved(scene(axial=400.0)), solved(scene(axial=400.0, kinematics={"orbiting": True}))
+    assert orbiting.stability["floquet"]["span_deg"] == pytest.approx(50.0, abs=0.1)  # 30 / (1 - cage speed over spin speed)
+    pair = [result.identification.equivalent_stiffness for result in (still, orbiting)]
+    assert pair[0] == pytest.approx(pair[1], rel=1e-4)
+
+
+def test_condensed_bodies():
+    """Structural approaches have rates and pitches too; the coarse mesh is the same on both sides."""
+    tables = scene(bodies={"kind": "condensed"}, mesh={"element_size": 1.5e-3}, contact={"damping": 500.0})
+    pitch, turn = solved(tables), solved(tables, symmetry="none")
+    off = pitch.identification.dynamic_stiffness / turn.identification.dynamic_stiffness - 1.0
+    assert abs(off) < 2e-7
+    by_time = run(scene_from_dict({**tables, "integrator": {"kind": "newmark", "turns": 6, "steps_per_turn": 720}}))
+    # Newmark's error at 720 steps is 1.8e-7, its transient's 1e-6.
+    assert abs(by_time.identification.dynamic_stiffness / pitch.identification.dynamic_stiffness - 1.0) < 5e-6
+
+
+def test_multipliers_of_a_linear_system():
+    system = linear_system()
+    record = Periodic(tolerance=1e-9).advance(
+        system, motion(system, np.zeros(5), np.zeros(5)), Schedule(2.0 * np.pi / SPEED / 36, 36, 1)
+    )
+    chosen = np.ix_(system.free > 0.0, system.free > 0.0)
+    inverse = np.linalg.inv(system.mass[chosen])
+    flow = np.block(
+        [[np.zeros((2, 2)), np.eye(2)], [-inverse @ system.stiffness[chosen], -inverse @ system.damping[chosen]]]
+    )
+    wanted = np.sort(np.abs(np.linalg.eigvals(expm(2.0 * np.pi / SPEED * flow))))
+    fate = record.counts["floquet"]
+    assert np.sort([m["abs"] for m in fate["multipliers"]]) == pytest.approx(wanted, abs=1e-9)
+    assert fate["verdict"] == "stable"
+    assert fate["leaves_by"] is None
+
+
+@pytest.fixture(scope="module")
+def softening():
+    """A mass on a Hertzian contact, pushed to and fro at 0.85 of its natural frequency: a fold on the way up."""
+    system = contact_system()
+    k, m = float(system.law_params[0, 0]), float(system.mass[0, 0])
+    rest = (PRELOAD / k) ** (2.0 / 3.0)
+    w = 0.85 * np.sqrt(1.5 * PRELOAD / rest / m)
+    damping = np.zeros((5, 5))
+    damping[0, 0] = 0.02 * m * w
+    force = np.array([0.45 * PRELOAD, w])
+    system = attrs.evolve(system, damping=damping, force=along_x, force_params=force)
+    q = np.array([rest, 0.0, 0.0, 0.0, 0.0])
+    return Problem(system, w, one_turn(system)), q, system.evaluate(q).stiffness
+
+
+def test_a_branch_passes_its_folds(softening):
+    problem, q, tangent = softening
+    points = from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
+    shares = np.array([point.parameter for point in points])
+    assert points[-1].parameter >= 1.0
+    assert any(point.folded for point in points)
+    assert (np.diff(shares) < 0.0).any()
+    # Between two folds one real multiplier is above 1; before and after, none is.
+    middle = points[int(np.argmax(np.diff(shares) < 0.0)) + 2]
+    assert middle.floquet.leaves_by == "+1"
+    assert points[1].floquet.verdict == points[-1].floquet.verdict == "stable"
+
+
+def test_what_lies_beyond_a_fold_satisfies_the_equations(softening):
+    """An integration to 1e-11 from the motion's start comes back to it after a turn, lift-off and impact on the way."""
+    problem, q, tangent = softening
+    found = find(problem, q, tangent, 1e-8)
+    assert found.how == "from rest"
+    path, size = found.refined.solved.path, found.refined.solved.size
+    start = motion(problem.system, path.q[0].copy(), path.v[0] * problem.speed)
+    q_end, v_end = exact(problem.system, start, np.array([2.0 * np.pi / problem.speed]))
+    off = np.abs([q_end[0, 0] - path.q[0, 0], v_end[0, 0] / problem.speed - path.v[0, 0]]).max()
+    assert off < 1e-6 * size  # the integration's own error at impacts is 1e-8 of the motion, and a turn carries it on
+
+
+def test_a_branch_over_the_speed(softening):
+    """The same motion whether it is solved for at a speed or followed there."""
+    problem, q, tangent = softening
+    low = attrs.evolve(problem, speed=0.5 * problem.speed, share=0.2)
+    begin = find(low, q, tangent, 1e-6).refined.solved
+
+    def at(speed):
+        return Problem(problem.system, speed, problem.symmetry, 0.2, problem.speed)
+
+    branch = Branch(at, 0.1 * problem.speed, begin.size)
+    wanted = 0.6 * problem.speed
+    points = branch.follow(branch.start(begin, low.speed), 0.2, lambda p: p.parameter >= wanted, 60)
+    direct = find(at(points[-1].parameter), q, tangent, 1e-8).refined.solved
+    assert points[-1].solved.path.q[0, 0] == pytest.approx(direct.path.q[0, 0], abs=1e-5 * direct.size)
+
+
+def test_dashpots_are_noticed():
+    weak, strong = (model_of(scene(contact={"damping": c})) for c in (0.001, 500.0))
+    for model, expected in ((weak, False), (strong, True)):
+        q = settle(model).displacement
+        problem = Problem(model.system, 1256.0, one_turn(model.system))
+        from raceway.core.periodic.first_guess import standing
+
+        assert stiff(problem, standing(problem, q, np.linspace(0.0, 2.0 * np.pi, 25))) is expected
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        (scene(contact={"friction": 0.1}), "contact.friction"),
+        (scene(kinematics={"orbiting": True}, load={"radial": [100.0, 0.0]}), "kinematics.orbiting"),
+        (scene(excitation=ONE_WAY, kinematics={"orbiting": True}), "kinematics.orbiting"),
+        (scene(bodies={"kind": "condensed"}, contact={"discretisation": "nodal", "kind": "penalty"}), "nodal"),
+    ],
+)
+def test_refusals_name_reason_and_remedy(tables, words):
+    with pytest.raises(SceneError) as caught:
+        solved(tables)
+    assert words in str(caught.value)
+    assert "newmark" in str(caught.value)
+
+
+def test_a_run_up_is_refused():
+    tables = scene()
+    tables["excitation"] = {"kind": "run_up", "first_speed_rpm": 9000.0, "speed_rpm": 12000.0, "duration_s": 0.1,
+                            "unbalance": 6e-4}  # fmt: skip
+    with pytest.raises(SceneError, match="periodic"):
+        solved(tables)
+
+
+def test_the_result_tells_the_multipliers():
+    content = json.loads(json.dumps(solved(scene()).as_dict(), allow_nan=False))
+    fate = content["stability"]["floquet"]
+    assert len(fate["multipliers"]) == 6
+    assert fate["verdict"] == "neutral"  # next to no damping
+    assert fate["found"] == "directly"
+    assert content["error"]["transient"] == 0.0
+    assert content["error"]["time_step"] <= 1e-7
