@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import resource
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -34,7 +35,7 @@ class Stability:
     Attributes
     ----------
     cases : how many were run or taken from what is kept;  reused : how many of them were kept
-    seconds : wall time
+    seconds, cpu_s : wall time; processor time of all processes, compiling too
     fault : why rows could not be kept, or None
     """
 
@@ -43,6 +44,7 @@ class Stability:
     cases: int
     reused: int
     seconds: float
+    cpu_s: float
     processes: int
     fault: RacewayError | None = None
 
@@ -56,6 +58,7 @@ class Stability:
             "cases": self.cases,
             "reused": self.reused,
             "seconds": self.seconds,
+            "cpu_s": self.cpu_s,
             "processes": self.processes,
             "failed": len(self.failed),
             "rows": [attrs.asdict(row) for row in self.rows],
@@ -99,7 +102,7 @@ def stability(
     SceneError
         A name that no case has, or a scene that cannot be put through the catalogue.
     """
-    begun = time.monotonic()
+    begun, cpu = time.monotonic(), _processor_time()
     registry = registry or default_registry()
     cases = catalogue(registry, tables)
     if only is not None:
@@ -124,7 +127,14 @@ def stability(
             on_progress(case.name, len(found), len(cases))
     title = "Stiff and extreme cases" if tables is None else f"Stiff and extreme cases of {tables.get('title', 'the scene')}"
     in_order = tuple(row for place in range(len(cases)) for row in found[place])
-    return Stability(title, in_order, len(cases), reused, time.monotonic() - begun, processes, kept.fault)
+    taken = time.monotonic() - begun, _processor_time() - cpu
+    return Stability(title, in_order, len(cases), reused, *taken, processes, kept.fault)
+
+
+def _processor_time() -> float:
+    """Of this process and of those that it has ended [s]."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
 
 
 def _run(cases: list[Case], processes: int, registry: Registry, plugins: Sequence[Path]) -> Any:
