@@ -108,7 +108,7 @@ def tables(cell: Combination) -> dict[str, Any]:
     """A short run: 6 turns of 120 steps; more steps where an explicit method asks for them, fewer where they are costly."""
     implicit = default_registry().find("integrator", cell.integrator).plugin.implicit
     nodal = (cell.discretisation, cell.bodies) == (PLAIN.discretisation, PLAIN.bodies)
-    turns, steps = (2 if cell.identifier in ("fft_1x", "sine_fit") else 6, 24) if nodal else (6, 120)
+    turns, steps = (1 if cell.identifier in ("fft_1x", "sine_fit") else 6, 24) if nodal else (6, 120)
     points = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3}}
     return {
         **(points if nodal else {}),
