@@ -15,11 +15,17 @@ from raceway.scene import Scene
 _BYTES_A_CELL = 9000
 #: Share of the machine's memory that a run may take.
 _SHARE = 0.8
-#: Processor seconds a cell: meshing and set-up, a multigrid, an iteration of the linear solver, an evaluation of all forces,
-#: an explicit step with one-point hexahedra (the others: ``_FULL`` times); measured on one core of a small server.
-_BUILD_S, _SETUP_S, _LINEAR_S, _FORCE_S, _FULL = 2.4e-5, 3.0e-5, 1.1e-6, 2.0e-7, 3.0
-#: Iterations of Newton of an equilibrium from rigid bodies, of one from its neighbour, of a time step; linear ones of each.
-_EQUILIBRIUM, _NEIGHBOUR, _STEP, _LINEAR = 9, 6, 3, 20
+#: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
+_FACTORS = 60_000
+#: Processor seconds a cell on one core of a small server: meshing and first forces; factors or multigrid; a linear solve with
+#: the forces that follow it.  Measured with factors at 4500 and 29 000 cells, with multigrid at 4500.
+_BUILD_S, _SETUP_S, _SOLVE_S = 7.0e-5, (1.6e-4, 2.5e-4), (4.5e-5, 1.3e-4)
+#: Processor seconds a cell of an explicit step, hexahedra of one point and others, and of its Python beside.
+_FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
+#: Linear solves of an equilibrium from rigid bodies with its stiffness, of one from its neighbour, of a time step.
+_EQUILIBRIUM, _NEIGHBOUR, _STEP = 14, 5, 4
+#: Imports of what solves [s].
+_IMPORTS_S = 1.5
 
 
 @attrs.frozen
@@ -48,17 +54,18 @@ def elastic_cost(scene: Scene) -> ElasticCost | None:
     mesh = predicted_mesh(scene)
     if mesh is None:
         return None
-    cells = int(mesh["cells"])
-    method = scene.integrator.method
-    newton = _FORCE_S * _FULL + _LINEAR * _LINEAR_S
-    neighbour = cells * _NEIGHBOUR * newton
-    first = cells * (_BUILD_S + _SETUP_S + (_EQUILIBRIUM + 5) * newton)
+    cells, method = int(mesh["cells"]), scene.integrator.method
+    unknowns = int(3.4 * cells)  # nodes of coarse bodies are more than their cells
+    large = int(unknowns > _FACTORS)
+    setup, solve = cells * _SETUP_S[large], cells * _SOLVE_S[large]
+    first = _IMPORTS_S + cells * _BUILD_S + 1.5 * setup + _EQUILIBRIUM * solve
+    neighbour = _NEIGHBOUR * solve
     if not method.inertial:
-        return ElasticCost(cells, 3 * cells, _BYTES_A_CELL * cells, 0.0, first, neighbour, neighbour)
-    full = 1.0 if scene.bodies.formulation == "one_point" else _FULL
-    step = cells * (_STEP * newton if method.implicit else _FORCE_S * full)
-    start = 4.0 * neighbour if scene.integrator.start == "orbit" else 0.0
-    return ElasticCost(cells, 3 * cells, _BYTES_A_CELL * cells, _stable_step(scene), first, start, step)
+        return ElasticCost(cells, unknowns, _BYTES_A_CELL * cells, 0.0, first, neighbour, neighbour)
+    plain = int(scene.bodies.formulation != "one_point")
+    step = _STEP * solve + 0.2 * setup if method.implicit else cells * _FORCE_S[plain] + _PYTHON_S
+    start = 4.0 * neighbour + setup if scene.integrator.start == "orbit" else 0.0
+    return ElasticCost(cells, unknowns, _BYTES_A_CELL * cells, _stable_step(scene), first, start, step)
 
 
 def _stable_step(scene: Scene) -> float:

@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from raceway.errors import RacewayError, SceneError, StabilityError
+from raceway.errors import RacewayError, SceneError
 from raceway.plan import make_plan
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
@@ -79,9 +79,11 @@ def test_the_tangent_is_symmetric_and_positive(static):
     assert (np.linalg.eigvalsh(stiffness) > 0.0).all()
 
 
-@pytest.mark.parametrize("kind", ["newmark", "quasi_static"])
-def test_an_integrator_runs_from_the_scene(kind):
-    found = run(scene(**EXCITED, integrator={"kind": kind, "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})).as_dict()
+def test_newmark_runs_from_the_scene():
+    """Series of equilibria and the tangent run in the matrix, explicit steps in tests/stepping."""
+    found = run(
+        scene(**EXCITED, integrator={"kind": "newmark", "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})
+    ).as_dict()
     json.dumps(found, allow_nan=False)
     assert found["identification"]["equivalent_stiffness"] > 1e7
     # Eight steps a turn: the balance is that of the trapezoidal rule, some percent.
@@ -96,13 +98,6 @@ def test_the_plan_tells_size_and_cost_and_builds_nothing():
     assert 0.5 < plan.predicted_wall_s < 60.0
     assert any("every node" in part.why for part in plan.kept)
     assert any(part.part == "travel of the balls" for part in plan.left_out)
-
-
-def test_a_step_above_the_stable_limit_is_refused_with_the_limit():
-    with pytest.raises(StabilityError, match=r"above the stable limit of 'central_difference', [0-9.e-]+ s. Take at least"):
-        run(
-            scene(**EXCITED, integrator={"kind": "central_difference", "turns": 1, "steps_per_turn": 360, "start": "static"})
-        )
 
 
 REFUSED = [

@@ -85,7 +85,6 @@ def options(kind: str, name: str) -> dict[str, Any]:
 
 #: Cells with elastic bodies that run, each in seconds; the others have no [mesh] and are refused.
 ELASTIC = (
-    ("bidirectional", "penalty", "nodal", "newmark", "fft_1x", "locked"),
     ("unidirectional", "hertz", "nodal", "quasi_static", "sine_fit", "locked"),
     ("bidirectional", "hertz", "nodal", "newmark", "tangent", "free"),
 )
