@@ -14,7 +14,7 @@ from benchmarks.groove import HERTZ, pressed, solve
 TITLE = "Elastic bodies: statics"
 COMMAND = "python -m benchmarks.evidence elastic"
 COMPARE = "python -m benchmarks.against_calculix --json"
-SCENE = "examples/b7206_elastic_60k.toml"
+SCENE = "benchmarks/b7206_elastic_60k.toml"
 LOADS = (100.0, 300.0, 1000.0)
 #: Growth of the meshes: at 8 elements per semi-axis a quicker one, as the outer parts hardly change the pressure.
 QUICK = {"growth": 1.35, "coarse": 0.8e-3}
