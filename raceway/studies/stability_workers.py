@@ -15,6 +15,8 @@ from raceway.studies.stability_case import Case, Row, lost, short
 
 #: A case that takes longer has hung [s].  The longest takes 20 s, and compiling for the first time on busy cores some minutes.
 PATIENCE_S = 900.0
+#: What a process may take to import the program beyond that [s].
+_START_S = 120.0
 
 
 def rows_of(case: Case, registry: Registry) -> list[Row]:
@@ -54,10 +56,10 @@ class _Worker:
         self.process.start()
         child.close()
         self.case: Case | None = None
-        self.begun = 0.0
+        self.begun, self.ready = 0.0, False
 
     def give(self, case: Case) -> None:
-        self.case, self.begun = case, time.monotonic()
+        self.case, self.begun = case, time.monotonic() + (0.0 if self.ready else _START_S)
         self.pipe.send(case)
 
     def end(self) -> None:
@@ -85,14 +87,14 @@ def in_parallel(
                     worker.give(waiting.pop())
             ready = set(wait([w.pipe for w in workers if w.case], timeout=1.0))
             for worker in [w for w in workers if w.case]:
-                case, seconds = worker.case, time.monotonic() - worker.begun
+                case, seconds = worker.case, max(time.monotonic() - worker.begun, 0.0)
                 assert case is not None
                 rows: list[Row] | None = None
                 if worker.pipe in ready:
                     try:
                         rows = worker.pipe.recv()
                         if rows is None:
-                            worker.begun = time.monotonic()
+                            worker.begun, worker.ready = time.monotonic(), True
                     except EOFError:
                         worker.process.join()
                         rows = [lost(case, f"its process died (exit code {worker.process.exitcode})")]
