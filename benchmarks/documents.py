@@ -55,12 +55,12 @@ _ORDER = (
 _NOTES = {
     "bearing": "`preset` fills in a bearing of the catalogue; any other key overrides the preset's value. Without a preset "
     "the required keys and one of `contact_angle_deg`, `radial_clearance` have to be given.",
-    "supports": "In this version `outer_seat` and `inner_seat` must be `rigid`.",
+    "supports": "`outer_seat` and `inner_seat` are `rigid` for rigid bodies.",
     "excitation": "Without this table the scene is static and `identification` is null.",
-    "bodies": "This version runs rigid rings and balls only: `rigid`.",
-    "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh; meshing by itself needs no other table than "
+    "bodies": "What deforms; `formulation` and `hourglass` belong to `elastic` bodies ([how they move](elastic_dynamics.md)).",
+    "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh, elastic bodies need one; meshing by itself needs no other table than "
     "[bearing] and this one.",
-    "contact": "In this version `discretisation` must be `resultant`.",
+    "contact": "`discretisation` is `resultant` for rigid bodies, `nodal` for elastic ones; condensed bodies take both.",
 }
 
 

@@ -81,8 +81,11 @@ def error_table(
     parts["mesh"] = Part(mesh, how["mesh"])
     for name, part in parts.items():
         table[name], how[name] = part.size, part.how
-    table["total"] = _total(parts)
     how["total"] = "time step and transient with their phases, at least half the larger; plus identification and mesh"
+    if model.scene.bodies.kind == "elastic":
+        how["total"] = "not estimated: that of the mesh is not known, and is the largest"
+        return table
+    table["total"] = _total(parts)
     return table
 
 
@@ -110,6 +113,8 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
         return Part(first.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude")
     if not method.inertial:
         return Part(getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to")
+    if model.scene.bodies.kind == "elastic":
+        return Part(None, "not estimated: a second run of all nodes would cost as much as the first")
     steps = first.whole.schedule.steps_per_turn
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)

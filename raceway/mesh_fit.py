@@ -33,13 +33,15 @@ def check_size(mesher: Any, bearing: Any, meshes: Mapping[str, HexMesh]) -> None
     MeshError
         A body in other units, with the remedy.
     """
+    told_of: set[str] = set()  # all balls but for one are copies: one warning is enough
     for name, mesh in meshes.items():
         for key, expected, found in _sizes(bearing, name, mesh.points):
             ratio = found / expected
             if not 1.0 / _OTHER_UNIT < ratio < _OTHER_UNIT:
                 told = f"the mesh of '{name}' measures {found:.4g} m, but {key} of the bearing is {expected:.4g} m"
                 raise _refusal(mesher, name, told, ratio)
-            if abs(ratio - 1.0) > _OTHER_SIZE and not key.startswith("the size"):
+            if abs(ratio - 1.0) > _OTHER_SIZE and not key.startswith("the size") and key not in told_of:
+                told_of.add(key)
                 warnings.warn(
                     f"the mesh of '{name}' measures {found:.4g} m where {key} of the bearing is {expected:.4g} m",
                     stacklevel=3,

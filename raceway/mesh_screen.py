@@ -18,10 +18,11 @@ def mesh_screen(found: Mapping[str, Any]) -> RenderableType:
     ----------
     found : ``raceway.core.mesh_summary.summary`` with title, mesher, seconds and files
     """
+    count = len(found["bodies"])
     size, jacobian = found["element_size_m"], found["scaled_jacobian"]
     rows: list[Row] = [
         (f"Mesh by '{found['mesher']}'", "", ""),
-        ("hexahedra", str(found["elements"]), f"{len(found['bodies'])} bodies"),
+        ("hexahedra", str(found["elements"]), "1 body" if count == 1 else f"{count} bodies"),
         ("nodes", str(found["nodes"]), f"{3 * found['nodes']} degrees of freedom"),
         ("element edges", f"{1e3 * size['mean']:.3g} mm", f"mean; {1e3 * size['min']:.3g} to {1e3 * size['max']:.3g} mm"),
     ]

@@ -5,27 +5,32 @@ The model builder obeys the plan; it decides nothing of this by itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from math import pi
 from typing import Any
 
 import attrs
 
+from raceway.elastic_plan import elastic_cost, elastic_faults, memory_faults, steps_per_turn, words
 from raceway.errors import Mistake, SceneError
 from raceway.estimate import highest_frequency
 from raceway.mesh_plan import mesh_faults, predicted_mesh
+from raceway.module_plan import Module, as_dicts, optional_modules
 from raceway.patch_plan import patch_cost, patch_faults
 from raceway.ring import ring_inertia
 from raceway.scene import Scene
+from raceway.section_plan import seat_faults, section_cost, section_faults
 
 #: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches, compiling.
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
-#: The same for condensed bodies, what the matrices between balls add, and their rings when they are not kept from before.
+#: The same for condensed bodies, and what the matrices between balls add.
 _CONDENSED_STEP_S = {"weightless": 10.5e-6, "inertial": 13.5e-6, "tangential": 22.0e-6}
-_BETWEEN_S, _RINGS_S = 23.0e-6, 1.5
+_BETWEEN_S = 23.0e-6
 _START_S = 0.6
 #: Kinds of bodies that this version can compute.
-BODIES = ("rigid", "condensed")
+BODIES = ("rigid", "condensed", "elastic")
+#: Name of what repeats itself, for ``make_plan``'s ``force``.
+OTHER_TURNS = "other turns"
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
 #: Records above this are refused [bytes].
@@ -54,6 +59,7 @@ class Plan:
     dofs : unknowns of the ring and of the balls
     time_step_s, predicted_wall_s : None in a static scene; predictions
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
+    modules : optional modules, and whether a run imports them
     """
 
     kept: tuple[Part, ...]
@@ -69,6 +75,7 @@ class Plan:
     predicted_steps: int
     predicted_wall_s: float
     mesh: dict[str, Any] | None = None
+    modules: tuple[Module, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -79,11 +86,16 @@ class Plan:
             "predicted_steps": self.predicted_steps,
             "predicted_wall_s": self.predicted_wall_s,
             "mesh": self.mesh,
+            "modules": as_dicts(self.modules),
         }
 
 
-def make_plan(scene: Scene) -> Plan:
+def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     """Decide what a scene needs.
+
+    Parameters
+    ----------
+    force : parts that are kept although the scene does not need them: to measure what leaving them out saves
 
     Raises
     ------
@@ -95,15 +107,18 @@ def make_plan(scene: Scene) -> Plan:
     left_out: list[Part] = []
 
     def decide(needed: bool, part: str, why: str, why_not: str) -> bool:
-        (kept if needed else left_out).append(Part(part, why if needed else why_not))
-        return needed
+        stays = needed or part in force
+        (kept if stays else left_out).append(Part(part, why if needed else "forced" if stays else why_not))
+        return stays
 
     dynamic = scene.excitation is not None
     tilts = decide(scene.supports.tilt != "locked", "tilts", "supports.tilt lets the ring tilt", "supports.tilt is locked")
     free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     inertia = scene.kinematics.ball_inertia and scene.spin_speed > 0.0
     why_not = "kinematics.ball_inertia is false" if scene.spin_speed > 0.0 else "nothing turns: no spin speed"
-    decide(inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not)
+    inertia = decide(
+        inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
+    )
     if inertia and getattr(scene.excitation, "first_speed_rpm", None) is not None:
         rpm = scene.spin_speed * 30.0 / pi
         why_not = f"balls, ring and rotor keep what belongs to {rpm:.6g} r/min (kinematics.spin_speed_rpm) at every speed"
@@ -126,9 +141,11 @@ def make_plan(scene: Scene) -> Plan:
     decide(orbiting, "orbiting balls", "kinematics.orbiting at cage speed", "kinematics.orbiting is false")
     pair = f"bearing.arrangement is {scene.bearing.arrangement}"
     decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
-    condensed = scene.bodies.kind == "condensed"
+    condensed, elastic = scene.bodies.kind == "condensed", scene.bodies.kind == "elastic"
     why = f"bodies.kind is {scene.bodies.kind}: finite elements of rings and balls"
     why += ", reduced to structural compliances" if condensed else ""
+    cost = elastic_cost(scene) if elastic else None
+    why += f", every node: {words(cost)}" if cost is not None else ""
     decide(scene.bodies.kind != "rigid", "elastic rings and balls", why, "bodies.kind is rigid: only contacts deform")
     nodal = condensed and scene.contact.discretisation == "nodal"
     coupled = condensed and _balls_meet(scene) and not nodal
@@ -143,7 +160,15 @@ def make_plan(scene: Scene) -> Plan:
         )
     elif condensed:
         why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
-        decide(coupled, "effect of balls on each other through the rings", "soft seats or thick rings", why_not)
+        coupled = decide(coupled, "effect of balls on each other through the rings", "soft seats or thick rings", why_not)
+        if dynamic:
+            why = "rings and balls follow at once; what that costs is told by `model.inertia` of the result"
+            left_out.append(Part("inertia of the bodies' deformation", why))
+    if elastic:
+        kept.append(Part("pressures at surface points", "elastic bodies touch at the points of the balls' surfaces"))
+        kept.append(Part("ideal cage", "holds each ball at its azimuth and keeps it from turning"))
+        why_not = "balls do not orbit: the cage holds them, their centrifugal force is kept where the plan says so"
+        left_out.append(Part("travel of the balls", why_not))
     rotor_moments = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
     decide(
         rotor_moments,
@@ -161,12 +186,14 @@ def make_plan(scene: Scene) -> Plan:
         repeats and uses_record and scene.excitation.period_s is not None and "phase" not in scene.identifier.method.needs
     )
     steady = getattr(scene.integrator.method, "steady", False)
-    if uses_record and (steady or not scene.integrator.method.inertial) and repeats and turns > 1:
+    once = uses_record and (steady or not scene.integrator.method.inertial) and repeats and turns > 1
+    if once and OTHER_TURNS not in force:
         what = "the steady motion" if steady else "a series of equilibria without memory"
         left_out.append(Part(f"{turns - 1} of {turns} turns", f"{what} repeats itself every turn"))
         turns = 1
     steps_per_turn = _predicted_steps_per_turn(scene) if uses_record else 0
     steps = steps_per_turn * turns
+    _note_output(scene, left_out, turns, steps_per_turn, condensed and not nodal)
     balls = "tangential" if friction or moments else "inertial" if inertia else "weightless"
     count = scene.bearing.ball_count * len(scene.bearing.rows)
     if uses_record:
@@ -177,6 +204,11 @@ def make_plan(scene: Scene) -> Plan:
     if nodal:
         each = 12.0 / count * patches.step_s
     each *= count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
+    before = _bodies_seconds(scene)
+    if cost is not None:
+        # Two thirds: the factor 1.5 below is for what compiled loops share out differently.
+        each, before = cost.step_s / 1.5, cost.equilibrium_s + (cost.start_s if uses_record else 0.0)
+    ring = sum(free) + count * (1 if balls == "weightless" else 2)
     period = (scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz) if dynamic else 0.0
     return Plan(
         kept=tuple(kept),
@@ -187,12 +219,28 @@ def make_plan(scene: Scene) -> Plan:
         coupled=coupled,
         free=free,
         turns=turns,
-        dofs=sum(free) + count * (1 if balls == "weightless" else 2),
+        dofs=ring if cost is None else cost.unknowns,
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
-        predicted_wall_s=_START_S + _bodies_seconds(scene) + 1.5 * steps * each,
+        predicted_wall_s=_START_S + before + 1.5 * steps * each,
         mesh=predicted_mesh(scene),
+        modules=optional_modules(scene, balls, inertia, uses_record),
     )
+
+
+def _note_output(scene: Scene, left_out: list[Part], turns: int, steps_per_turn: int, condensed: bool) -> None:
+    """What of the answer is not made, and which bodies stand for their likes."""
+    samples = recorded_per_turn(steps_per_turn, turns) if steps_per_turn else 0
+    if samples < steps_per_turn:
+        why = f"{samples} of {steps_per_turn} steps a turn are recorded: lines up to some tens of 1x need no more"
+        left_out.append(Part("history of every step", why))
+    if condensed:
+        left_out.append(Part("a compliance for each ball and contact", "balls are equal and rings are bodies of revolution"))
+        why = "rings and balls are symmetric about each plane through their axis: a harmonic is one real system"
+        left_out.append(Part("mirror half", why))
+    if scene.bodies.kind != "rigid":
+        left_out.append(Part("stress recovery", "no stress inside the bodies is asked for"))
+    left_out.append(Part("pictures", "drawn by --pictures only"))
 
 
 def _bodies_seconds(scene: Scene) -> float:
@@ -200,7 +248,7 @@ def _bodies_seconds(scene: Scene) -> float:
     if scene.bodies.kind != "condensed":
         return 0.0
     if scene.contact.discretisation != "nodal":
-        return _RINGS_S
+        return section_cost(scene).seconds
     patches = patch_cost(scene)
     orbit = 150.0 * patches.step_s if scene.excitation is not None else 0.0
     return patches.setup_s + 3.0 * patches.equilibrium_s + orbit
@@ -217,16 +265,21 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
     listed = " or ".join(f"'{kind}'" for kind in BODIES)
     refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
-    faults += mesh_faults(scene)
+    if scene.bodies.kind == "elastic":
+        faults += elastic_faults(scene)
+    faults += mesh_faults(scene) or (memory_faults(scene) if scene.bodies.kind == "elastic" and not faults else [])
     rigid, condensed = scene.bodies.kind == "rigid", scene.bodies.kind == "condensed"
     if condensed:
         _refuse_condensed(scene, refuse)
+        faults += seat_faults(scene)
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal" and condensed:
         faults += patch_faults(scene)
+    elif condensed:
+        faults += section_faults(scene)
     elif contact.discretisation == "nodal" and rigid:
         why = "rigid bodies have no surface points: use 'resultant'"
         faults.append(Mistake("contact.discretisation", "nodal", why))
@@ -340,6 +393,13 @@ def _turns(scene: Scene) -> int:
     return max(int(duration * scene.excitation.frequency_hz + 0.5), 1)
 
 
+def recorded_per_turn(steps_per_turn: int, turns: int) -> int:
+    """Samples a turn that are really recorded: a divisor of the steps near ``samples_per_turn``, or all steps."""
+    wanted = samples_per_turn(turns)
+    fitting = (s for s in range(wanted, min(2 * wanted, steps_per_turn) + 1) if steps_per_turn % s == 0)
+    return next(fitting, steps_per_turn)
+
+
 def samples_per_turn(turns: int) -> int:
     """Samples a turn that are recorded: 360, fewer in runs of more than 200 turns, never below 24."""
     return max(24, min(STEPS_PER_TURN, 72_000 // max(turns, 1)))
@@ -368,4 +428,6 @@ def _predicted_steps_per_turn(scene: Scene) -> int:
     if scene.integrator.method.implicit:
         return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
+    if scene.bodies.kind == "elastic":
+        return max(STEPS_PER_TURN, steps_per_turn(scene, period, 0.8) or 0)
     return max(STEPS_PER_TURN, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)

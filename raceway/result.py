@@ -73,7 +73,7 @@ class Result:
         found = self.identification
         if found is None:
             return None
-        z, wrong = found.dynamic_stiffness, self.error["total"]
+        z, wrong = found.dynamic_stiffness, self._across()
         return {
             "definition": found.definition,
             "speed_rpm": found.frequency_hz * 60.0,
@@ -107,6 +107,16 @@ class Result:
                 for speed, one in found.series
             ],
         }
+
+    def _across(self) -> float | None:
+        """Error of Z across its own direction, over |Z|: a mesh changes the size of a stiffness and turns no phase."""
+        total, mesh = self.error["total"], self.error.get("mesh") or 0.0
+        return None if total is None else max(total - mesh, 0.0) + mesh * self._turned()
+
+    def _turned(self) -> float:
+        """The smaller part of Z over |Z|."""
+        z = self.identification.dynamic_stiffness if self.identification is not None else 1.0 + 0.0j
+        return abs(z.imag) / abs(z) if abs(z) else 0.0
 
     def save(self, folder: Path) -> Path:
         """Write result.json into a folder, whole or not at all.

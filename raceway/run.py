@@ -15,6 +15,7 @@ from raceway.core.friction import friction_energy
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.lines import Line, lines
+from raceway.core.stepping.energy import drift, friction_lost, largest_share
 from raceway.error_estimate import error_table, no_error
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.model import Model, build_model
@@ -65,7 +66,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         if on_progress is not None:
             on_progress(what, done, total)
 
-    equilibrium = settle(model)
+    equilibrium = settle(model, progress)
     simulation: Simulation | None = None
     identification: Identification | None = None
     motions: list[tuple[Model, Simulation]] = []
@@ -157,8 +158,9 @@ def _cost(
 
 def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
     """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
-    drifts = [drift for drift in (_drift(*motion) for motion in motions) if drift is not None]
-    rubbing = [friction_energy(m.system, s.whole).lost[-1] for m, s in motions if m.scene.contact.friction > 0.0]
+    drifts = [one for one in (_drift(*motion) for motion in motions) if one is not None]
+    rubbing = [_friction(m, s) for m, s in motions if m.scene.contact.friction > 0.0]
+    told = [s.whole.energies for _, s in motions if s.whole.energies]
     limits = [s.critical_time_step for _, s in motions if s.critical_time_step is not None]
     fates = [s.whole.counts["floquet"] for _, s in motions if s.whole.counts.get("floquet") is not None]
     return {
@@ -166,14 +168,24 @@ def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
         "friction_energy_j": float(sum(rubbing)) if rubbing else None,
         "critical_time_step_s": min(limits, default=None),
         "energy_drift": max(drifts, default=None),
-        "hourglass_energy_ratio": None,
+        "hourglass_energy_ratio": max((largest_share(one, "hourglass", "elastic") for one in told), default=None),
+        "energies_j": {name: float(values[-1]) for name, values in told[-1].items()} if told else None,
         "max_penetration_m": max((s.whole.counts["max_penetration_m"] for _, s in motions), default=None),
         "status": "completed",
     }
 
 
+def _friction(model: Model, simulation: Simulation) -> float:
+    """Energy that friction took from a motion [J]."""
+    if simulation.whole.energies:
+        return friction_lost(simulation.whole.energies)
+    return float(friction_energy(model.system, simulation.whole).lost[-1])
+
+
 def _drift(model: Model, simulation: Simulation) -> float | None:
     """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
+    if simulation.whole.energies:
+        return drift(simulation.whole.energies)
     if model.scene.contact.discretisation == "nodal":
         return None  # the energy that points store is not told by the gap of the pair
     law = model.scene.contact.law

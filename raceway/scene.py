@@ -195,6 +195,14 @@ class Load:
 @attrs.frozen
 class Bodies:
     kind: str = option("rigid", help="what deforms", rule=one_of("rigid", "condensed", "elastic"))
+    formulation: str = option(
+        "incompatible",
+        help="hexahedra of elastic bodies: 'one_point' with hourglass control, 'full' (2 x 2 x 2), with 'incompatible' modes",
+        rule=one_of("one_point", "full", "incompatible"),
+    )
+    hourglass: float = option(
+        0.05, help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu", rule=positive()
+    )
 
 
 @attrs.frozen

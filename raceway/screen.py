@@ -61,7 +61,8 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     ----------
     result : content of result.json;  files : what was written
     """
-    rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_cost(result["cost"])]
+    rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_bodies(result.get("model"))]
+    rows += _cost(result["cost"])
     rows += _stability(result["stability"])
     parts: list[RenderableType] = [
         Text(result["title"], style="bold"),
@@ -190,6 +191,49 @@ def _error(error: Mapping[str, Any]) -> list[Row]:
     return rows
 
 
+def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
+    """What elastic bodies change, how good their mesh is, and what their inertia would; each where it is told."""
+    if not model:
+        return []
+    rows = [("Elastic bodies", "", str(model.get("bodies", "")))]
+    elasticity = model.get("elasticity")
+    if elasticity is not None:
+        told = ", ".join("-" if elasticity[i][i] is None else f"{100 * elasticity[i][i]:+.1f} %" for i in (0, 1))
+        rows.append(("kxx, kyy changed by", told, "against rigid rings and balls under the same loads"))
+    taken = model.get("compliance")
+    if taken is not None:
+        values = ", ".join(f"{1e9 * taken[name]:.2f}" for name in ("inner_m_per_n", "outer_m_per_n"))
+        angle = f"inner, outer contact at {taken['contact_angle_deg']:.1f} deg, beyond Hertz"
+        rows.append(("structural compliance", f"{values} nm/N", angle))
+    mesh = model.get("mesh") or {}
+    along, change = mesh.get("nodes_per_semi_axis"), mesh.get("change_from_coarser")
+    if along is not None:
+        how = "not estimated" if change is None else f"{mesh['how']}: {change:.1e}"
+        rows.append(("nodes per semi-axis", number(along, digits=3), how))
+    inertia = model.get("inertia")
+    if inertia is not None:
+        rows += _inertia(inertia)
+    return rows
+
+
+def _inertia(inertia: Mapping[str, Any]) -> list[Row]:
+    """The slowest motion that is taken to follow at once."""
+    names = {
+        "inner_supported": "inner ring",
+        "outer_supported": "outer ring",
+        "ball_along_grooves": "ball along its grooves",
+    }
+    known = {word: name for name, word in names.items() if inertia.get(f"{name}_hz") is not None}
+    if not known:
+        return []
+    slowest = min(known, key=lambda word: inertia[f"{known[word]}_hz"])
+    error = inertia[f"{known[slowest]}_error"]
+    costs = "" if error is None else f" follows at once, which is off by (w / w1)^2 = {error:.1e}"
+    rings = min(inertia[f"{known[word]}_hz"] for word in known if word != "ball along its grooves")
+    remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
+    return [("slowest own motion", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
+
+
 def _cost(cost: Mapping[str, Any]) -> list[Row]:
     memory = cost["peak_memory_bytes"] / 2**20
     kept = (
@@ -228,7 +272,13 @@ def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
     ]
     if plan["mesh"] is not None:
         rows += _mesh_rows(plan["mesh"])
-    parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]), sections(rows)]
+    unused = [
+        {"part": one["module"].removeprefix("raceway.core."), "why": one["why"]}
+        for one in plan["modules"]
+        if not one["needed"]
+    ]
+    parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"])]
+    parts += [_reasons("Modules not imported, hence not compiled", unused), sections(rows)]
     return Group(Text(title, style="bold"), *parts)
 
 
@@ -373,3 +423,41 @@ def precision_screen(
     parts += [Text(text) for text in words]
     parts += written(files)
     return Group(*parts)
+
+
+def stability_screen(content: Mapping[str, Any], every: bool, files: Sequence[str]) -> RenderableType:
+    """A line for each case, or for each row; what is not as expected in full."""
+    rows = content["rows"]
+    bad = [row for row in rows if row["verdict"] == "failed"]
+    table = Table(header_style="bold", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    if every:
+        for name in ("case", "setting", "quantity", "expected", "predicted", "observed", "verdict"):
+            table.add_column(name, overflow="fold")
+        for row in rows:
+            table.add_row(*(escape(cell) for cell in _stability_cells(row)))
+    else:
+        for name in ("case", "rows", "as expected"):
+            table.add_column(name, justify="left" if name == "case" else "right")
+        for case in dict.fromkeys(row["case"] for row in rows):
+            own = [row for row in rows if row["case"] == case]
+            good = sum(row["verdict"] == "as expected" for row in own)
+            table.add_row(escape(case), str(len(own)), str(good) if good == len(own) else f"[red]{good}[/red]")
+    parts: list[RenderableType] = [Text(content["title"], style="bold"), table]
+    for row in bad:
+        cells = _stability_cells(row)
+        parts.append(
+            Text(f"failed: {', '.join(cell for cell in cells[:6] if cell)}. {row['note'] or row['reason']}", style="red")
+        )
+    kept = f", {content['reused']} kept from before" if content["reused"] else ""
+    words = (
+        f"{len(rows) - len(bad)} of {len(rows)} rows as expected, {content['cases']} cases{kept}, {content['seconds']:.0f} s"
+    )
+    parts.append(Text(words))
+    parts += written(files)
+    return Group(*parts)
+
+
+def _stability_cells(row: Mapping[str, Any]) -> list[str]:
+    setting = ", ".join(f"{key} {value}" for key, value in row["setting"].items())
+    numbers = ("" if row[name] is None else f"{row[name]:.6g}" for name in ("predicted", "observed"))
+    return [row["case"], setting, row["quantity"], row["expected"], *numbers, row["verdict"]]

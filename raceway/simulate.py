@@ -12,7 +12,7 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.model import Model, build_model
-from raceway.plan import STEPS_PER_TURN, make_plan, samples_per_turn
+from raceway.plan import STEPS_PER_TURN, make_plan, recorded_per_turn
 from raceway.statics import Equilibrium, settle
 
 OnProgress = Callable[[str, int, int], None]
@@ -146,11 +146,7 @@ def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
 
 def _stride(steps_per_turn: int, turns: int) -> int:
     """Every how many steps are recorded: a divisor that leaves the plan's samples a turn, or all when there is none."""
-    wanted = samples_per_turn(turns)
-    for samples in range(wanted, min(2 * wanted, steps_per_turn) + 1):
-        if steps_per_turn % samples == 0:
-            return steps_per_turn // samples
-    return 1
+    return steps_per_turn // recorded_per_turn(steps_per_turn, turns)
 
 
 def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[tuple[Model, Simulation]]:

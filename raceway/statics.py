@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import attrs
 import numpy as np
 
@@ -36,8 +38,12 @@ class Equilibrium:
     warnings: tuple[str, ...]
 
 
-def settle(model: Model) -> Equilibrium:
+def settle(model: Model, on_progress: Callable[[str, int, int], None] | None = None) -> Equilibrium:
     """The static equilibrium of a model.
+
+    Parameters
+    ----------
+    on_progress : called as ``on_progress(what, done, total)`` while elastic bodies settle; ``total`` is 0: nobody knows
 
     Raises
     ------
@@ -46,12 +52,21 @@ def settle(model: Model) -> Equilibrium:
     """
     system = model.system
     _refuse_no_load(model)
+    if on_progress is not None:
+        system.follow(_telling(on_progress))
     q, ball, iterations = system.settle(model.guess)
-    now = system.without(CAGE).evaluate(q, ball=ball)
-    _refuse_free_motion(model, now.stiffness, q)
+    still = system.without(CAGE)
+    now = still.evaluate(q, ball=ball)
+    stiffness = still.stiffness_at(q, now)
+    _refuse_free_motion(model, stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
     warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(q, now.stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+
+
+def _telling(on_progress: Callable[[str, int, int], None]) -> Callable[[float], None]:
+    count = iter(range(1, 1_000_000))
+    return lambda residual: on_progress(f"equilibrium, residual {residual:.1e}", next(count), 0)
 
 
 def contact_angles(
@@ -60,7 +75,7 @@ def contact_angles(
     """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
     z = model.system.ball_count
     axial, radial = model.system.centre_vectors(q, t)[0].T
-    if model.plan.balls == "weightless":
+    if model.plan.balls == "weightless" and model.scene.bodies.kind != "elastic":
         inner = outer = np.arctan2(axial, radial)
     else:
         inner = np.arctan2(axial - ball[:, 0], radial - ball[:, 1])

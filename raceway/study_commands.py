@@ -1,4 +1,4 @@
-"""Commands of the studies: ``raceway precision``.  Part of ``raceway.cli``."""
+"""Commands of the studies: ``raceway precision``, ``raceway stability``.  Part of ``raceway.cli``."""
 
 from __future__ import annotations
 
@@ -73,6 +73,67 @@ def precision(
         failed = verdict(content, found.converged, bool(reference))
     show(content, as_json, failed, lambda s: s.precision_screen(content["title"], found.table(), content["words"], files))
     return 0
+
+
+@click.command(short_help="Stiff and extreme cases: what must hold, holds.")
+@click.argument("scene", type=click.Path(path_type=Path, readable=False), required=False)
+@click.option("--only", metavar="WORDS", help="Cases whose name holds these words, instead of all.")
+@click.option(
+    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
+)
+@click.option("--all", "every", is_flag=True, help="Show every row, not only a line a case.")
+@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+@click.option(
+    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/stability]."
+)
+@plugin_files
+@common
+def stability(
+    scene: Path | None,
+    only: str | None,
+    processes: int,
+    every: bool,
+    changes: tuple[str, ...],
+    out: Path | None,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
+
+    With SCENE, that scene is put through the cases that suit any scene. Writes stability.json and stability.md. Finished
+    cases are kept in DIR/stability-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway stability --only chatter --all
+    """
+    registry = registry_with(plugins)
+    tables = None
+    if scene is not None:
+        from raceway.scene_file import scene_from_dict
+
+        tables, mistakes = changed_tables(scene, changes, registry)
+        if mistakes:
+            raise SceneError(mistakes)
+        scene_from_dict(tables, registry)
+    elif changes:
+        raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
+    name = "stability" if tables is None else f"{slug(str(tables['title']))}-stability"
+    folder = writable(out or _RESULTS / name)
+    tell_faults(registry)
+    kept = folder / "stability-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.studies.stability import stability as study
+
+        try:
+            found = study(tables, only, processes, kept, registry, plugins, progress)
+        except KeyboardInterrupt:
+            warn(f"finished cases are kept in {kept}; the same command goes on from there", label="")
+            raise
+    content, files = found.as_dict(), list[str]()
+    failed = attempt(lambda: found.write(folder), files) or found.fault
+    show(content, as_json, failed, lambda s: s.stability_screen(content, every, files))
+    return 1 if found.failed else 0
 
 
 def verdict(content: dict, converged: bool, given: bool) -> ConvergenceError | SceneError | None:

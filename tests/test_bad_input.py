@@ -35,7 +35,7 @@ SCENES = {
     "preset with a typo": ("bearing.preset=B7206G", "bearing.preset", "no such preset (did you mean"),
     "preset in lower case": ("bearing.preset=b7206c", "bearing.preset", "did you mean 'B7206C'?"),
     "force of zero": ("excitation.unbalance=0", "excitation", "leave the table out"),
-    "nodal on rigid bodies": ("contact.discretisation=nodal", "contact.discretisation", "supports 'resultant'"),
+    "nodal on rigid bodies": ("contact.discretisation=nodal", "contact.discretisation", "use 'resultant'"),
     "--set without =": ("load.axial", "--set load.axial", "for instance load.axial=400"),
     "--set through a value": ("title.part=3", "--set title.part", "is not a table"),
 }

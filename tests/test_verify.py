@@ -123,7 +123,7 @@ class Direct(Newmark):
     """An integrator that finds a steady orbit and so cannot compute an impact."""
 
     name: ClassVar[str] = "direct"
-    transient: ClassVar[bool] = False
+    steady: ClassVar[bool] = True
 
 
 class ThirdParty:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import diags_array
+from scipy.sparse.linalg import eigsh
 
 from benchmarks.evidence import Row, below
 from benchmarks.kernel import STEEL, measure
+from raceway import load_scene
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
+from raceway.plugins.meshers.structured import Structured
 from tests.hexahedron.blocks import distorted
 from tests.hexahedron.manufactured import errors
 
@@ -19,7 +23,7 @@ SLOPES = np.array([[1.0, 0.3, -0.2], [0.1, -0.7, 0.5], [0.4, 0.2, 0.6]])
 
 
 def rows() -> list[Row]:
-    return [row for kind in KINDS for row in _formulation(kind)] + _speed()
+    return [row for kind in KINDS for row in _formulation(kind)] + _step() + _speed()
 
 
 def _formulation(kind: str) -> list[Row]:
@@ -49,6 +53,27 @@ def _formulation(kind: str) -> list[Row]:
         Row(f"rate of the error in L2, {kind}", float(rates[0]), "2 within 0.1", abs(rates[0] - 2.0) <= 0.1, COMMAND),
         Row(f"rate of the error in H1, {kind}", float(rates[1]), "1 within 0.1", abs(rates[1] - 1.0) <= 0.1, COMMAND),
     ]
+
+
+def _step() -> list[Row]:
+    """The step from single elements over 2 / w of the assembled mesh, w its largest angular frequency."""
+    bearing = load_scene("examples/minimal.toml").bearing
+    meshes = Structured(element_size=1.2e-3, nodes_per_semi_axis=2, growth=1.6).mesh(bearing)
+    cases = {
+        "equal cubes": distorted((8, 8, 8), 0.0)[:2],
+        "distorted cubes": distorted((8, 8, 8))[:2],
+        "graded inner ring": (meshes["inner_ring"].points, meshes["inner_ring"].cells),
+        "graded ball": (meshes["ball_00"].points, meshes["ball_00"].cells),
+    }
+    out = []
+    for name, (points, cells) in cases.items():
+        op = HexOperator(points, cells, *STEEL)
+        root = diags_array(1.0 / np.sqrt(np.repeat(op.lumped_mass(), 3)))
+        start = np.random.default_rng(0).standard_normal(points.size)
+        square = eigsh(root @ op.stiffness() @ root, 1, which="LA", v0=start, tol=1e-6, return_eigenvectors=False)[0]
+        ratio = float(op.stable_step() * np.sqrt(square) / 2.0)
+        out.append(below(f"stable step over the mesh's own, {name} ({len(cells)})", ratio, 1.0 + 1e-6, COMMAND))
+    return out
 
 
 def _speed() -> list[Row]:

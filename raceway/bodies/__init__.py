@@ -5,6 +5,7 @@
 basis       what all kinds share: geometry, Hertz contacts, parameters of the law, loads, mass, excitation
 rigid       only the contacts deform
 condensed   elastic rings and balls, one force for each contact
+inertia     what it costs that condensed bodies follow at once
 patches     the same with pressures at surface points (contact.discretisation = "nodal")
 patch_report  what a result tells of those
 """

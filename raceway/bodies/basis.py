@@ -139,6 +139,12 @@ def excitation(scene: Scene) -> dict[str, Any]:
     return {"force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"), "force_params": parameters}
 
 
+def seat_of(scene: Scene, inner: bool) -> str | float:
+    """What a ring sits on, as ``raceway.core.revolution.body.Revolution`` takes it: "clamped", or a bed [N/m3]."""
+    seat = scene.supports.inner_seat if inner else scene.supports.outer_seat
+    return "clamped" if isinstance(seat, str) else float(seat)
+
+
 def first_guess(scene: Scene, basis: Basis) -> np.ndarray:
     """(5,) displacement to look for the equilibrium from [m, rad]."""
     geometry, x = basis.geometry, basis.axial

@@ -8,10 +8,10 @@ import attrs
 import numpy as np
 
 from raceway.bodies import rigid
-from raceway.bodies.basis import Basis, Built
+from raceway.bodies.basis import Basis, Built, seat_of
+from raceway.bodies.inertia import inertia_table
 from raceway.core.bodies import ring
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
-from raceway.core.condensed.modes import first_frequency
 from raceway.core.condensed.sphere import ball_compliance
 from raceway.core.condensed.structural import SURFACE, reach, ring_compliance
 from raceway.core.meshing.ring_shape import ring_shape
@@ -38,6 +38,7 @@ def build(scene: Scene, plan: Plan) -> Built:
     stiff = rigid.build(scene, plan)
     bodies = elastic_bodies(scene, stiff.basis)
     _refuse_stiff_law(scene, stiff, bodies)
+    _refuse_dashpots(scene, plan, bodies)
     angles = _angles(scene, stiff) if plan.coupled else None
     system = elastic_system(stiff.system, bodies, angles)
     system.table[:, ring.SHIFT] = 0.0
@@ -70,7 +71,7 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
                 half,
                 b.rings.young,
                 b.rings.poisson,
-                _seat(scene, inner),
+                seat_of(scene, inner),
                 coarser * bulk,
                 coarser * min(fine, bulk),
                 coarser * min(2.0 * fine, bulk),
@@ -128,7 +129,7 @@ class Condensed:
                 "change_from_coarser": mesh_error,
                 "how": how,
             },
-            "inertia": self._inertia(model.scene),
+            "inertia": inertia_table(model, equilibrium),
         }
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
@@ -150,25 +151,6 @@ class Condensed:
         """Elements of the inner groove's surface along the semi-major axis of the most loaded contact."""
         half = float(model.inner.semi_axes(np.max(equilibrium.contact_force[: model.system.ball_count]))[0])
         return half / self.compliances.inner.surface
-
-    @staticmethod
-    def _inertia(scene: Scene) -> dict[str, Any]:
-        """First elastic frequencies of the rings [Hz], and (w / w_1)^2: what leaving out their inertia costs."""
-        b = scene.bearing
-        out: dict[str, Any] = {}
-        frequency = None if scene.excitation is None else scene.excitation.frequency_hz
-        for inner, word in ((True, "inner"), (False, "outer")):
-            shape = ring_shape(b, inner)
-            for name, seat in (("supported", _seat(scene, inner)), ("free", "free")):
-                first = first_frequency(shape, b.ball_diameter, b.rings.young, b.rings.poisson, b.rings.density, seat)
-                out[f"{word}_{name}_hz"] = first
-                out[f"{word}_{name}_error"] = None if frequency is None else (frequency / first) ** 2
-        return out
-
-
-def _seat(scene: Scene, inner: bool) -> str | float:
-    seat = scene.supports.inner_seat if inner else scene.supports.outer_seat
-    return "clamped" if isinstance(seat, str) else float(seat)
 
 
 def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | None]]:
@@ -216,3 +198,19 @@ def _refuse_stiff_law(scene: Scene, stiff: Built, bodies: ElasticBodies) -> None
                 f"its contact of {1e-6 * -d_gap.min():.3g} N/µm is stiffer than elastic bodies allow: they take "
                 f"{-1e9 * taken:.3g} nm/N off it, as they give less than half-spaces do. Use 'hertz', or a softer law",
             )
+
+
+def _refuse_dashpots(scene: Scene, plan: Plan, bodies: ElasticBodies) -> None:
+    """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
+    taken = -min(bodies.at(scene.bearing.contact_angle))
+    if plan.time_step_s is None or getattr(scene.integrator.method, "steady", False) or taken <= 0.0:
+        return
+    # A rate is 1.5 / dt of a displacement; the contact's own stiffness needs the other half.
+    bound = 0.5 * plan.time_step_s / (1.5 * taken)
+    if scene.contact.damping > bound:
+        raise SceneError.at(
+            "contact.damping",
+            scene.contact.damping,
+            f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take "
+            f"{1e9 * taken:.3g} nm/N off them. Take at most {bound:.3g} N s/m, or fewer steps a turn",
+        )

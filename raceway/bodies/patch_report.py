@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.bodies.inertia import inertia_table
 from raceway.core.bodies.ring import CAGE
 from raceway.core.condensed.contact import Pressed
 from raceway.core.condensed.field import PressureField, pressure_field
@@ -118,12 +119,13 @@ class PatchBodies:
                 "change_from_coarser": error,
                 "how": how,
             },
+            "inertia": inertia_table(model, equilibrium),
             "penetration_share": float(share.max(initial=0.0)),
-            "tangent": "of the points in contact: it ripples by some percent as the ellipse slides over the points",
+            "tangent": "mean over all places of the points under the ellipses, which takes away its ripple",
         }
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
-        """Relative change of the displacement when there are half as many points per semi-axis."""
+        """Relative error of the displacement by too few points: of order 2, a third of what half as many points change."""
         if self.coarser is None:
             return None, "no fewer points to compare with"
         if id(equilibrium) not in self._errors:
@@ -139,7 +141,7 @@ class PatchBodies:
             return None, f"no equilibrium with half as many points: {why}"
         weight = np.array([1.0, 1.0, 1.0, model.system.arm, model.system.arm])
         change = np.abs((q - equilibrium.displacement) * weight).max() / np.abs(equilibrium.displacement * weight).max()
-        return float(change), "change of the displacement from half as many points per semi-axis"
+        return float(change) / 3.0, "a third of the displacement's change from half as many points per semi-axis (order 2)"
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Contacts that the groove's edge cuts off, with the load at which that begins; points that are too few."""
@@ -149,9 +151,11 @@ class PatchBodies:
             cut = [one for one in contacts[race * z : (race + 1) * z] if one.truncated]
             if not cut:
                 continue
-            edge, sense = self.pool.patches[race].race.edge, self.pool.patches[race].race.sense
+            sense = self.pool.patches[race].race.sense
             worst = max(cut, key=lambda one: float(np.hypot(*one.force)))
-            angle = abs(float(np.arctan2(-sense * worst.force[0], -sense * worst.force[1])))
+            angle = float(np.arctan2(-sense * worst.force[0], -sense * worst.force[1]))
+            low, high = self.pool.patches[race].race.edges
+            edge, angle = (high, angle) if high - angle < angle - low else (-low, -angle)
             # a grows with the cube root of the load; the edge is reached where a = R (edge - angle).
             begins = (max(radius * (edge - angle), 0.0) / float(ellipse.semi_axes(1.0)[0])) ** 3
             found.append(

@@ -139,8 +139,9 @@ def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Pat
 
     def make(reach: Reach) -> tuple[Patch, Patch]:
         grid = spacing.holding(reach.widest)
+        slide = 0.5 * grid.along / min(ring_shape(b, inner).groove for inner in (True, False))  # for mean stiffnesses
         bodies = [
-            RingBody(ring_shape(b, inner), rings, seat, window)
+            RingBody(ring_shape(b, inner), rings, seat, (window[0] - slide, window[1] + slide))
             for inner, seat, window in zip((True, False), seats, (reach.inner, reach.outer), strict=True)
         ]
         rows = max(int((body.window[1] - body.window[0]) * body.shape.groove / grid.along) + 2 for body in bodies)

@@ -108,7 +108,6 @@ def _step(
     from raceway.core.stepping import central_difference as explicit_loop
     from raceway.core.stepping import implicit as implicit_loop
     from raceway.core.stepping import quasi_static as static_loop
-    from raceway.core.stepping.bearing import SteppedBearing
     from raceway.core.stepping.recorder import Recorder
 
     known = [
@@ -118,7 +117,7 @@ def _step(
     ]
     for compiled, stepped in known:
         if loop is compiled:
-            stepper: SteppedSystem = SteppedBearing(system) if isinstance(system, System) else system
+            stepper: SteppedSystem = system.stepped() if isinstance(system, System) else system
             recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
             stepped(stepper, recorder, coefficients)
             return recorder.record()

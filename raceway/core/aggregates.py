@@ -15,8 +15,9 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-#: Neighbours up to this many times the distance of the nearest one are strong: edges and diagonals of faces of a cube.
-REACH = 1.5
+#: Neighbours up to this many times the distance of the nearest one are strong: all corners of a cube (1.73) and somewhat more,
+#: for every direction that is left out makes the next level larger.
+REACH = 2.2
 #: Coarse nodes, of six unknowns each, at which a factorisation is cheap.
 COARSEST = 80
 

@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from raceway.core.aggregates import aggregated
-from raceway.core.multigrid import VCycle
+from raceway.core.multigrid import WCycle
 from raceway.core.rigid import MOTIONS, free_motions, rigid_motions
 from raceway.errors import ConvergenceError, RacewayError
 
@@ -94,7 +94,7 @@ def solve_static(
 
 
 class Preconditioner:
-    """One V-cycle of smoothed aggregation on the symmetrically scaled matrix, coarsened along short edges first.
+    """One W-cycle of smoothed aggregation on the symmetrically scaled matrix, coarsened along short edges first.
 
     Scaling with the root of the diagonal makes Chebyshev smoothing, which knows one spectral bound for all rows, work on
     graded meshes whose rows differ by orders of magnitude.
@@ -125,7 +125,6 @@ class Preconditioner:
         candidates = np.divide(motions, scale[:, None], out=np.zeros_like(motions), where=loose[:, None])
         self.scale = scale[loose]
         self._size = len(loose)
-        smoother = ("chebyshev", {"degree": 3, "iterations": 1})
         blocks = scaled.tobsr((3, 3))
         graph = sp.csr_matrix((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr), (len(loose) // 3,) * 2)
         nodes = aggregated(graph, points[kept[::3]])
@@ -139,14 +138,14 @@ class Preconditioner:
                 aggregate=[("predefined", {"AggOp": found}) for found in nodes.aggregates],
                 # Weak couplings take no part in the smoothing of the coarse space either, or it would fill up.
                 smooth=("jacobi", {"omega": 4.0 / 3.0, "filter_entries": True}),
-                presmoother=smoother,
-                postsmoother=smoother,
+                presmoother=None,
+                postsmoother=None,
                 improve_candidates=None,
                 coarse_solver=None,
             )
         finally:
             np.random.set_state(state)
-        self._cycle = VCycle(self.levels.levels)
+        self._cycle = WCycle(self.levels.levels)
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """Approximate solution (m,) or (m, k) for a residual, both on the m free degrees of freedom."""

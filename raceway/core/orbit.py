@@ -171,8 +171,8 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
         size = samples * n
         try:
             delta = -np.linalg.solve(matrix.reshape(size, size), r.reshape(size)).reshape(samples, n)
-        except np.linalg.LinAlgError as why:
-            raise ConvergenceError(f"no periodic orbit found: singular after {iterations} iterations", {"q": q}) from why
+        except np.linalg.LinAlgError:  # nothing is in contact, or a resonance is met
+            raise ConvergenceError("no periodic orbit found: its equations are singular", {"q": q}) from None
         step = np.zeros_like(q)
         step[:, chosen] = damping_factor * delta
         q = q + step

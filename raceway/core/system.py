@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import attrs
@@ -101,6 +102,20 @@ class System:
     def companion(self) -> System:
         """A compiled system of the same ring: this one; another, near it, where this one is stepped from Python."""
         return self
+
+    @property
+    def starts(self) -> Any:
+        """The functions of ``raceway.core.start`` for a system that has more unknowns than these; None where they are all."""
+        return None
+
+    def follow(self, on_residual: Callable[[float], None] | None) -> None:
+        """What to call with the residual of every iteration of an equilibrium that takes long."""
+
+    def stepped(self) -> Any:
+        """The ``SteppedSystem`` that loops in Python step."""
+        from raceway.core.stepping.bearing import SteppedBearing
+
+        return SteppedBearing(self)
 
     @property
     def ball_columns(self) -> int:
@@ -225,6 +240,10 @@ class System:
         guess = whole.evaluate(q_now, ball=guess).ball
         guess[:, 2:4] = self.rolled_in(q_now, guess)
         return q_now, guess, total
+
+    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""
+        return now.stiffness
 
     def _by_parts(
         self, solver: Any, q: np.ndarray, ball: np.ndarray | None, tolerance: float, load: np.ndarray | None, parts: Any

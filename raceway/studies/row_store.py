@@ -76,15 +76,21 @@ def row_key(scene: Scene, registry: Registry, extra: Any = None) -> str:
     """Hash of all that decides the numbers of one scene's run."""
     digest = hashlib.sha256()
     digest.update(json.dumps([scene.as_dict(), extra], sort_keys=True, default=str).encode())
-    digest.update(_own_sources().encode())
+    digest.update(program_key(registry).encode())
     for name in _files(scene):
         path = Path(name)
         digest.update(path.read_bytes() if path.is_file() else b"missing")
+    return digest.hexdigest()[:24]
+
+
+def program_key(registry: Registry) -> str:
+    """Hash of the program's own sources and of those of third parties' plug-ins."""
+    digest = hashlib.sha256(_own_sources().encode())
     for entry in registry.all():
         if entry.distribution != "raceway":
             digest.update(f"{entry.kind}:{entry.name}:{entry.version}".encode())
             digest.update(_sources_of(entry.plugin).encode())
-    return digest.hexdigest()[:24]
+    return digest.hexdigest()
 
 
 @cache

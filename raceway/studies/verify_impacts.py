@@ -71,9 +71,9 @@ def impact_of(inputs: dict[str, Any]) -> Impact:
 
 
 def transient_integrators(registry: Registry) -> list[Entry]:
-    """Integrators that march through time with inertia.  One that does not march says ``transient = False``."""
+    """Integrators that march through time with inertia.  One that finds a steady orbit instead says ``steady = True``."""
     found = [entry for entry in registry.all() if entry.kind == "integrator"]
-    return [e for e in found if e.plugin.inertial and getattr(e.plugin, "transient", True)]  # type: ignore[attr-defined]
+    return [e for e in found if e.plugin.inertial and not getattr(e.plugin, "steady", False)]  # type: ignore[attr-defined]
 
 
 def impact_of_spheres(case: Case, registry: Registry) -> Iterator[Number]:

@@ -119,19 +119,21 @@ def test_every_loop_runs_and_keeps_its_energy(built, kind, bed):
 
 
 def test_structural_approach_has_a_rate(built):
-    """With strong dashpots the elastic ring takes a part of the speed: order 2 in the step needs its rate, too."""
+    """With strong dashpots the elastic ring takes a part of the speed: only with its rate errors fall by 4 a halved step.
+
+    3 allows for the third order that is left at these steps.
+    """
     case = model(built, tilt="locked", contact={"damping": 2000.0})
     soft = elastic(case.system, outer=5e-9)
     period = case.excitation.period_s
     q, _, _ = soft.settle(case.guess)
     orbit = steady_orbit(soft, period, q)
-    method, error = case.scene.integrator.method, []
-    for steps in (180, 360):
+    method, ends = case.scene.integrator.method, []
+    for steps in (180, 360, 720):
         schedule = Schedule(period / steps, steps, 1)
-        record = method.advance(soft, from_orbit(soft, orbit, schedule.dt), schedule, None)
-        error.append(np.abs(record.displacement[-1] - orbit.displacement[0])[1:3].max())
-    assert error[1] < 0.4 * error[0]
-    assert error[1] < 1e-3 * np.abs(orbit.displacement[:, 1:3]).max()
+        ends.append(method.advance(soft, from_orbit(soft, orbit, schedule.dt), schedule, None).displacement[-1, 1:3])
+    assert np.abs(ends[0] - ends[1]).max() > 3.0 * np.abs(ends[1] - ends[2]).max()
+    assert np.abs(ends[2] - orbit.displacement[0, 1:3]).max() < 1e-4 * np.abs(orbit.displacement[:, 1:3]).max()
 
 
 def test_a_contact_that_bodies_outdo_is_a_failure_and_no_number(built):

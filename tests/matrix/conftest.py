@@ -17,7 +17,6 @@ def pytest_terminal_summary(terminalreporter):
         if key == KEY and getattr(report, "when", "") == "call"
     )
     if counted:
-        parts = ", ".join(
-            f"{counted[word]} {word}" for word in ("run", "refused with a reason", "need options") if counted[word]
-        )
+        words = ("run", "accepted by the plan", "refused with a reason", "need options")
+        parts = ", ".join(f"{counted[word]} {word}" for word in words if counted[word])
         terminalreporter.write_line(f"matrix: {sum(counted.values())} combinations: {parts}")

@@ -198,6 +198,14 @@ def test_step_files_that_are_none(solids, tmp_path):
             Gmsh(ball=str(tmp_path / name)).mesh(BEARING)
 
 
+def test_damaged_step_files_are_told_in_one_message(tmp_path, capfd):
+    (tmp_path / "cut.step").write_text("ISO-10303-21; nothing more")
+    with pytest.raises(MeshError, match=r"cut.step' cannot be meshed: Could not read"):
+        Gmsh(ball=str(tmp_path / "cut.step")).mesh(BEARING)
+    said = capfd.readouterr()
+    assert said.out == "" and said.err == ""  # the reader's own complaints would spoil --json
+
+
 def test_without_gmsh_the_extra_is_named(solids, monkeypatch):
     monkeypatch.setitem(sys.modules, "gmsh", None)
     with pytest.raises(MeshError, match=r"pip install 'raceway\[gmsh\]'"):

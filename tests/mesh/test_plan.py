@@ -66,7 +66,7 @@ def test_rigid_bodies_have_no_mesh():
 
 
 def test_the_plan_shows_the_mesh(monkeypatch):
-    monkeypatch.setattr("raceway.plan.BODIES", ("rigid", "condensed", "elastic"))
+    monkeypatch.setattr("raceway.elastic_plan.machine_bytes", lambda: float("inf"))
     found = json.loads(invoke("plan", EXAMPLES / "b7206_article_mesh.toml", "--json").stdout)
     assert found["mesh"]["cells"] == sum(body["cells"] for body in found["mesh"]["bodies"]) > 1_000_000
     shown = invoke("plan", EXAMPLES / "b7206_article_mesh.toml").stdout
@@ -109,6 +109,15 @@ def test_a_body_of_another_bearing_is_warned_of(millimetres):
     mesh = {"kind": "file", "outer_ring": str(millimetres / "outer_ring.inp"), "scale": 1.1e-3}
     with pytest.warns(UserWarning, match=r"'outer_ring' measures 0.0682 m where `outer_diameter` of the bearing is 0.062 m"):
         mesh_scene(scene(**mesh))
+
+
+def test_balls_of_another_size_are_warned_of_once(tmp_path):
+    ball = Structured(element_size=2.4e-3, nodes_per_semi_axis=1, growth=2.0).mesh(BEARING)["ball_00"]
+    centred = ball.points - 0.5 * (ball.points.max(axis=0) + ball.points.min(axis=0))
+    Abaqus().write(tmp_path / "ball.inp", attrs.evolve(ball, points=0.8 * centred))
+    with pytest.warns(UserWarning, match="`ball_diameter` of the bearing") as found:
+        mesh_scene(scene(kind="file", ball=str(tmp_path / "ball.inp")))
+    assert len(found) == 1
 
 
 GEO = {

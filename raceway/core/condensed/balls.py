@@ -79,16 +79,29 @@ class Balls:
         pressed = [contact.press(d, r) for contact, d, r in zip(self.contacts, seen, rate, strict=True)]
         self.evaluations += 1
         answer = np.array([one.force for one in pressed])
-        stiff = np.zeros_like(self.coupling)
-        for k, one in enumerate(pressed):
-            stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one.stiffness
         rest = (answer - force).reshape(-1)
-        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, rest]))
-        shown, carried = 0.5 * (both[:, :-1] + both[:, :-1].T), both[:, -1]
-        held = self._both.T @ shown @ self._both
-        held += _IDLE * max(np.abs(held).max(), 1.0) * np.eye(len(held))
+        shown, held, carried = self._together([one.stiffness for one in pressed], rest)
         balance = self._both.T @ (force.reshape(-1) + carried) + self.loads.reshape(-1)
         return Linear(pressed, force, rest.reshape(-1, 2), carried, shown, held, balance)
+
+    def without_ripple(self, now: Linear, centre: np.ndarray, place: np.ndarray) -> Linear:
+        """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""
+        moved = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
+        seen = np.concatenate([place - centre, place]) + moved
+        stiffness = [contact.mean_stiffness(d) for contact, d in zip(self.contacts, seen, strict=True)]
+        shown, held, carried = self._together(stiffness, now.rest.reshape(-1))
+        return attrs.evolve(now, shown=shown, held=held, carried=carried)
+
+    def _together(self, stiffness: list[np.ndarray], rest: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """S, H and (1 + K W)^-1 rest, for the stiffness (2, 2) of every contact."""
+        stiff = np.zeros_like(self.coupling)
+        for k, one in enumerate(stiffness):
+            stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one
+        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, rest]))
+        shown = 0.5 * (both[:, :-1] + both[:, :-1].T)
+        held = self._both.T @ shown @ self._both
+        held += _IDLE * max(np.abs(held).max(), 1.0) * np.eye(len(held))
+        return shown, held, both[:, -1]
 
     def follow(self, now: Linear) -> np.ndarray:
         """(2 Z, 2 Z) motion of the balls that follows a motion of the inner groove centres."""

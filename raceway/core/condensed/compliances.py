@@ -21,13 +21,14 @@ class Solid:
 
     Attributes
     ----------
-    young [Pa], poisson, formulation : see ``raceway.core.revolution.body``
+    young [Pa], poisson, formulation : see ``raceway.core.revolution.body``; between points of a contact "full" converges
+        faster than "incompatible" (at 4 points along a semi-axis the peak pressure is 0.4 % low, not 0.7 %)
     bulk : size of elements far from the contacts [m]
     """
 
     young: float
     poisson: float
-    formulation: str = "incompatible"
+    formulation: str = "full"
     bulk: float = 0.8e-3
 
 
@@ -73,10 +74,12 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     near = _projected(full[:columns], normal)
     chosen = [rows // 2, rows + rows // 2]
     between = full[columns:][:, chosen][:, :, chosen][:, ::-1, ::-1]  # (axial, radial)
+    low, high = shape.edges
+    edges = (low, high) if sense > 0.0 else (-high, -low)
     crossing = np.zeros((balls, 2, 2))
     for k, block in enumerate(between, start=1):
         crossing[k] = crossing[-k] = block
-    race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, shape.edge, crossing)
+    race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, edges, crossing)
     return Patch(ball, race, spacing.area)
 
 

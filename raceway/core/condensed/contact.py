@@ -55,6 +55,8 @@ class Pressed:
     truncated: bool = False
 
 
+#: Places of the points over which a mean is taken.
+_PLACES = 8
 _NONE = np.zeros(0, dtype=np.int64)
 
 
@@ -110,6 +112,25 @@ class Contact:
         viscous = self._viscous(state, slope, held)
         truncated = self._ends(nodes, force)
         return Pressed(force, stiffness, viscous, nodes, load, penetration, truncated)
+
+    def mean_stiffness(self, place: np.ndarray) -> np.ndarray:
+        """(2, 2) stiffness as ``press`` gives it, the mean over all places of the points under the ellipse [N/m].
+
+        Notes
+        -----
+        A set of points changes in steps as the ellipse slides over it, and the stiffness of the set with it, by some percent.
+        Turned about the groove's centre by one distance of rows the ellipse meets the same points again: the mean over
+        that distance has no ripple.
+        """
+        pitch = self.patch.race.angle[1] - self.patch.race.angle[0]
+        kept = self._nodes, self._depth.copy()
+        total = np.zeros((2, 2))
+        for angle in pitch * ((np.arange(_PLACES) + 0.5) / _PLACES - 0.5):
+            c, s = np.cos(angle), np.sin(angle)
+            turn = np.array([[c, s], [-s, c]])
+            total += turn.T @ self.press(turn @ place, np.zeros(2)).stiffness @ turn
+        self._nodes, self._depth = kept
+        return total / _PLACES
 
     def _open(self) -> Pressed:
         self._nodes = _NONE

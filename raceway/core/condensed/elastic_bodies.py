@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import attrs
 import numpy as np
 
-from raceway.core.bodies.condensed_inertial import condensed_inertial
-from raceway.core.bodies.condensed_tangential import condensed_tangential
-from raceway.core.bodies.condensed_weightless import condensed_weightless
-from raceway.core.bodies.rigid_inertial import rigid_inertial
-from raceway.core.bodies.rigid_tangential import rigid_tangential
-from raceway.core.bodies.rigid_weightless import rigid_weightless
 from raceway.core.condensed.structural import RingCompliance
 from raceway.core.system import System
-
-_KERNELS = {
-    id(rigid_weightless): condensed_weightless,
-    id(rigid_inertial): condensed_inertial,
-    id(rigid_tangential): condensed_tangential,
-}
 
 
 @attrs.frozen(eq=False)
@@ -109,4 +98,6 @@ def between_balls(one: RingCompliance, angles: np.ndarray) -> np.ndarray:
 
 
 def _elastic(kernel: Any) -> Any:
-    return _KERNELS[id(kernel)]
+    """The kernel of elastic bodies that belongs to one of rigid bodies; the others are not imported, hence not compiled."""
+    name = kernel.__name__.replace("rigid", "condensed")
+    return getattr(import_module(f"raceway.core.bodies.{name}"), name)

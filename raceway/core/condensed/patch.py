@@ -76,7 +76,7 @@ class Race:
     compliance : (columns, m, m) displacement of a row by a force on another one, so many columns apart, both along the
         normal [m/N]
     across : distance of neighbouring columns [m]
-    edge : angle from the groove's bottom to its edge [rad]
+    edges : (2,) contact angles of the groove's edges [rad], ascending
     crossing : (Z, 2, 2) displacement (axial, radial) at the middle row by a force (axial, radial) at the same row under
         the k-th next ball [m/N]; row 0, the ball itself, is zero
     """
@@ -87,7 +87,7 @@ class Race:
     angle: np.ndarray
     compliance: np.ndarray
     across: float
-    edge: float
+    edges: tuple[float, float]
     crossing: np.ndarray
 
     @property
@@ -103,7 +103,7 @@ class Race:
     def ends(self) -> tuple[bool, bool]:
         """Whether the first and the last row are the last ones before the groove's edges."""
         reach = 1.5 * (self.angle[1] - self.angle[0])  # rows end half a step before the edge
-        return bool(self.angle[0] - reach < -self.edge), bool(self.angle[-1] + reach > self.edge)
+        return bool(self.angle[0] - reach < self.edges[0]), bool(self.angle[-1] + reach > self.edges[1])
 
 
 @attrs.frozen(eq=False)

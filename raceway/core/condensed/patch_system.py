@@ -80,8 +80,20 @@ class PatchSystem(System):
         where = self._places(centre, ball)
         moving = bool(v.any()) or ball_rate is not None
         rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
-        where, row.force, row.last = row.balls.settle(centre, where, row.force, rate, _BALLS)
-        return self._answer(row.balls, centre, jacobian, where, rate, row.last)
+        where, now = row.settle(centre, where, rate, _BALLS)
+        return self._answer(row.balls, centre, jacobian, where, rate, now)
+
+    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
+
+        def found() -> np.ndarray:
+            row, still = self.pool.row(self.table), np.zeros((2 * self.ball_count, 2))
+            centre, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
+            where, last = row.settle(centre, now.ball, still, _BALLS)
+            smooth = row.balls.without_ripple(last, centre, where)
+            return np.asarray(jacobian.T @ row.balls.tangent(smooth) @ jacobian)
+
+        return self.pool.widened(found)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
@@ -141,7 +153,7 @@ class PatchSystem(System):
             scale = float(np.abs(now.force[: self.ball_count]).sum() + np.abs(load * weight).sum())
             relative = size / max(scale, 1e-300)
             if relative <= tolerance or (relative <= 1e3 * tolerance and size >= best):
-                row.force, row.last = now.force, now
+                row.force, row.last, row.centre, row.where = now.force, now, centre, where
                 return q, where, iteration
             best = min(best, size)
             tangent = jacobian.T @ balls.tangent(now) @ jacobian + self.stiffness

@@ -30,12 +30,34 @@ class Row:
     ----------
     balls : Balls
     force : (2 Z, 2) contact forces on the balls [N]
-    last : the state of the last solution
+    last : the state of the last solution, with the places (Z, 2) of groove centres and balls there [m]
     """
 
     balls: Balls
     force: np.ndarray
     last: Linear | None = None
+    centre: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
+    where: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
+
+    def settle(self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float) -> tuple[np.ndarray, Linear]:
+        """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
+
+        Notes
+        -----
+        Near the last solution its linearisation tells places and forces better than any guess.
+        """
+        force = self.force
+        if self.last is not None and np.abs(centre - self.centre).max() < STEP * np.abs(self.where).max():
+            step, change = self.balls.move(self.last, (centre - self.centre).reshape(-1))
+            try:
+                return self._keep(centre, self.balls.settle(centre, self.where + step, self.force + change, rate, tolerance))
+            except ConvergenceError:
+                pass  # from the guess, then
+        return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance))
+
+    def _keep(self, centre: np.ndarray, found: tuple[np.ndarray, np.ndarray, Linear]) -> tuple[np.ndarray, Linear]:
+        self.centre, (self.where, self.force, self.last) = centre, found
+        return self.where, self.last
 
 
 class Pool:

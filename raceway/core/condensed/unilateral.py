@@ -42,7 +42,9 @@ def active_set(gap: np.ndarray, start: np.ndarray, factor: Factor) -> tuple[np.n
     allowed = _ROUNDING * abs(deepest)
     for iteration in range(1, _LIMIT + 1):
         load = factor.solve(nodes, -gap[nodes])
-        outside = near[np.isin(near, nodes, assume_unique=True, invert=True)]
+        free = gap < 0.0
+        free[nodes] = False
+        outside = np.flatnonzero(free)
         depth = gap[outside] + factor.displacement(outside, nodes, load)
         pulls, joins = load < 0.0, depth < -allowed
         if not (pulls.any() or joins.any()):

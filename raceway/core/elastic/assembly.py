@@ -121,6 +121,17 @@ class Assembly:
         """Strain energy of the bodies and their beds and what the frames' springs and the cage hold [J]."""
         return float(0.5 * y @ self.internal(y, u))
 
+    def reactions(self, y: np.ndarray) -> np.ndarray:
+        """(3,) force of the ground on the bodies, through held nodes and beds [N]."""
+        u, out = self.nodal(y), np.zeros(3)
+        for index, body in enumerate(self.bodies):
+            if body.held.any():
+                out += (body.operator.internal_force(u[self.part(index)]) * body.held).sum(axis=0)
+        for bed, ride in self.beds:
+            if not ride.any():
+                out -= (bed @ u).reshape(-1, 3).sum(axis=0)
+        return out
+
     def hourglass_energy(self, u: np.ndarray) -> float:
         """The part that hourglass control holds [J]."""
         return sum(b.operator.hourglass_energy(u[self.part(i)]) for i, b in enumerate(self.bodies))

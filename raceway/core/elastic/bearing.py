@@ -13,13 +13,16 @@ from raceway.core.elastic.body import Body, Frame
 from raceway.core.elastic.cage import Cage, cage_rows
 from raceway.core.elastic.contact import NodalContact, Pair
 from raceway.core.elastic.facets import Facets
+from raceway.core.elastic.friction import CoulombFriction
 from raceway.core.elastic.gap import groove
+from raceway.core.elastic.penalty import penalty_stiffness
 from raceway.core.elastic.surface import SurfacePoints, surface_points
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.geometry import BallBearing
 from raceway.core.hertz import contact_modulus
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh import HexMesh
+from raceway.core.stepping.elastic import Seen
 from raceway.errors import MeshError
 
 #: Points of a ball count as contact points where the undeformed gap is below this many Hertz approaches at four times the
@@ -50,6 +53,7 @@ class Setup:
     contact_damping : normal damping [N s/m] of each contact at the reference load
     ball_force : outward force on each ball [N], centrifugal
     caged : whether an ideal cage holds the balls at their azimuth
+    friction : Coulomb's coefficient;  stick : stiffness of sticking points [N/m3], None: Mindlin's ratio times the penalty's
     """
 
     geometry: BallBearing
@@ -72,6 +76,8 @@ class Setup:
     contact_damping: float = 0.0
     ball_force: float = 0.0
     caged: bool = True
+    friction: float = 0.0
+    stick: float | None = None
 
     @property
     def modulus(self) -> float:
@@ -143,7 +149,7 @@ class ElasticBearing:
             u[a.part(k + 2)] = np.tile(moved[0] * np.array([1.0, 0.0, 0.0]) + moved[1] * self._radial(k), len(self._mass[k]))
         return np.concatenate([q, u[a.free]])
 
-    def look(self, system: ElasticSystem, y: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ...]:
+    def look(self, system: ElasticSystem, y: np.ndarray, v: np.ndarray) -> Seen:
         """Ring displacement and velocity (5,), smallest gaps and normal forces (2 Z,), ball places (Z, 2)."""
         contact = system.contact
         assert contact is not None
@@ -239,7 +245,15 @@ class ElasticBearing:
         if s.contact_damping > 0.0:
             a, b = g.ellipses(s.modulus)[0].semi_axes(s.reference_load)
             damping = s.contact_damping / (np.pi * float(a) * float(b))
-        return NodalContact(pairs, assembly.nodes, s.law, s.params(which, area), s.state_size, damping)
+        friction = CoulombFriction(s.friction, self._sticking(area)) if s.friction > 0.0 else None
+        return NodalContact(pairs, assembly.nodes, s.law, s.params(which, area), s.state_size, damping, friction)
+
+    def _sticking(self, area: np.ndarray) -> np.ndarray:
+        """(n,) stiffness of sticking points [N/m3]; by default 2 (1 - nu) / (2 - nu) of a penalty's (Mindlin 1949)."""
+        if self.setup.stick is not None:
+            return np.full(len(area), self.setup.stick)
+        nu = 0.5 * (self.setup.rings[1] + self.setup.balls[1])
+        return 2.0 * (1.0 - nu) / (2.0 - nu) * penalty_stiffness(self.setup.modulus, 2.0 * np.sqrt(area))
 
 
 def _near(points: SurfacePoints, side: np.ndarray, surface: np.ndarray, reach: float) -> SurfacePoints:

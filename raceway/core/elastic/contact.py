@@ -42,7 +42,7 @@ class Friction(Protocol):
        [m]; traction (n, 3) on the points [Pa] and minus its derivative by ``moved`` (n, 3, 3) [Pa/m].
     2. ``commit()``, ``rollback()``: as for the system;  ``dissipated``: density (n,) [J/m2] up to the last commit;
        ``stored()``: density (n,) in what sticks.
-    3. ``state()``: arrays by name that ``restore(arrays)`` takes back.
+    3. ``begin(moved)``: nothing carries or has lost anything there.  ``state()``: arrays by name that ``restore(arrays)`` takes back.
     """
 
     dissipated: np.ndarray
@@ -51,6 +51,7 @@ class Friction(Protocol):
         self, moved: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]: ...
     def stored(self) -> np.ndarray: ...
+    def begin(self, moved: np.ndarray) -> None: ...
     def commit(self) -> None: ...
     def rollback(self) -> None: ...
     def state(self) -> dict[str, np.ndarray]: ...
@@ -115,6 +116,12 @@ class NodalContact:
         """(3 n, 3 nodes) sparse B: displacement of the points against the second surface."""
         return self._move
 
+    def restore(self, projected: np.ndarray, memory: np.ndarray) -> None:
+        """Where the points were looked up last, and the law's memory, as another contact had them."""
+        self._projected[:] = np.inf
+        self.update(projected)
+        self.memory[:] = memory
+
     def update(self, where: np.ndarray) -> bool:
         """Look up where the points lie on the second surface; whether anything changed."""
         away = np.abs(where - self._projected).max(axis=1)
@@ -163,6 +170,10 @@ class NodalContact:
             self.area, self.pressure, self.d_gap, self.d_rate, self.normal, self.bend,
             self.force, self.stiffness, self.rate_stiffness,
         )  # fmt: skip
+        if share > 0.0:
+            # Pressures of such an overlap are many times too large, and so would be their geometric stiffness: leave it out.
+            across = self.normal[:, :, None] * self.normal[:, None, :]
+            self.stiffness = -(self.area * self.d_gap)[:, None, None] * across
         if self.friction is not None:
             traction, tangent = self.friction.evaluate(moved, self.normal, self.pressure, self.d_gap)
             self.force += self.area[:, None] * traction

@@ -142,6 +142,11 @@ class CoulombFriction:
         """(n,) energy in the sticking springs at the last place [J/m2]."""
         return np.asarray(0.5 * (self._trial**2).sum(axis=1) / self.stick)
 
+    def begin(self, moved: np.ndarray) -> None:
+        """No point carries anything or has lost anything where it is now, displaced by (n, 3) [m]."""
+        self.committed, self.place = np.zeros_like(moved), np.array(moved)
+        self.dissipated = np.zeros(len(moved))
+
     def commit(self) -> None:
         """The last place becomes history."""
         self.committed, self.place = self._trial.copy(), self._place.copy()

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import attrs
 import numpy as np
 
 from raceway.core.elastic.bearing import ElasticBearing
-from raceway.core.record import Motion
 from raceway.core.stepping.elastic import SteppedElastic
 from raceway.core.system import Evaluation, System
 from raceway.errors import ConvergenceError
 
 #: Relative residual of equilibria and of the linear solves for the ring's stiffness.
-_TOLERANCE, _LINEAR = 1e-6, 1e-7
+_TOLERANCE, _LINEAR = 1e-7, 1e-7
 
 
 @attrs.define(eq=False)
@@ -29,6 +31,7 @@ class ElasticRing(System):
 
     bodies: ElasticBearing = attrs.field(kw_only=True)
     _y: np.ndarray | None = attrs.field(init=False, default=None)
+    _stiffness: np.ndarray | None = attrs.field(init=False, default=None)
 
     @property
     def companion(self) -> System:
@@ -50,10 +53,18 @@ class ElasticRing(System):
         self.bodies.system.excitation = self.outer_force
         return SteppedElastic(self.bodies.system, self.bodies.look, self.ball_count)
 
+    def follow(self, on_residual: Callable[[float], None] | None) -> None:
+        """What to call with the relative residual of every iteration of an equilibrium."""
+        self.bodies.system.on_residual = on_residual
+
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = _TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under ``load``; the first guess is the equilibrium of rigid bodies, or the one found before.
+
+        Notes
+        -----
+        Friction is left out: the balls have rolled into place.
 
         Raises
         ------
@@ -62,14 +73,40 @@ class ElasticRing(System):
         """
         if self._y is None:
             place, places, _ = self.companion.settle(q)
-            if not places.any():  # weightless balls of rigid bodies have no place of their own
-                places = self._between(place)
+            if not places[:, 1].any():
+                places = self._on_the_line(place, places)
             guess = self.bodies.guess(place, places)
         else:
             guess = self._y
-        y, count = self._settled(guess, self.load, max(tolerance, _TOLERANCE))
-        self._y = y
-        return y[:5].copy(), self.bodies.ball_places(y), count
+        self._y, count = self.settled(guess, self.load, max(tolerance, _TOLERANCE))
+        self._stiffness = None
+        return self._y[:5].copy(), self.bodies.ball_places(self._y), count
+
+    @property
+    def equilibrium(self) -> np.ndarray:
+        """(size,) unknowns at the last equilibrium under ``load``.
+
+        Raises
+        ------
+        ConvergenceError
+            None was looked for.
+        """
+        if self._y is None:
+            raise ConvergenceError("elastic bodies know the forces at their equilibria only: settle them first")
+        return self._y
+
+    @property
+    def starts(self) -> Any:
+        from raceway.core.elastic import start
+
+        return start
+
+    def in_place(self, y: np.ndarray) -> np.ndarray:
+        """(size,) internal forces of a state at rest without friction; the bodies keep its contacts."""
+        system = self.bodies.system
+        with system.without_friction():
+            system.locate(y)
+            return np.asarray(system.static_internal(y))
 
     def evaluate(
         self,
@@ -90,16 +127,25 @@ class ElasticRing(System):
         ConvergenceError
             A place of the ring that is no equilibrium that was found.
         """
-        if self._y is None or np.abs(self._y[:5] - q).max() > 0.0:
+        y = self.equilibrium
+        if np.abs(y[:5] - q).max() > 0.0:
             raise ConvergenceError("elastic bodies know the forces at their equilibria only", {"q": np.asarray(q)})
-        y, system = self._y, self.bodies.system
-        out = system.internal(t, 0.0, y, np.zeros_like(y))
+        force_on_frame, system = self.in_place(y)[:5], self.bodies.system
         _, _, gap, force, places = self.bodies.look(system, y, np.zeros_like(y))
-        held = self.stiffness @ y[:5]
-        return Evaluation(out[:5] - held, self._tangent(), np.zeros((5, 5)), gap, force, places, self.law_state.copy())
+        if self._stiffness is None:
+            self._stiffness = self._tangent()
+        return Evaluation(
+            force_on_frame - self.stiffness @ y[:5],
+            self._stiffness.copy(),
+            np.zeros((5, 5)),
+            gap,
+            force,
+            places,
+            self.law_state.copy(),
+        )
 
     def without(self, *entries: int) -> ElasticRing:
-        """Itself: balls of elastic bodies do not orbit, and friction has its history."""
+        """Itself: balls of elastic bodies do not orbit, and equilibria know no friction."""
         return self
 
     def stopped(self, t: float) -> ElasticRing:
@@ -113,37 +159,14 @@ class ElasticRing(System):
         """Of elements and contacts at the last state that was computed [s]; the ring's own tangent does not limit it."""
         return float(self.bodies.system.stable_step())
 
-    def motion_under(self, loads: list[np.ndarray], step: float = 0.0, curvature: float = 1.0) -> Motion:
-        """The equilibrium under a load (5,) at rest, or moving through three of them: now, before and after.
-
-        Parameters
-        ----------
-        step : what the difference of the outer two is divided by for the velocity [s]
-        curvature : what their second difference is divided by for the acceleration [s2]
-        """
-        now = self._y
-        if now is None:
-            raise ConvergenceError("elastic bodies start from an equilibrium: settle them first")
-        found = []
-        for load in loads:
-            now, _ = self._settled(now, load, _TOLERANCE)
-            found.append(now)
-        y = found[0]
-        v, a = np.zeros_like(y), np.zeros_like(y)
-        if len(found) == 3:
-            v = (found[2] - found[1]) / step
-            a = (found[2] - 2.0 * y + found[1]) / curvature
-        stepped = self.stepped()
-        stepped.system.locate(y)
-        stepped.internal(0.0, 0.0, y, np.zeros_like(y))
-        return stepped.motion_of(y, v, a)
-
-    def _settled(self, guess: np.ndarray, load: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
+    def settled(self, guess: np.ndarray, load: np.ndarray, tolerance: float = _TOLERANCE) -> tuple[np.ndarray, int]:
+        """Unknowns (size,) at the equilibrium under a load (5,) of the ring, without friction, and Newton's iterations."""
         system = self.bodies.system
         before = system.load.copy()
         system.load[:5] = load
         try:
-            found = system.settle(guess, tolerance)
+            with system.without_friction():
+                found = system.settle(guess, tolerance)
         finally:
             system.load = before
         return found.y, found.iterations
@@ -165,10 +188,7 @@ class ElasticRing(System):
         found = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
         return np.asarray(0.5 * (found + found.T))
 
-    def _between(self, q: np.ndarray) -> np.ndarray:
-        """(Z, 2) places of weightless balls: both contacts share the approach as Hertz's would."""
+    def _on_the_line(self, q: np.ndarray, places: np.ndarray) -> np.ndarray:
+        """(Z, 2) places of weightless balls, which lie between the groove centres: their first column is the distance."""
         centre, _ = self.centre_vectors(q)
-        length = np.linalg.norm(centre, axis=1, keepdims=True)
-        inner, outer = self.bodies.setup.geometry.offset_inner, self.bodies.setup.geometry.offset_outer
-        share = self.table[:, [3]]  # of the approach that the outer race takes
-        return centre / length * (outer + share * (length - inner - outer))
+        return np.asarray(centre / np.linalg.norm(centre, axis=1, keepdims=True) * places[:, :1])

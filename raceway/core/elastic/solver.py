@@ -9,11 +9,13 @@ import numpy as np
 from raceway.core.blocks import BlockMatrix
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contact import NodalContact
+from raceway.core.elastic.factorised import MOST_OF_A_BODY, MOST_UNKNOWNS, Factorised
 from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
-MOST_ITERATIONS, MANY_ITERATIONS = 600, 60
-SOFT = 1.0
+MOST_ITERATIONS, MANY_ITERATIONS = 600, 120
+#: Iterations of a solve with factors that still fit, and how many more all solves together may take before new factors pay.
+FEW_ITERATIONS, WORTH_FACTORS = 3, 30
 #: Ratio of the mass' share of the matrix at which the multigrid is made anew.
 _OTHER_MASS = 4.0
 #: Relative residual to which the free nodes' following of a frame is solved.
@@ -32,9 +34,10 @@ class LinearSolver:
 
     def __init__(self, assembly: Assembly, contact: NodalContact | None, modulus: float) -> None:
         self.assembly, self.contact, self.modulus = assembly, contact, modulus
-        self._multigrid: Preconditioner | None = None
+        self._multigrid: Preconditioner | Factorised | None = None
         self._built = 0.0
         self._fresh = False
+        self._extra = 0
         #: Iterations of the last solve, of all solves, number of solves and of multigrid set-ups.
         self.last_iterations, self.iterations, self.solves, self.setups = 0, 0, 0, 0
         a = assembly
@@ -47,6 +50,7 @@ class LinearSolver:
         a = self.assembly
         ratio = c_m / c_k
         stale = self._multigrid is None or self.last_iterations > MANY_ITERATIONS and not self._fresh
+        stale = stale or isinstance(self._multigrid, Factorised) and self._extra > WORTH_FACTORS
         other = (
             abs(np.log((ratio + 1e-300) / (self._built + 1e-300))) > np.log(_OTHER_MASS)
             and max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
@@ -58,6 +62,7 @@ class LinearSolver:
         precondition = self._preconditioner(c_k, apply)
         found, self.last_iterations = _conjugate_gradients(apply, wanted, precondition, tolerance)
         self._fresh = False
+        self._extra += max(self.last_iterations - FEW_ITERATIONS, 0)
         self.iterations += self.last_iterations
         self.solves += 1
         return found
@@ -74,7 +79,7 @@ class LinearSolver:
         a = self.assembly
         matrix = a.stiffness()
         if self.contact is not None:
-            matrix = matrix + self.contact.tangent(SOFT * self.contact.stiffness)
+            matrix = matrix + self.contact.tangent(self.contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
         if a.cage is not None:
             extra += a.cage.nodal
@@ -82,8 +87,11 @@ class LinearSolver:
 
         held = np.ones(3 * a.nodes, dtype=bool)
         held[a.free] = False
-        self._multigrid = Preconditioner((matrix + diags_array(extra)).tocsr(), a.points, held)
-        self._built, self._fresh = c_m / c_k, True
+        whole = (matrix + diags_array(extra)).tocsr()
+        largest = 3 * int(np.diff(a.starts).max())
+        small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
+        self._multigrid = Factorised(whole, held) if small else Preconditioner(whole, a.points, held)
+        self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)
 
@@ -111,8 +119,9 @@ class LinearSolver:
         if self._matrix is None:
             self._matrix = BlockMatrix(a.stiffness())
         matrix = self._matrix
-        blocks = None if contact is None else c_k * contact.stiffness + c_c * contact.rate_stiffness
-        if blocks is not None:
+        blocks = None
+        if contact is not None:
+            blocks = c_k * contact.stiffness + c_c * contact.rate_stiffness
             chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
             move = contact.move[(3 * chosen[:, None] + np.arange(3)).ravel()]
             transposed, blocks = move.T.tocsr(), blocks[chosen]
@@ -146,10 +155,11 @@ class LinearSolver:
         assert multigrid is not None
         scale, follow = 1.0 / c_k, self._follow
         inverse = np.zeros((m, m))
-        if m:
-            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in range(m)], axis=1)
-            block = (images[:m] + follow.T @ images[m:])[np.ix_(a.frame_free, a.frame_free)]
-            inverse[np.ix_(a.frame_free, a.frame_free)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
+        if a.frame_free.any():
+            chosen = np.flatnonzero(a.frame_free)
+            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in chosen], axis=1)
+            block = images[chosen] + follow[:, chosen].T @ images[m:]
+            inverse[np.ix_(chosen, chosen)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
 
         def apply(r: np.ndarray) -> np.ndarray:
             out = np.empty_like(r)

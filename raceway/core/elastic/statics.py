@@ -12,7 +12,7 @@ from raceway.errors import ConvergenceError
 #: Iterations of one load step, halvings of one line search, halvings of the load.
 NEWTON_LIMIT, HALVINGS, SMALLEST_PART = 40, 8, 1.0 / 16.0
 #: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
-TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-4, 1e-2, 1e-4
+TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 
 
 @attrs.frozen(eq=False)
@@ -40,7 +40,8 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
     ConvergenceError
         Nothing found; ``state`` holds the last good state ``y``, the part of the load that it carries, and ``residuals``.
     """
-    load, history = system.load.copy(), []
+    load = system.load.copy()
+    history: list[float] = []
     good, part, step, count, before = guess.copy(), 0.0, 1.0, 0, system.solver.iterations
     try:
         while True:
@@ -74,6 +75,8 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
         size = system.measure(rest)
         relative = size / scale if scale > 0.0 else np.inf
         history.append(float(relative))
+        if system.on_residual is not None:
+            system.on_residual(float(relative))
         if not np.isfinite(size):
             raise ConvergenceError("forces are not finite.")
         if relative <= tolerance and (done > 0 or share == 0.0):

@@ -41,8 +41,7 @@ class SteppedElastic:
         whole = dict(motion.whole or {})
         contact = self.system.contact
         if contact is not None and "projected" in whole:
-            contact.update(whole["projected"])
-            contact.memory[:] = whole["memory"]
+            contact.restore(whole["projected"], whole["memory"])
             if contact.friction is not None:
                 contact.friction.restore(whole)
         return State(*(np.array(whole[name]) for name in _UNKNOWNS))
@@ -57,6 +56,10 @@ class SteppedElastic:
         q, v, _, _, ball = self._seen(s.u, s.v)
         a = self._seen(s.u, s.a)[1]
         return Motion(q, v, a, ball, ball.copy(), whole=whole)
+
+    def motion_of(self, y: np.ndarray, v: np.ndarray, a: np.ndarray) -> Motion:
+        """A motion with unknowns, velocities and accelerations (size,) whose forces balance."""
+        return self.motion(State(y, v, a, -self.mass_times(a)))
 
     def moving(self, velocity: np.ndarray) -> Motion:
         """Nothing displaced, nodes moving with (nodes, 3) [m/s]: the start of an impact."""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
@@ -109,7 +112,7 @@ class Gmsh:
         if not Path(path).is_file():
             raise MeshError(f"'{path}' does not exist")
         if suffix in (".step", ".stp"):
-            with Path(path).open("rb") as file:  # Gmsh's reader would write its complaints to standard output
+            with Path(path).open("rb") as file:
                 if b"ISO-10303-21" not in file.read(4096):
                     raise MeshError(f"'{path}' cannot be read: it is not a STEP file (no ISO-10303-21 at its beginning)")
         try:
@@ -120,7 +123,8 @@ class Gmsh:
         try:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setString("Geometry.OCCTargetUnit", "M")
-            gmsh.open(path)
+            with _silent_reader():
+                gmsh.open(path)
             if not gmsh.model.getEntities(3):
                 raise MeshError(f"'{path}' holds no solid")
             return work(gmsh, path, 1.0 if suffix in (".step", ".stp") else self.scale)
@@ -195,6 +199,20 @@ class Gmsh:
                 f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {told} came out; {remedy}"
             )
         return np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
+
+
+@contextmanager
+def _silent_reader() -> Iterator[None]:
+    """OpenCASCADE's readers complain on the process's standard output, past Gmsh and Python; what matters is raised."""
+    sys.stdout.flush()
+    kept, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nothing)
 
 
 def _volume(gmsh: Any, tag: int) -> float:

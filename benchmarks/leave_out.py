@@ -1,0 +1,338 @@
+"""What leaving out saves: ``python -m benchmarks.leave_out [--json] [RULE...]``.
+
+A row for each rule of the plan: a scene that does not need a part, run as planned and with the part forced in; the answers'
+difference, processor time and memory of both.  Times are the least of some repeats, in this process with warm kernels;
+modules and pictures are measured in processes of their own.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+import tracemalloc
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+
+SCENE = str(Path(__file__).resolve().parents[1] / "examples" / "b7206.toml")
+_REPEATS = 5
+
+
+@attrs.frozen
+class Rule:
+    """One rule of leaving out, measured.
+
+    Attributes
+    ----------
+    rule, scene : the part that is left out, and the changes of the example in which it is
+    difference : largest relative difference of the answers;  bound : what it may be, with ``why``
+    cpu_s, cpu_forced_s, bytes, bytes_forced : as planned and with the part forced in
+    """
+
+    rule: str
+    scene: str
+    difference: float
+    bound: float
+    why: str
+    cpu_s: float
+    cpu_forced_s: float
+    bytes: int
+    bytes_forced: int
+
+    @property
+    def holds(self) -> bool:
+        return self.difference <= self.bound and (self.cpu_s < self.cpu_forced_s or self.bytes < self.bytes_forced)
+
+
+Answer = np.ndarray
+
+
+def measured(work: Callable[[], Answer], repeats: int = _REPEATS) -> tuple[Answer, float, int]:
+    """Answer, least processor time [s] and peak of the memory that Python and its arrays take [bytes]."""
+    answer = work()
+    times = []
+    for _ in range(repeats):
+        begun = time.process_time()
+        answer = work()
+        times.append(time.process_time() - begun)
+    tracemalloc.start()
+    work()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return answer, min(times), peak
+
+
+def compared(
+    rule: str, scene: str, planned: Callable[[], Answer], forced: Callable[[], Answer], bound: float = 1e-10, why: str = "the same numbers", repeats: int = _REPEATS
+) -> Rule:  # fmt: skip
+    a, cpu, peak = measured(planned, repeats)
+    b, cpu_forced, peak_forced = measured(forced, repeats)
+    difference = float(np.max(np.abs(a - b)) / np.max(np.abs(b)))
+    return Rule(rule, scene, difference, bound, why, cpu, cpu_forced, peak, peak_forced)
+
+
+def answers(changes: tuple[str, ...], force: tuple[str, ...] = (), cage: float | None = None) -> Answer:
+    """Dynamic stiffness (real, imaginary) of the example, from its scene on, with some parts forced in."""
+    from raceway import load_scene
+    from raceway.core.bodies.ring import CAGE
+    from raceway.model import build_model
+    from raceway.plan import make_plan
+    from raceway.simulate import simulate
+    from raceway.statics import settle
+
+    scene = load_scene(SCENE, changes)
+    model = build_model(scene, make_plan(scene, force))
+    if cage is not None:
+        model.system.scalars[CAGE] = cage
+    equilibrium = settle(model)
+    found = scene.identifier.method.identify([simulate(model, equilibrium).record], equilibrium, model)
+    return np.array([found.dynamic_stiffness.real, found.dynamic_stiffness.imag])
+
+
+def _forced(rule: str, part: str, changes: tuple[str, ...], bound: float = 1e-10, why: str = "the same numbers") -> Rule:
+    return compared(rule, " ".join(changes), lambda: answers(changes), lambda: answers(changes, (part,)), bound, why)
+
+
+def tangential() -> Rule:
+    return _forced("friction, gyroscopic moments of the balls", "friction", ())
+
+
+def ball_inertia() -> Rule:
+    return _forced("ball inertia", "centrifugal force of the balls", ("kinematics.spin_speed_rpm=0",))
+
+
+def orbiting() -> Rule:
+    def forced() -> Answer:
+        return answers((), cage=1e-290)  # azimuths are computed anew each step, and stay
+
+    return compared("orbiting balls", "", lambda: answers(()), forced, repeats=3 * _REPEATS)
+
+
+def tilts() -> Rule:
+    stiff = ("supports.tilt=1e9",)
+    why = "1e9 N m/rad lets the ring tilt by a thousandth of what its contacts would"
+    return compared("tilts", "supports.tilt=1e9 instead of locked", lambda: answers(()), lambda: answers(stiff), 1e-4, why)
+
+
+def coupled() -> Rule:
+    part = "effect of balls on each other through the rings"
+    why = "stated in the plan: less than 1e-3 of a contact's compliance"
+    return _forced(part, part, ("bodies.kind=condensed",), 1e-3, why)
+
+
+def turns() -> Rule:
+    return _forced("11 of 12 turns of a series of equilibria", "other turns", ("integrator.kind=quasi_static",))
+
+
+def pitch() -> Rule:
+    direct = ("integrator.kind=periodic", "load.axial=400", "excitation.amplitude=constant", "excitation.force=1500")
+    whole = (*direct, "integrator.symmetry=none")
+    why = "both orbits are known to their tolerance of 1e-7"
+    return compared(
+        "a whole turn where one ball pitch does",
+        " ".join(direct),
+        lambda: answers(direct),
+        lambda: answers(whole),
+        1e-6,
+        why,
+    )
+
+
+def integration() -> Rule:
+    from raceway import load_scene
+    from raceway.model import build_model
+    from raceway.plan import make_plan
+    from raceway.simulate import simulate
+    from raceway.statics import settle
+
+    def run(integrates: bool) -> Answer:
+        scene = load_scene(SCENE, ("identifier.kind=tangent",))
+        model = build_model(scene, make_plan(scene))
+        equilibrium = settle(model)
+        if integrates:
+            moving = load_scene(SCENE)
+            other = build_model(moving, make_plan(moving))
+            simulate(other, settle(other))
+        found = scene.identifier.method.identify([], equilibrium, model)
+        return np.array([found.dynamic_stiffness.real, found.dynamic_stiffness.imag])
+
+    return compared("time integration", "identifier.kind=tangent", lambda: run(False), lambda: run(True))
+
+
+def history() -> Rule:
+    from raceway import load_scene
+    from raceway.core.record import Schedule
+    from raceway.core.start import at_rest
+    from raceway.model import build_model
+    from raceway.plan import make_plan, recorded_per_turn
+    from raceway.statics import settle
+
+    per_turn, many = 2880, 50
+    scene = load_scene(SCENE, ("integrator.kind=central_difference",))
+    model = build_model(scene, make_plan(scene))
+    equilibrium = settle(model)
+
+    def run(stride: int) -> Answer:
+        start = at_rest(model.system, equilibrium.displacement, equilibrium.ball, True)
+        period = scene.excitation.period_s
+        record = scene.integrator.method.advance(
+            model.system, start, Schedule(period / per_turn, per_turn, many, stride, 40.0 * period)
+        )
+        found = scene.identifier.method.identify([record.last(5)], equilibrium, model)
+        return np.array([found.dynamic_stiffness.real, found.dynamic_stiffness.imag])
+
+    stride = per_turn // recorded_per_turn(per_turn, many)
+    what = f"integrator.steps_per_turn={per_turn} integrator.turns={many}"
+    return compared(
+        "history of every step", what, lambda: run(stride), lambda: run(1), 1e-9, "one line of both samplings", 2
+    )
+
+
+def compliances() -> Rule:
+    from raceway import load_scene
+    from raceway.bodies import condensed
+    from raceway.bodies.basis import make_basis
+    from raceway.core.condensed import structural
+
+    scene = load_scene(SCENE, ("bodies.kind=condensed",))
+    basis = make_basis(scene)
+
+    def run(times: int) -> Answer:
+        kept, structural.kept = structural.kept, _not_kept
+        try:
+            for _ in range(times):
+                bodies = condensed.elastic_bodies(scene, basis)
+        finally:
+            structural.kept = kept
+        return np.concatenate([bodies.inner.own, bodies.outer.own, [bodies.ball_own]])
+
+    count = scene.bearing.ball_count
+    return compared(
+        "a compliance for each ball and contact", "bodies.kind=condensed", lambda: run(1), lambda: run(count), repeats=1
+    )
+
+
+def _not_kept(*words: Any, **more: Any) -> Any:
+    """In the place of the cache of arrays: computes anew."""
+    compute = next(word for word in (*words, *more.values()) if callable(word))
+    return compute()
+
+
+_PROBE = """
+import json, resource, sys, time
+from raceway import load_scene
+from raceway.registry import default_registry
+from raceway.run import run
+scene = load_scene(sys.argv[1])
+registry = default_registry()
+begun = time.process_time()
+result = run(scene, registry)
+{more}
+z = result.identification.dynamic_stiffness
+cpu = time.process_time() - begun
+try:  # of this program alone: ru_maxrss hands on what its parent took
+    lines = open("/proc/self/status").read().splitlines()
+    peak = 1024 * int(next(line for line in lines if line.startswith("VmHWM")).split()[1])
+except OSError:
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+print(json.dumps([z.real, z.imag, cpu, peak]))
+"""
+_PICTURES = """
+import tempfile
+registry.find("report", "pictures").plugin().write(result, tempfile.mkdtemp())
+"""
+_MODULES = """
+for entry in registry.all():
+    plugin = entry.plugin
+    if hasattr(plugin, "kernel"):
+        try:
+            (plugin.examples()[0] if hasattr(plugin, "examples") else plugin()).kernel()
+        except TypeError:
+            pass  # needs options
+from raceway.core.bodies import condensed_inertial, condensed_tangential, condensed_weightless
+from raceway.core.integrators import central_difference, implicit, quasi_static
+from raceway.core.periodic import steady
+from raceway.core.hexahedron import operator
+import gmsh, matplotlib.figure, meshio, pyvista
+"""
+
+
+def _in_processes(rule: str, more: str) -> Rule:
+    def run(text: str) -> list[float]:
+        command = [sys.executable, "-c", _PROBE.format(more=text), SCENE]
+        return list(json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
+
+    run(more)  # kernels are compiled and libraries read once
+    plain, forced = ([run(text) for _ in range(3)] for text in ("", more))
+    a, b = np.array(plain[0][:2]), np.array(forced[0][:2])
+    cpu, cpu_forced = (min(one[2] for one in found) for found in (plain, forced))
+    size, size_forced = (int(min(one[3] for one in found)) for found in (plain, forced))
+    return Rule(
+        rule, "", float(np.abs(a - b).max() / np.abs(b).max()), 1e-10, "the same numbers", cpu, cpu_forced, size, size_forced
+    )
+
+
+def pictures() -> Rule:
+    return _in_processes("pictures", _PICTURES)
+
+
+def modules() -> Rule:
+    return _in_processes("modules of plug-ins and kernels that the scene does not name", _MODULES)
+
+
+RULES: dict[str, Callable[[], Rule]] = {
+    one.__name__: one
+    for one in (
+        tangential, ball_inertia, orbiting, tilts, coupled, turns, pitch, integration, history, compliances,
+        pictures, modules,
+    )
+}  # fmt: skip
+
+
+def planning() -> float:
+    """Processor time of a plan [s], of the kind of bodies that takes longest."""
+    from raceway import load_scene
+    from raceway.plan import make_plan
+
+    worst = 0.0
+    nodal = ("contact.discretisation=nodal", "mesh.kind=structured")
+    for changes in ((), ("bodies.kind=condensed",), ("bodies.kind=condensed", *nodal), ("bodies.kind=elastic", *nodal)):
+        scene = load_scene(SCENE, changes)
+        times = []
+        for _ in range(_REPEATS):
+            begun = time.process_time()
+            make_plan(scene)
+            times.append(time.process_time() - begun)
+        worst = max(worst, min(times))
+    return worst
+
+
+def main(words: list[str]) -> int:
+    as_json = "--json" in words
+    names = [word for word in words if word != "--json"] or list(RULES)
+    unknown = [name for name in names if name not in RULES]
+    if unknown:
+        print(f"no rule is called {', '.join(unknown)}; there are {', '.join(RULES)}", file=sys.stderr)
+        return 2
+    found = [RULES[name]() for name in names]
+    if as_json:
+        print(json.dumps({"planning_s": planning(), "rows": [attrs.asdict(rule) for rule in found]}, indent=1))
+        return 0 if all(rule.holds for rule in found) else 1
+    print(f"{'left out':58s} {'difference':>10s} {'cpu ms':>8s} {'forced':>8s} {'MiB':>7s} {'forced':>7s}")
+    for rule in found:
+        mark = "" if rule.holds else "  does not hold"
+        print(
+            f"{rule.rule[:58]:58s} {rule.difference:10.1e} {1e3 * rule.cpu_s:8.2f} {1e3 * rule.cpu_forced_s:8.2f} "
+            f"{rule.bytes / 2**20:7.2f} {rule.bytes_forced / 2**20:7.2f}{mark}"
+        )
+    print(f"planning {1e3 * planning():.2f} ms")
+    return 0 if all(rule.holds for rule in found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

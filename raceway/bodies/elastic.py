@@ -1,0 +1,114 @@
+"""Elastic rings and balls whose every node is a degree of freedom, in nodal contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Basis, Built, made_by, make_basis
+from raceway.bodies.elastic_report import ElasticBodies
+from raceway.bodies.rigid import place_ring, probe, rigid_system
+from raceway.contact_laws.hertz import Hertz
+from raceway.contracts import ContactPairs
+from raceway.core.bodies.ring import CENTRIFUGAL, FRICTION
+from raceway.core.elastic.bearing import ElasticBearing, Setup
+from raceway.core.elastic.ring import ElasticRing
+from raceway.core.plugin_kernel import plugin_kernel
+from raceway.core.signatures import LAW
+from raceway.core.system import System
+from raceway.errors import PluginError
+from raceway.meshing import mesh_scene
+from raceway.plan import Plan
+from raceway.scene import Scene
+
+
+def build(scene: Scene, plan: Plan) -> Built:
+    """The system of a scene with elastic bodies; see ``raceway.model.build_model``.
+
+    Raises
+    ------
+    MeshError
+        Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
+    """
+    basis = make_basis(scene)
+    contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+    as_rigid = attrs.evolve(scene, contact=contact)
+    rigid = rigid_system(as_rigid, plan, basis).without(FRICTION)
+    probe(as_rigid, basis, rigid)
+    guess = place_ring(as_rigid, basis, rigid)
+    bodies = ElasticBearing(mesh_scene(scene), _setup(scene, basis, rigid))
+    fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
+    system = ElasticRing(**fields, bodies=bodies)
+    return Built(basis, system, guess, ElasticBodies(bodies, rigid, guess))
+
+
+def _setup(scene: Scene, basis: Basis, rigid: System) -> Setup:
+    b, rotor, contact = scene.bearing, scene.rotor, scene.contact
+    inertia = [rotor.mass] * 3 + [rotor.transverse_inertia] * 2  # the ring's own is in its mesh
+    outer = 0.0 if scene.excitation is None else scene.excitation.amplitude_n
+    # A radial load is carried by a few balls: 5 F / Z (Stribeck).
+    most = basis.ball_load + 5.0 * (float(np.hypot(*scene.load.radial)) + outer) / b.ball_count
+    return Setup(
+        geometry=basis.geometry,
+        azimuth=basis.azimuth,
+        rings=(b.rings.young, b.rings.poisson, b.rings.density),
+        balls=(b.balls.young, b.balls.poisson, b.balls.density),
+        reference_load=0.25 * most if most > 4.0 * basis.ball_load else basis.ball_load,
+        law=plugin_kernel(contact.law, "contact law", LAW, "LAW"),
+        params=_params(scene, basis),
+        state_size=contact.law.state_size,
+        mass=np.diag(inertia),
+        damping=rigid.damping,
+        stiffness=rigid.stiffness,
+        free=rigid.free > 0.0,
+        load=rigid.load,
+        formulation=scene.bodies.formulation,
+        hourglass=scene.bodies.hourglass,
+        seat_inner=scene.supports.inner_seat,
+        seat_outer=scene.supports.outer_seat,
+        contact_damping=contact.damping,
+        ball_force=float(rigid.table[0, CENTRIFUGAL]),
+        friction=contact.friction,
+        stick=_stick(scene, basis),
+    )
+
+
+def _stick(scene: Scene, basis: Basis) -> float | None:
+    """Stiffness of sticking points [N/m3] from that of a contact: spread over Hertz's ellipse; None where nothing is given."""
+    given = scene.contact.stick_stiffness
+    if given is None:
+        return None
+    along, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
+    return given / (np.pi * along * across)
+
+
+def _params(scene: Scene, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """Parameters (n, k) of the law for points of the pairs (n,), inner races first, with their areas (n,) [m2]."""
+    law, z = scene.contact.law, len(basis.azimuth)
+
+    def params(pair: np.ndarray, area: np.ndarray) -> np.ndarray:
+        inner = pair < z
+
+        def either(a: float, b: float) -> np.ndarray:
+            return np.where(inner, a, b).astype(float)
+
+        one, other = basis.inner, basis.outer
+        pairs = ContactPairs(
+            curvature_a=either(one.curvatures[0], other.curvatures[0]),
+            curvature_b=either(one.curvatures[1], other.curvatures[1]),
+            contact_modulus=either(basis.modulus, basis.modulus),
+            hertz_factor=either(one.factor, other.factor),
+            reference_load=either(basis.ball_load, basis.ball_load),
+            area=area,
+        )
+        found = made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
+        if found.ndim != 2 or len(found) != len(pair):
+            raise PluginError(
+                f"contact law '{scene.contact.kind}': build() returned parameters of shape {found.shape}; "
+                f"it must be ({len(pair)}, k): a row for each surface point"
+            )
+        return found
+
+    return params

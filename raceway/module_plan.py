@@ -1,0 +1,97 @@
+"""Which of the program's optional modules a scene needs: what is left out is neither imported nor compiled.
+
+A kernel is compiled when its module is imported, so a module that is not imported costs nothing.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+
+from raceway.scene import Scene
+
+_BODIES = "raceway.core.bodies"
+_LOOPS = "raceway.core.integrators"
+#: Kernels of the bodies by what their balls need.
+_BALLS = {
+    "weightless": "balls follow the ring at once",
+    "inertial": "balls with centrifugal force",
+    "tangential": "friction or gyroscopic moments of the balls",
+}
+#: Built-in integrators and the module that takes their steps.
+_METHODS = {
+    "newmark": "implicit",
+    "generalized_alpha": "implicit",
+    "central_difference": "central_difference",
+    "quasi_static": "quasi_static",
+}
+#: Libraries and who imports them.
+_MESHING = {
+    "gmsh": ("gmsh",),
+    "meshio": ("file", "gmsh"),
+}
+_PICTURES = ("matplotlib", "pyvista")
+
+
+@attrs.frozen
+class Module:
+    """A module of the program or a library, and why a run of the scene imports it or not."""
+
+    module: str
+    needed: bool
+    why: str
+
+
+def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bool) -> tuple[Module, ...]:
+    """Every optional module with its decision.
+
+    Parameters
+    ----------
+    balls : "weightless", "inertial" or "tangential", as planned;  centrifugal : whether they have that force
+    integrates : whether an integrator takes part
+    """
+    found: list[Module] = []
+
+    def decide(needed: bool, module: str, why: str, why_not: str) -> None:
+        found.append(Module(module, needed, why if needed else why_not))
+
+    kind = scene.bodies.kind
+    # Friction and gyroscopic moments are added to an equilibrium without them.
+    base = "inertial" if centrifugal else "weightless"
+    for word, what in _BALLS.items():
+        here = word in (balls, base)
+        # Condensed and elastic bodies have a model of rigid rings beside them.
+        decide(here, f"{_BODIES}.rigid_{word}", what, f"the balls are {balls}")
+        decide(
+            here and kind == "condensed",
+            f"{_BODIES}.condensed_{word}",
+            what,
+            _not(kind, "condensed", f"the balls are {balls}"),
+        )
+    for part in ("condensed", "revolution"):
+        decide(kind == "condensed", f"raceway.core.{part}", "elastic rings and balls, reduced", f"bodies.kind is {kind}")
+    decide(kind == "elastic", "raceway.core.elastic", "every node moves", f"bodies.kind is {kind}")
+    decide(kind != "rigid", "raceway.core.hexahedron", "finite elements of the bodies", "no body is meshed")
+    method = scene.integrator.kind
+    unused = "nothing is integrated" if not integrates else f"the integrator is {method}"
+    if method in _METHODS or method == "periodic" or not integrates:
+        for loop in dict.fromkeys(_METHODS.values()):
+            needed = integrates and _METHODS.get(method) == loop
+            decide(needed, f"{_LOOPS}.{loop}", f"takes the steps of {method}", unused)
+    decide(integrates and method == "periodic", "raceway.core.periodic", "the steady orbit", unused)
+    mesher = getattr(scene.mesh, "name", None) if kind != "rigid" else None
+    for library, meshers in _MESHING.items():
+        decide(mesher in meshers, library, f"mesh.kind is {mesher}", "no mesh of another program is read or made")
+    for library in _PICTURES:
+        decide(False, library, "", "pictures are drawn by --pictures and raceway view only")
+    return tuple(found)
+
+
+def _not(kind: str, wanted: str, else_why: str) -> str:
+    return f"bodies.kind is {kind}" if kind != wanted else else_why
+
+
+def as_dicts(modules: tuple[Module, ...]) -> list[dict[str, Any]]:
+    """``modules[{module, needed, why}]`` of the plan."""
+    return [attrs.asdict(one) for one in modules]

@@ -1,0 +1,101 @@
+"""Systems that the catalogue's cases are measured on: the base scene's bearing, and one mass on one of its contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.excitations.harmonic import no_force
+from raceway.core.record import Motion
+from raceway.core.system import System
+from raceway.model import Model, build_model
+from raceway.plan import make_plan
+from raceway.registry import Entry, Registry
+from raceway.scene import Scene
+from raceway.scene_file import scene_from_dict
+from raceway.statics import Equilibrium, settle
+from raceway.studies.points import tables_at
+
+#: The article's bearing, load and force; every case that names no other scene changes this one.
+BASE: dict[str, Any] = {
+    "title": "B7206C, 1 kN axial, rig unbalance at 12 000 r/min",
+    "bearing": {"preset": "B7206C"},
+    "rotor": {"mass": 2.0},
+    "load": {"axial": 1000.0},
+    "excitation": {
+        "kind": "bidirectional",
+        "speed_rpm": 12000.0,
+        "unbalance": 6.39e-4,
+        "load_share": 0.5,
+        "reference_speed_rpm": 10980.0,
+    },
+    "contact": {"damping": 0.001},
+    "integrator": {"kind": "newmark", "turns": 12},
+}
+#: Nothing that loses energy.
+UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.0}
+
+
+def transient(registry: Registry) -> list[str]:
+    """Names of the integrators that march through time with inertia."""
+    entries = [entry for entry in registry.all() if entry.kind == "integrator"]
+    return [entry.name for entry in entries if is_transient(entry)]
+
+
+def is_transient(entry: Entry) -> bool:
+    plugin: Any = entry.plugin
+    return plugin.inertial and getattr(plugin, "transient", True) and not getattr(plugin, "steady", False)
+
+
+def pair_laws(registry: Registry) -> list[str]:
+    """Names of the laws that rigid bodies can use, without memory: they have a stored energy."""
+    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    return [e.name for e in entries if "resultant" in e.plugin.discretisations]
+
+
+def scene_at(tables: Mapping[str, Any], changes: Mapping[str, Any], registry: Registry) -> Scene:
+    """A scene with some keys changed; a value None takes the key out."""
+    changed = tables_at(tables, {key: value for key, value in changes.items() if value is not None}, registry)
+    for key in (key for key, value in changes.items() if value is None):
+        table, _, last = key.rpartition(".")
+        owner = changed if not table else changed[table]
+        owner.pop(last, None)
+    return scene_from_dict(changed, registry)
+
+
+@attrs.frozen(eq=False)
+class Still:
+    """A bearing in its equilibrium, without an excitation.
+
+    Attributes
+    ----------
+    limit : stable step of central differences for small motions [s]
+    """
+
+    model: Model
+    system: System
+    equilibrium: Equilibrium
+    limit: float
+
+    def displaced(self, by: np.ndarray) -> Motion:
+        """At rest, moved by (5,) [m, rad]."""
+        system, q = self.system, self.equilibrium.displacement + by
+        now = system.evaluate(q, ball=self.equilibrium.ball)
+        a = system.acceleration(q, np.zeros(5), np.zeros(5), now)
+        return Motion(q, np.zeros(5), a, now.ball, now.ball.copy())
+
+    def direction(self, size: float) -> np.ndarray:
+        """(5,) along every free coordinate, ``size`` of the axial approach; tilts by the arm."""
+        weight = np.array([1.0, 0.5, 0.3, 0.2 / self.system.arm, 0.1 / self.system.arm])
+        return size * abs(self.equilibrium.displacement[0]) * weight * self.system.free
+
+
+def still(scene: Scene) -> Still:
+    """The bearing of a scene, in equilibrium, nothing exciting it."""
+    model = build_model(scene, make_plan(scene))
+    equilibrium = settle(model)
+    system = attrs.evolve(model.system, force=no_force, force_params=np.zeros(1))
+    return Still(model, system, equilibrium, system.critical_time_step(equilibrium.stiffness))

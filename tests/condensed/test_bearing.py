@@ -1,0 +1,146 @@
+"""Whole condensed bearings: published answers, what a result tells, what is refused."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from raceway import array_cache
+from raceway.errors import SceneError
+from raceway.model import build_model
+from raceway.plan import make_plan
+from raceway.run import run
+from raceway.scene_file import scene_from_dict
+from raceway.statics import settle
+from tests.command_line import EXAMPLES, invoke
+
+ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
+
+
+def tables(**changes):
+    return {
+        "title": "condensed", "bearing": {"preset": "B7206C"}, "bodies": {"kind": "condensed"},
+        "load": {"axial": 1000.0, "radial": [500.0, 0.0]}, "kinematics": {"ball_inertia": False}, **changes,
+    }  # fmt: skip
+
+
+def settled(**changes):
+    scene = scene_from_dict(tables(**changes))
+    model = build_model(scene, make_plan(scene))
+    return model, settle(model)
+
+
+@pytest.mark.parametrize(
+    ("supports", "displacement", "diagonal"),
+    [
+        ({"tilt": "locked"}, {0: 28.691, 1: 1.957}, (65.00, 254.8, 255.5)),
+        ({"tilt": "free"}, {0: 26.921, 1: 13.676, 4: 1544.7}, (65.60, 267.5, 253.8)),
+        ({"tilt": "locked", "outer_seat": 500e9}, {0: 32.191, 1: 2.598}, (55.48, 191.7, None)),
+    ],
+)
+def test_whole_bearing(supports, displacement, diagonal):
+    """An independent program's answers (um, urad, N/um): 1 %."""
+    found = settled(supports=supports)[1]
+    for index, value in displacement.items():
+        assert 1e6 * found.displacement[index] == pytest.approx(value, rel=0.01)
+    for index, value in enumerate(diagonal):
+        assert value is None or 1e-6 * found.stiffness[index, index] == pytest.approx(value, rel=0.01)
+
+
+@pytest.mark.parametrize(("size", "along", "tolerance"), [(2e-3, 1, 0.02), (1e-3, 1, 0.02), (0.5e-3, 2, 0.01)])
+def test_mesh_independence(size, along, tolerance):
+    """Against elements of 0.25 mm, which are 0.1 % from their limit (report condensed_calibrated)."""
+    fine, coarse = (
+        np.diag(settled(mesh={"kind": "structured", "element_size": h, "nodes_per_semi_axis": n})[1].stiffness)
+        for h, n in ((0.25e-3, 4), (size, along))
+    )
+    assert np.abs(coarse / fine - 1.0).max() < tolerance
+
+
+def test_second_use_of_a_geometry_takes_compliances_from_the_cache(monkeypatch, tmp_path):
+    made = []
+    monkeypatch.setattr(array_cache, "folder", lambda: tmp_path)
+    write = array_cache._write
+    monkeypatch.setattr(array_cache, "_write", lambda *a: made.append(a[1]) or write(*a))
+    mesh = {"kind": "structured", "element_size": 2e-3, "nodes_per_semi_axis": 1}
+    first = settled(mesh=mesh)[1]
+    count = len(made)
+    second = settled(mesh=mesh, load={"axial": 400.0})[1]
+    assert count > 0
+    assert len(made) == count
+    assert settled(mesh=mesh)[1].displacement.tolist() == first.displacement.tolist() != second.displacement.tolist()
+
+
+def test_a_result_tells_what_elasticity_does_and_how_sure_it_is():
+    result = run(
+        scene_from_dict(tables(excitation=ROTATING, rotor={"mass": 2.0}, integrator={"kind": "quasi_static", "turns": 1}))
+    )
+    content = json.loads(json.dumps(result.as_dict(), allow_nan=False))
+    model, error = content["model"], content["error"]
+    rigid = run(scene_from_dict(tables(bodies={"kind": "rigid"}))).as_dict()["equilibrium"]
+    assert model["rigid_rings"]["stiffness"] == pytest.approx(np.array(rigid["stiffness"]), rel=1e-9, abs=1e-3)
+    assert model["rigid_rings"]["displacement"]["x"] == pytest.approx(rigid["displacement"]["x"], rel=1e-9)
+    # Thin rings on rigid seats: stiffer by 5 and 8 % (physics.md, section 10).
+    assert model["elasticity"][0][0] == pytest.approx(0.055, abs=0.01)
+    assert model["elasticity"][1][1] == pytest.approx(0.08, abs=0.01)
+    assert model["elasticity"][0][2] is None
+    assert 3.0 < model["mesh"]["nodes_per_semi_axis"] < 5.0
+    assert error["mesh"] == model["mesh"]["change_from_coarser"]
+    assert 0.0 < error["mesh"] < 5e-3
+    inertia = model["inertia"]
+    for name, hertz in (
+        ("inner_supported", 133e3),
+        ("outer_supported", 157e3),
+        ("inner_free", 10.5e3),
+        ("outer_free", 3.7e3),
+    ):
+        assert inertia[f"{name}_hz"] == pytest.approx(hertz, rel=0.1)
+        assert inertia[f"{name}_error"] == pytest.approx((200.0 / inertia[f"{name}_hz"]) ** 2)
+    assert 3000.0 < inertia["ball_along_grooves_hz"] < 5000.0
+    # The mesh changes sizes, no phases: damping is not drowned in its error.
+    found = content["identification"]
+    assert found["phase_lag_error_deg"] < 0.1 * np.degrees(error["mesh"])
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"bearing.bore": 0.0385}, "cuts the inner raceway"),
+        ({"bearing.width": 0.004}, "does not hold the groove"),
+        ({"supports.outer_seat": 0}, "must be greater than 0"),
+        ({"supports.inner_seat": -1e11}, "must be greater than 0"),
+        ({"supports.outer_seat": "[1e11,2e11]"}, "bodies.kind = 'elastic'"),
+        ({"supports.outer_seat": 500}, "500 N/mm3 is 5e11"),
+        ({"mesh.kind": "structured", "mesh.element_size": 1e-5}, "GiB"),
+        ({"contact.damping": 50000}, "N s/m"),
+    ],
+)
+def test_what_cannot_be_condensed_ends_with_one_message(changes, word, tmp_path):
+    words = [part for key, value in changes.items() for part in ("--set", f"{key}={value}")]
+    done = invoke("run", EXAMPLES / "b7206_condensed.toml", "--out", tmp_path, *words)
+    assert done.exit_code == 2
+    assert word in " ".join(done.output.split())
+    assert done.output.count("error:") == 1
+
+
+def test_a_bearing_without_dimensions_is_refused_by_name():
+    own = {"ball_diameter": 9.525e-3, "pitch_diameter": 46e-3, "ball_count": 12, "contact_angle_deg": 15.0}
+    own |= {"conformity_inner": 0.522, "conformity_outer": 0.522}
+    with pytest.raises(SceneError) as caught:
+        make_plan(scene_from_dict(tables(bearing=own)))
+    assert {m.path for m in caught.value.mistakes} == {"bearing.bore", "bearing.outer_diameter", "bearing.width"}
+
+
+def test_an_unwritable_cache_is_said_once_and_costs_nothing_else(monkeypatch, tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    monkeypatch.setattr(array_cache, "folder", lambda: blocked / "arrays")
+    array_cache._warn_unwritable.cache_clear()
+    mesh = {"kind": "structured", "element_size": 2e-3, "nodes_per_semi_axis": 1}
+    with pytest.warns(RuntimeWarning, match="cannot be kept") as said:
+        found = settled(mesh=mesh)[1]
+    array_cache._warn_unwritable.cache_clear()
+    assert len([w for w in said if "cannot be kept" in str(w.message)]) == 1
+    assert 1e6 * found.displacement[0] == pytest.approx(28.7, rel=0.01)

@@ -1,0 +1,160 @@
+"""Whole bearings on coarse patches: equilibrium, tangents, widening, edges, reports, and what is refused."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway import build_model, make_plan, scene_from_dict
+from raceway.core.bodies.ring import CAGE, CENTRIFUGAL
+from raceway.core.condensed.pool import Pool
+from raceway.errors import ConvergenceError, SceneError
+from raceway.run import run
+from raceway.statics import settle
+from tests.conftest import b7206c
+
+NODAL = {
+    "bodies": {"kind": "condensed"},
+    "contact": {"kind": "unilateral", "discretisation": "nodal"},
+    "mesh": {"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3},
+    "load": {"axial": 1000.0, "radial": [500.0, 0.0]},
+}
+
+
+def scene(**more):
+    tables = b7206c(**NODAL)
+    for name, table in more.items():
+        tables[name] = {**tables.get(name, {}), **table} if isinstance(table, dict) else table
+    return scene_from_dict(tables)
+
+
+def model(**more):
+    found = scene(**more)
+    return build_model(found, make_plan(found))
+
+
+@pytest.fixture(scope="module")
+def free():
+    case = model(supports={"tilt": "free"})
+    return case, settle(case)
+
+
+def test_ring_and_balls_are_in_equilibrium(free):
+    case, found = free
+    now = case.system.evaluate(found.displacement, ball=found.ball)
+    # The tolerance of the iteration, 1e-11 of all forces.
+    assert now.force[:3] == pytest.approx([1000.0, 500.0, 0.0], abs=1e-6)
+    assert now.force[3:] == pytest.approx([0.0, 0.0], abs=1e-8)
+    # Without centrifugal forces both races carry the same.
+    assert found.contact_force[:12] == pytest.approx(found.contact_force[12:], rel=1e-9)
+
+
+def test_it_is_near_resultants_of_the_same_bodies(free):
+    """2 % with three points along a semi-axis (0.8 % with eight); the mean stiffness 2 %."""
+    case, found = free
+    other = model(
+        contact={"kind": "hertz", "discretisation": "resultant"}, supports={"tilt": "free"}, mesh={"element_size": 0.8e-3}
+    )
+    near = settle(other)
+    scale = np.array([1.0, 1.0, 1.0, case.system.arm, case.system.arm])
+    assert np.abs((found.displacement - near.displacement) * scale).max() < 0.02 * np.abs(near.displacement * scale).max()
+    assert np.diag(found.stiffness) == pytest.approx(np.diag(near.stiffness), rel=0.02)
+    assert found.contact_force == pytest.approx(near.contact_force, rel=0.02)
+
+
+def test_the_tangent_is_the_derivative(free):
+    """Inside a step that changes no set of points; balls follow, so their places are part of it."""
+    case, found = free
+    now = case.system.evaluate(found.displacement, ball=found.ball)
+    for j, size in enumerate([1e-11, 1e-11, 1e-11, 1e-9, 1e-9]):
+        step = size * np.eye(5)[j]
+        ahead, behind = (case.system.evaluate(found.displacement + s * step, ball=found.ball).force for s in (1.0, -1.0))
+        weight = np.sqrt(np.diag(now.stiffness) * now.stiffness[j, j])
+        # Forces are known to 1e-8 N here: 1e-3 of what 1e-11 m change.
+        assert np.abs(((ahead - behind) / (2.0 * size) - now.stiffness[:, j]) / weight).max() < 3e-3
+    assert np.abs(now.stiffness - now.stiffness.T).max() < 1e-9 * np.abs(now.stiffness).max()
+
+
+def test_a_state_does_not_depend_on_the_states_before(free):
+    case, found = free
+    before = case.system.evaluate(found.displacement, ball=found.ball)
+    case.system.evaluate(found.displacement + np.array([2e-6, -1e-6, 1e-6, 0.0, 0.0]))
+    after = case.system.evaluate(found.displacement)
+    # Balls to 1e-11 of their forces.
+    assert after.force == pytest.approx(before.force, abs=1e-6)
+
+
+def test_balls_at_cage_speed_press_the_outer_race():
+    case = model(excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0})
+    found = settle(case)
+    radial = np.cos(found.angle_outer) * found.contact_force[12:] - np.cos(found.angle_inner) * found.contact_force[:12]
+    # A pressure over points leans by some hundredths of a degree against the line through ball and groove centre.
+    assert radial == pytest.approx(case.system.table[:, CENTRIFUGAL], rel=0.02)
+    assert radial.min() > 10.0
+
+
+def test_contacts_that_leave_their_points_get_more():
+    """The patches are laid out for one load; three times the load is found on patches that grew."""
+    case = model()
+    heavy = attrs.evolve(case.system, load=3.0 * case.system.load)
+    rows = heavy.pool.patches[0].columns
+    q, ball, _ = heavy.settle(case.guess)
+    assert heavy.pool.patches[0].columns > rows
+    assert heavy.evaluate(q, ball=ball).force[:2] == pytest.approx([3000.0, 1500.0], abs=1e-5)
+
+
+def test_without_more_points_it_is_a_failure_that_says_where(free):
+    case, _ = free
+    alone = attrs.evolve(case.system, pool=Pool(model().bodies.pool.patches), load=16.0 * case.system.load)
+    with pytest.raises(ConvergenceError, match="leaves its surface points along"):
+        alone.settle(case.guess)
+
+
+def test_the_edge_of_the_groove_is_told_with_the_load():
+    case = model(bearing={"shoulder_height": 0.9e-3}, load={"axial": 3000.0, "radial": [0.0, 0.0]})
+    found = settle(case)
+    said = case.bodies.warnings(case, found)
+    assert any("cut off by the groove's edge" in one and "N a ball" in one for one in said)
+
+
+def test_the_result_tells_pressures_approaches_and_points(free):
+    result = run(scene(supports={"tilt": "free"}))
+    ball = result.as_dict()["equilibrium"]["balls"][0]
+    nodal, hertz = ball["peak_pressure_nodal_inner_pa"], ball["peak_pressure_inner_pa"]
+    assert nodal == pytest.approx(hertz, rel=0.03)
+    parts = [ball[f"approach_{part}inner_m"] for part in ("", "hertz_", "penetration_", "structural_")]
+    assert parts[0] == pytest.approx(sum(parts[1:]), rel=1e-12)
+    assert parts[2] == 0.0
+    # Rings on rigid seats give less than half-spaces do.
+    assert parts[3] < 0.0
+    assert result.bodies["mesh"]["least_nodes_per_semi_axis"] > 2.0
+    assert result.bodies["elasticity"][0][0] > 0.02
+    case, found = free
+    field = case.bodies.pressure_field(case, found, 0)
+    assert field.pressure.max() == pytest.approx(nodal, rel=1e-6)
+    assert case.system.without(CAGE).pool is case.system.pool
+
+
+REFUSED = {
+    "memory": ({"mesh": {"nodes_per_semi_axis": 60}}, "mesh.nodes_per_semi_axis", "take fewer points"),
+    "friction": ({"contact": {"friction": 0.05}}, "contact.friction", "use discretisation = 'resultant'"),
+    "moments": (
+        {"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "kinematics.gyroscopic", "use discretisation = 'resultant'",
+    ),
+    "a law of pairs only": ({"contact": {"kind": "unilateral", "discretisation": "resultant"}}, "contact.discretisation", "'nodal'"),
+    "many steps": (
+        {"excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0},
+         "rotor": {"mass": 2.0}, "integrator": {"kind": "central_difference"}},
+        "integrator.kind", "quasi_static",
+    ),
+    "rigid bodies": ({"bodies": {"kind": "rigid"}}, "contact.discretisation", "rigid bodies have no surface points"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_is_refused_with_the_way_out(name):
+    more, path, said = REFUSED[name]
+    with pytest.raises(SceneError) as caught:
+        make_plan(scene(**more))
+    assert any(m.path == path and said in m.message for m in caught.value.mistakes), str(caught.value)

@@ -1,0 +1,173 @@
+"""Single contacts: Hertz, complementarity, tangents, laws at points, warm starts, ends of a patch."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway.core.condensed.contact import BeyondPatch, Contact
+from raceway.core.condensed.factor import Factor
+from raceway.core.condensed.field import pressure_field
+from raceway.core.condensed.nodal_law import PointLaw
+from raceway.core.contact_laws.point_or_pair import three_halves_or_linear
+from raceway.core.jit import jit
+from raceway.core.signatures import LAW
+from raceway.errors import ConvergenceError
+from tests.patches.single import Single, single
+
+
+@pytest.fixture(scope="module")
+def coarse() -> Single:
+    """Three points along each semi-axis at 300 N."""
+    return single(3, 300.0)
+
+
+@jit(LAW)
+def hardening(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """A third party's: p = k d (1 + d / h) with a dashpot c d."""
+    for i in range(gap.size):
+        d = max(-gap[i], 0.0)
+        lag = max(1.0 - params[i, 2] * gap_rate[i], 0.0)
+        force[i] = params[i, 0] * d * (1.0 + d / params[i, 1]) * lag
+        d_gap[i] = -params[i, 0] * (1.0 + 2.0 * d / params[i, 1]) * lag if gap[i] < 0.0 else 0.0
+        d_rate[i] = -params[i, 2] * params[i, 0] * d * (1.0 + d / params[i, 1]) if lag > 0.0 else 0.0
+
+
+@jit(LAW)
+def broken(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Not a number wherever it is asked."""
+    for i in range(gap.size):
+        force[i], d_gap[i], d_rate[i] = np.sqrt(-1.0 + 0.0 * gap[i]), -params[i, 0], 0.0
+
+
+def linear(case: Single, share: float) -> PointLaw:
+    """Pressure per gap whose penetration under the peak pressure at 300 N is a share of Hertz's approach."""
+    stiffness = float(case.ellipse.peak_pressure(300.0)) / (share * float(case.ellipse.approach(300.0)))
+    return PointLaw(three_halves_or_linear, np.array([0.0, stiffness]), case.patch.area)
+
+
+@pytest.mark.parametrize("load", [100.0, 1000.0])
+def test_four_points_give_hertz_pressure(load):
+    """1 %; 1.5 % at 1000 N, where the groove's torus is no paraboloid any more: its ellipse is 1.6 % shorter."""
+    case = single(4, load)
+    approach, pressed = case.at_load(load)
+    assert case.peak(pressed) == pytest.approx(float(case.ellipse.peak_pressure(load)), rel=0.01 if load < 500.0 else 0.015)
+    # The finite bodies take 0.8 nm/N off half-spaces' approach, whatever the load (docs/nodal_contact.md); 4 points add 0.1.
+    assert 1e9 * (approach - float(case.ellipse.approach(load))) / load == pytest.approx(-0.85, abs=0.12)
+
+
+def test_nothing_penetrates_and_nothing_pulls(coarse):
+    _, pressed = coarse.at_load(300.0)
+    contact = Contact(coarse.patch, None)
+    approach = coarse.at_load(300.0)[0]
+    coarse.press(contact, approach)
+    gap = contact._gap.reshape(-1)
+    rest = gap + Factor(coarse.patch).displacement(np.arange(len(gap)), pressed.nodes, pressed.load)
+    assert pressed.load.min() > 0.0
+    # Rounding of gaps that are differences of lengths a thousand times larger.
+    assert np.abs(rest[pressed.nodes]).max() < 1e-9 * approach
+    assert rest.min() > -1e-9 * approach
+
+
+@pytest.mark.parametrize("law", ["none", "linear", "hardening"])
+def test_the_tangent_is_the_derivative(coarse, law):
+    """While the points in contact stay the same, to the error of central differences."""
+    laws = {
+        "none": None,
+        "linear": linear(coarse, 0.05),
+        "hardening": PointLaw(hardening, np.array([linear(coarse, 0.05).params[1], 1e-6, 1e-3]), coarse.patch.area),
+    }
+    contact = Contact(coarse.patch, laws[law])
+    place, step = coarse.place(5e-6, coarse.angle + 0.004), 1e-11
+    now = contact.press(place, np.zeros(2))
+    for k, way in enumerate(np.eye(2)):
+        ahead, behind = (contact.press(place + s * step * way, np.zeros(2)) for s in (1.0, -1.0))
+        assert np.array_equal(ahead.nodes, behind.nodes)
+        found = (behind.force - ahead.force) / (2.0 * step)
+        assert np.abs(found - now.stiffness[:, k]).max() < 1e-5 * np.abs(now.stiffness).max()
+    if law == "hardening":
+        rate = 0.1
+        ahead, behind = (contact.press(place, np.array([s * rate, 0.0])) for s in (1.0, -1.0))
+        found = (behind.force - ahead.force) / (2.0 * rate)
+        assert np.abs(found - now.viscous[:, 0]).max() < 1e-5 * np.abs(now.viscous).max()
+
+
+def test_the_mean_stiffness_has_no_ripple(coarse):
+    """Over one distance of rows the point tangent along the groove swings by percents, the mean one does not."""
+    contact = Contact(coarse.patch, None)
+    pitch = coarse.patch.race.angle[1] - coarse.patch.race.angle[0]
+    rows = []
+    for shift in np.linspace(-0.25, 0.25, 5) * pitch:
+        place = coarse.place(5e-6, coarse.angle + shift)
+        normal = place / np.hypot(*place)
+        both = contact.press(place, np.zeros(2)).stiffness, contact.mean_stiffness(place)
+        rows.append([normal @ one @ normal for one in both])
+    point, mean = np.ptp(rows, axis=0) / np.mean(rows, axis=0)
+    assert mean < 0.01
+    assert mean < 0.4 * point
+
+
+def test_a_softer_law_approaches_further_by_its_penetration(coarse):
+    """At the peak the law's penetration joins the bodies' approach; the pressure falls a little."""
+    hard, pressed = coarse.at_load(300.0)
+    soft, other = coarse.at_load(300.0, linear(coarse, 0.01))
+    assert other.penetration == pytest.approx(0.01 * float(coarse.ellipse.approach(300.0)), rel=0.05)
+    # A pressure of mean 2/3 of the peak: 2/3 of the penetration, and what the wider ellipse gives back.
+    assert 0.3 * other.penetration < soft - hard < 1.1 * other.penetration
+    assert coarse.peak(other) == pytest.approx(coarse.peak(pressed), rel=0.02)
+
+
+def test_a_similar_state_is_found_at_once(coarse):
+    contact = Contact(coarse.patch, None)
+    coarse.press(contact, 5e-6)
+    cold = contact.iterations
+    warm = coarse.press(contact, 5.02e-6)
+    assert contact.iterations - cold < cold
+    fresh = coarse.press(Contact(coarse.patch, None), 5.02e-6)
+    assert np.array_equal(warm.nodes, fresh.nodes)
+    assert warm.force == pytest.approx(fresh.force, rel=1e-9)
+
+
+def test_a_contact_that_leaves_its_points_says_where(coarse):
+    contact = Contact(coarse.patch, None)
+    with pytest.raises(BeyondPatch, match=r"inner race, .* N at 2\d\.\d+ deg, leaves .* along the groove"):
+        coarse.press(contact, 5e-6, coarse.angle + 0.12)
+    with pytest.raises(BeyondPatch, match="rolling direction"):
+        coarse.press(contact, 30e-6)
+
+
+def test_an_open_contact_gives_nothing(coarse):
+    pressed = coarse.press(Contact(coarse.patch, None), -1e-6)
+    assert not pressed.force.any()
+    assert not pressed.stiffness.any()
+    assert len(pressed.nodes) == 0
+
+
+def test_the_edge_of_the_groove_cuts_the_contact_off():
+    """Near the edge the patch ends with the groove: rows that would lie beyond are missing, and the answer says so."""
+    free = single(3, 300.0)
+    edge = free.patch.race.edges[1]
+    case = single(3, 300.0, angle=edge - 0.15)
+    assert case.patch.race.ends[1]
+    assert case.patch.race.angle[-1] < edge
+    _, light = case.at_load(5.0)
+    _, heavy = case.at_load(300.0)
+    assert not light.truncated
+    assert heavy.truncated
+    # Less surface carries the same load.
+    assert len(heavy.nodes) < len(free.at_load(300.0)[1].nodes)
+
+
+def test_the_field_holds_the_whole_load(coarse):
+    _, pressed = coarse.at_load(300.0)
+    field = pressure_field(coarse.patch, pressed)
+    assert field.pressure.shape == (len(field.along), len(field.across))
+    assert field.pressure.sum() * coarse.patch.area == pytest.approx(pressed.load.sum(), rel=1e-12)
+    assert np.all(np.diff(field.along) > 0.0)
+
+
+def test_a_law_that_is_no_number_is_a_failure(coarse):
+    law = attrs.evolve(linear(coarse, 0.01), kernel=broken)
+    with pytest.raises(ConvergenceError, match="pressures were not found"):
+        coarse.press(Contact(coarse.patch, law), 5e-6)

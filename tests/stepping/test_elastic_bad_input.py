@@ -1,0 +1,145 @@
+"""What elastic bodies refuse: motions that nothing holds, surfaces that overlap; what a failure keeps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.core.contact_laws.power import linear
+from raceway.core.elastic.assembly import Assembly
+from raceway.core.elastic.body import Body
+from raceway.core.elastic.contact import NodalContact, Pair
+from raceway.core.elastic.facets import Facets
+from raceway.core.elastic.gap import plane
+from raceway.core.elastic.surface import surface_points
+from raceway.core.elastic.system import ElasticSystem
+from raceway.core.hexahedron.operator import HexOperator
+from raceway.core.mesh import FACES, boundary
+from raceway.core.record import Schedule
+from raceway.core.stepping.elastic import SteppedElastic
+from raceway.core.stepping.restart import load_motion, save_motion
+from raceway.errors import ConvergenceError, MeshError, StabilityError
+from raceway.integrators.central_difference import CentralDifference
+from raceway.integrators.newmark import Newmark
+from tests.reference import elastic
+
+YOUNG, SIDE = 2e11, 2e-3
+MODULUS = YOUNG / 2.0
+
+
+def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> ElasticSystem:
+    """An elastic cube above another one that is clamped at its base; ``held``: the upper one's top may only go down."""
+    bodies, meshes = [], []
+    for name, lift in (("upper", gap), ("lower", -SIDE)):
+        points, cells = elastic.block((SIDE,) * 3, (2, 2, 2))
+        points = points + [0.0, 0.0, lift]
+        fixed = np.zeros(points.shape, dtype=bool)
+        if name == "lower":
+            fixed[points[:, 2] < -SIDE + 1e-9] = True
+        elif held:
+            fixed[points[:, 2] > gap + SIDE - 1e-9, :2] = True
+        bodies.append(Body(name, HexOperator(points, cells, YOUNG, 0.3, 7800.0, "full"), fixed))
+        meshes.append((points, cells))
+    assembly = Assembly(bodies)
+    first = len(meshes[0][0])
+    under, top = (_facets(mesh, height) for mesh, height in zip(meshes, (gap, 0.0), strict=True))
+    at = surface_points(meshes[0][0], under)
+    pair = Pair("upper on lower", at, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(meshes[1][0], top), first)
+    contact = NodalContact([pair], assembly.nodes, linear, np.full((len(at.area), 1), penalty))
+    load = np.zeros(assembly.size)
+    force = np.zeros((assembly.nodes, 3))
+    force[np.flatnonzero(meshes[0][0][:, 2] > gap + SIDE - 1e-9), 2] = -1.0
+    load += assembly.reduced(force.ravel())
+    return ElasticSystem(assembly, contact, MODULUS, load)
+
+
+def _facets(mesh, height):
+    points, cells = mesh
+    facets = boundary(cells)
+    quads = cells[facets[:, :1], FACES[facets[:, 1]]]
+    return quads[(np.abs(points[quads][:, :, 2] - height) < 1e-9).all(axis=1)]
+
+
+def test_a_cube_on_a_cube_settles_and_carries_its_load():
+    system = cubes(gap=-1e-8)
+    found = system.settle(np.zeros(system.size))
+    # Nine nodes of 1 N; Newton's residual is 1e-6 of them.
+    assert system.contact.resultants()[0, 2] == pytest.approx(9.0, rel=1e-5)
+    assert system.assembly.reactions(found.y)[2] == pytest.approx(9.0, rel=1e-5)
+
+
+def test_a_rigid_motion_that_nothing_holds_is_named_with_the_support_that_would():
+    system = cubes(held=False)
+    with pytest.raises(ConvergenceError, match="nothing holds upper: .*hold it by the cage, by fixed nodes, or by a bed"):
+        system.settle(np.zeros(system.size))
+
+
+def test_an_overlap_deeper_than_an_element_is_refused_with_both_lengths():
+    with pytest.raises(MeshError, match=r"upper on lower: the surfaces overlap by 1.2e\+03 um .* \(1e\+03 um\)"):
+        cubes(gap=-1.2e-3)
+
+
+def moving(system: ElasticSystem, speed: float = 0.1):
+    stepped = SteppedElastic(system)
+    velocity = np.zeros((system.assembly.nodes, 3))
+    velocity[: system.assembly.starts[1], 2] = -speed
+    return stepped, stepped.moving(velocity)
+
+
+def test_a_step_above_the_stable_limit_of_elements_and_contact_is_refused_with_the_limit():
+    system = cubes(gap=-1e-7, penalty=1e16)
+    stepped, start = moving(system)
+    state = stepped.begin(start)
+    stepped.internal(0.0, 1e-9, state.u, state.v)
+    limit = stepped.stable_step()
+    assert limit < 0.8 * min(body.operator.stable_step() for body in system.assembly.bodies)  # the contact's part
+    with pytest.raises(StabilityError, match=f"limit of central differences, {limit:.4g} s"):
+        CentralDifference().advance(stepped, start, Schedule(1.01 * limit, 10, 1))
+
+
+@pytest.mark.parametrize("method", [CentralDifference(), Newmark()], ids=["central_difference", "newmark"])
+def test_going_on_from_disk_equals_never_having_stopped(method, tmp_path):
+    dt = 0.5 * moving(cubes(gap=1e-7))[0].stable_step() if not method.implicit else 2e-7
+
+    def run(start, first, steps):
+        stepped, begin = moving(cubes(gap=1e-7))
+        return method.advance(stepped, begin if start is None else load_motion(start), Schedule(dt, steps, 1, first=first))
+
+    whole, half = run(None, 0, 40), run(None, 0, 20)
+    rest = run(save_motion(half.final, tmp_path / "half"), 20, 20)
+    assert whole.contact_force.max() > 0.0
+    apart = np.abs(rest.final.whole["u"] - whole.final.whole["u"]).max()
+    # Explicit steps to the last bit; implicit ones to Newton's tolerance of 1e-9 of the forces.
+    assert apart <= (1e-7 * np.abs(whole.final.whole["u"]).max() if method.implicit else 0.0)
+
+
+def test_explicit_and_implicit_steps_agree_and_keep_the_energy():
+    found = []
+    for method, steps in ((CentralDifference(), 4000), (Newmark(), 400)):
+        stepped, start = moving(cubes(gap=1e-7))
+        record = method.advance(stepped, start, Schedule(2e-5 / steps, steps, 1, stride=steps // 100))
+        found.append(record)
+        total = sum(record.energies[name] for name in ("elastic", "kinetic", "contact")) - record.energies["external"]
+        # Second order at 0.05 us steps; the impact of faces is sudden.
+        assert np.ptp(total) < 0.02 * record.energies["kinetic"].max()
+    a, b = (record.contact_force[:, 0] for record in found)
+    # The first touch is a jump that 0.05 us blur: the impulse agrees.
+    assert b.sum() == pytest.approx(a.sum(), rel=0.03)
+
+
+def test_a_step_without_balance_keeps_state_and_history():
+    stepped, start = moving(cubes(gap=-1e-7))
+    stepped.solve = lambda *_: np.full(stepped.size, 1e-9)  # type: ignore[method-assign]
+    with pytest.raises(ConvergenceError, match="did not converge after 0 of 5 steps") as caught:
+        Newmark().advance(stepped, start, Schedule(1e-7, 5, 1))
+    assert (caught.value.state["u"] == start.whole["u"]).all()
+    assert np.isfinite(caught.value.state["residuals"]).all()
+
+
+def test_an_equilibrium_that_is_not_found_keeps_the_last_good_state_and_the_residuals():
+    system = cubes(gap=-1e-8)
+    system.solve = lambda *_, **__: np.full(system.size, 1e-9)  # type: ignore[method-assign]
+    with pytest.raises(ConvergenceError, match="Last good state: 0 % of the load") as caught:
+        system.settle(np.zeros(system.size))
+    assert caught.value.state["y"].shape == (system.size,)
+    assert len(caught.value.state["residuals"]) > 40

@@ -1,0 +1,129 @@
+"""Elastic bodies from a scene: a tiny bearing runs through plan, statics, every integrator, and is refused where it cannot."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import numpy as np
+import pytest
+
+from raceway.errors import RacewayError, SceneError
+from raceway.plan import make_plan
+from raceway.run import run
+from raceway.scene_file import scene_from_dict
+
+#: Three balls on some four thousand hexahedra: every path, no accuracy.
+TINY = {
+    "title": "tiny",
+    "bearing": {"preset": "B7206C", "ball_count": 3},
+    "bodies": {"kind": "elastic", "formulation": "one_point"},
+    "mesh": {
+        "kind": "structured",
+        "element_size": 3.2e-3,
+        "nodes_per_semi_axis": 1,
+        "azimuth_cells": 12,
+        "growth": 3.0,
+        "patch": 0.5,
+        "ball_load": 300.0,
+    },
+    "load": {"axial": 250.0},
+    "rotor": {"mass": 0.5},
+    "contact": {"kind": "penalty", "discretisation": "nodal", "stiffness": 3e15},
+}
+#: 15 000 r/min: a turn of 4 ms.
+EXCITED = {"excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 60.0}}
+
+
+def scene(**tables):
+    merged = copy.deepcopy(TINY)
+    for name, table in tables.items():
+        merged[name] = {**merged.get(name, {}), **table} if isinstance(table, dict) else table
+    return scene_from_dict(merged)
+
+
+@pytest.fixture(scope="module")
+def static():
+    seen = []
+    result = run(scene(), on_progress=lambda what, done, total: seen.append(what))
+    return result, seen
+
+
+def test_a_static_scene_balances_and_tells_what_it_found(static):
+    result, seen = static
+    found = result.as_dict()
+    json.dumps(found, allow_nan=False)
+    balls, model = found["equilibrium"]["balls"], found["model"]
+    # Newton's residual is 1e-7 of the forces.
+    assert model["reaction_n"]["x"] == pytest.approx(-250.0, rel=1e-5)
+    assert model["unbalanced_n"] < 1e-3
+    assert sum(b["load_inner_n"] * np.sin(np.radians(b["contact_angle_inner_deg"])) for b in balls) == pytest.approx(
+        250.0,
+        rel=0.01,  # the angle is that of the ball's centre, not of the resultant
+    )
+    # Three balls alike, on a mesh that repeats itself three times.
+    assert np.ptp([b["load_inner_n"] for b in balls]) < 1e-3 * balls[0]["load_inner_n"]
+    for key in ("peak_pressure_points_inner_pa", "peak_pressure_nodal_inner_pa", "approach_inner_m"):
+        assert balls[0][key] > 0.0
+    assert 0.0 < model["penetration_share"] < 1.0
+    assert model["mesh"]["hourglass_coefficient"] == 0.05
+    assert 0.0 < model["hourglass_energy_ratio"] < 1.0
+    assert model["energies_j"]["elastic"] > 0.0
+    assert abs(model["cage_force_n"]) < 1e-3
+    assert any("equilibrium, residual" in text for text in seen)
+
+
+def test_the_tangent_is_symmetric_and_positive(static):
+    stiffness = static[0].equilibrium.stiffness
+    assert np.abs(stiffness - stiffness.T).max() == 0.0
+    assert (np.linalg.eigvalsh(stiffness) > 0.0).all()
+
+
+def test_newmark_runs_from_the_scene():
+    """Series of equilibria and the tangent run in the matrix, explicit steps in tests/stepping."""
+    found = run(
+        scene(**EXCITED, integrator={"kind": "newmark", "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})
+    ).as_dict()
+    json.dumps(found, allow_nan=False)
+    assert found["identification"]["equivalent_stiffness"] > 1e7
+    # Eight steps a turn: the balance is that of the trapezoidal rule, some percent.
+    assert found["stability"]["energy_drift"] < 0.05
+    assert set(found["stability"]["energies_j"]) >= {"elastic", "kinetic", "contact", "friction", "hourglass", "external"}
+    assert found["error"]["total"] is None
+
+
+def test_the_plan_tells_size_and_cost_and_builds_nothing():
+    plan = make_plan(scene())
+    assert plan.dofs > 10_000
+    assert 0.5 < plan.predicted_wall_s < 60.0
+    assert any("every node" in part.why for part in plan.kept)
+    assert any(part.part == "travel of the balls" for part in plan.left_out)
+
+
+REFUSED = [
+    ({"contact": {"discretisation": "resultant", "stiffness": 3e15}}, "contact.discretisation", "surface points"),
+    ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "kinematics.orbiting", "azimuth"),
+    ({"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "kinematics.gyroscopic", "do not turn"),
+    ({"supports": {"axial": "displacement"}}, "supports.axial", "use 'force'"),
+    ({"kinematics": {"radial_expansion": 1e-6}}, "kinematics.radial_expansion", "leave it out"),
+    ({"mesh": {"element_size": 2e-5}}, "mesh.element_size", "larger elements"),
+]
+
+
+@pytest.mark.parametrize(("change", "path", "why"), REFUSED, ids=[path for _, path, _ in REFUSED])
+def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path, why):
+    with pytest.raises(SceneError) as caught:
+        make_plan(scene(**change))
+    found = {m.path: m.message for m in caught.value.mistakes}
+    assert why in found[path]
+
+
+def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
+    monkeypatch.setattr("raceway.elastic_plan.machine_bytes", lambda: 2.0**24)
+    with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
+        make_plan(scene())
+
+
+def test_no_load_is_refused_by_name():
+    with pytest.raises(RacewayError, match="nothing loads the bearing"):
+        run(scene(load={"axial": 0.0}))

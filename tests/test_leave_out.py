@@ -1,0 +1,142 @@
+"""What the plan leaves out is neither imported, allocated nor compiled, and the answer is the same with it."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import pytest
+
+from benchmarks import leave_out
+from raceway import load_scene
+from raceway.plan import make_plan, recorded_per_turn
+from tests.command_line import ARTICLE, invoke, python
+
+#: A run in a process of its own: plan, modules, shapes of arrays, compiled kernels with their signatures.
+RUN = """
+import json, sys
+from raceway import load_scene
+from raceway.run import run
+result = run(load_scene(sys.argv[1], sys.argv[2:]))
+from numba.core.dispatcher import Dispatcher
+modules = {name: module for name, module in sys.modules.items() if name.startswith("raceway.")}
+kernels = {
+    f"{kernel.__module__}:{kernel.__name__}": len(kernel.signatures)
+    for module in modules.values() for kernel in vars(module).values() if isinstance(kernel, Dispatcher)
+}
+system, record = result.model.system, None if result.simulation is None else result.simulation.whole
+shapes = {name: list(getattr(system, name).shape) for name in ("table", "law_params", "law_state", "scalars")}
+if record is not None:
+    shapes |= {name: list(getattr(record, name).shape) for name in ("displacement", "gap", "ball")}
+print(json.dumps({"plan": result.model.plan.as_dict(), "loaded": sorted(sys.modules), "kernels": kernels, "shapes": shapes}))
+"""
+
+
+def run(*changes):
+    done = python("-c", RUN, ARTICLE, *changes)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+SCENES = {
+    "inertial balls, Newmark": (),
+    "weightless balls, explicit": ("kinematics.spin_speed_rpm=0", "integrator.kind=central_difference"),
+    "friction": ("contact.friction=0.1", "integrator.turns=2"),
+    "steady orbit": ("integrator.kind=periodic",),
+    "equilibrium only": ("identifier.kind=tangent",),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
+    changes = SCENES[name]
+    found, scene = run(*changes), load_scene(ARTICLE, changes)
+    plan = make_plan(scene)
+    assert found["plan"] == json.loads(json.dumps(plan.as_dict()))
+    for module in plan.modules:
+        assert (module.module in found["loaded"]) == module.needed, module
+        compiled = [kernel for kernel in found["kernels"] if kernel.startswith(module.module)]
+        assert module.needed or not compiled, compiled
+    # One compiled version of each kernel serves every scene.
+    assert set(found["kernels"].values()) == {1}
+    _check_shapes(found["shapes"], scene, plan)
+
+
+def _check_shapes(shapes, scene, plan):
+    from raceway.core.bodies.ring import COLUMNS, SCALARS
+
+    z = scene.bearing.ball_count
+    columns = 4 if plan.balls == "tangential" else 2
+    assert shapes["table"] == [z, COLUMNS] and shapes["scalars"] == [SCALARS]
+    assert shapes["law_params"][0] == 2 * z and shapes["law_state"] == [2 * z, 0]
+    if plan.time_step_s is None:
+        assert "gap" not in shapes
+        return
+    rows = shapes["displacement"][0]
+    assert shapes["gap"] == [rows, 2 * z] and shapes["ball"] == [rows, z, columns]
+    per_turn = recorded_per_turn(plan.predicted_steps // plan.turns, plan.turns)
+    assert rows == plan.turns * per_turn
+
+
+def test_every_part_of_a_scene_is_decided_with_a_reason():
+    parts = (
+        "tilts", "centrifugal force", "friction", "gyroscopic moments of the balls", "gyroscopic moments of the rotor",
+        "orbiting balls", "elastic rings and balls", "time integration", "contact damping", "second row", "pictures",
+    )  # fmt: skip
+    for changes in (
+        (),
+        ("supports.tilt=free", "contact.friction=0.1", "rotor.polar_inertia=1e-3", "identifier.kind=tangent"),
+    ):
+        plan = make_plan(load_scene(ARTICLE, changes))
+        decided = [*plan.kept, *plan.left_out]
+        assert all(part.why for part in decided) and all(module.why for module in plan.modules)
+        for words in parts:
+            assert sum(part.part.startswith(words) for part in decided) == 1, words
+    condensed = make_plan(load_scene(ARTICLE, ("bodies.kind=condensed",)))
+    left_out = {part.part for part in condensed.left_out}
+    assert {"mirror half", "stress recovery", "a compliance for each ball and contact"} <= left_out
+    fine = make_plan(load_scene(ARTICLE, ("integrator.steps_per_turn=2880",)))
+    assert "history of every step" in {part.part for part in fine.left_out}
+
+
+def test_a_part_that_is_forced_in_is_kept_and_says_so():
+    scene = load_scene(ARTICLE)
+    plan, forced = make_plan(scene), make_plan(scene, ("friction",))
+    assert plan.balls == "inertial" and forced.balls == "tangential"
+    assert next(part.why for part in forced.kept if part.part == "friction") == "forced"
+    assert "friction" in {part.part for part in plan.left_out}
+
+
+@pytest.mark.parametrize("rule", ["tangential", "ball_inertia", "orbiting", "turns", "integration", "pitch"])
+def test_answers_are_equal_with_a_part_and_without(rule, monkeypatch):
+    monkeypatch.setattr(leave_out, "_REPEATS", 1)  # times are the benchmark's
+    found = leave_out.RULES[rule]()
+    assert found.difference <= found.bound <= 1e-6
+
+
+def test_there_are_at_least_eight_rules_and_unknown_ones_are_refused(capsys):
+    assert len(leave_out.RULES) >= 8
+    assert leave_out.main(["nothing"]) == 2
+    assert "no rule is called nothing" in capsys.readouterr().err
+
+
+def test_planning_takes_less_than_20_ms():
+    # Processor time, the fastest of some: what other programs do does not count.
+    begun = time.process_time()
+    assert leave_out.planning() < 0.02
+    assert time.process_time() - begun < 5.0
+
+
+def test_the_command_shows_modules():
+    content = json.loads(invoke("plan", ARTICLE, "--json").stdout)
+    needed = {one["module"]: one["needed"] for one in content["modules"]}
+    assert needed["raceway.core.bodies.rigid_inertial"] and not needed["raceway.core.bodies.rigid_tangential"]
+    assert not any(needed[name] for name in ("matplotlib", "gmsh", "meshio", "pyvista"))
+    shown = invoke("plan", ARTICLE).stdout
+    assert "Modules not imported" in shown and "rigid_tangential" in shown
+
+
+def test_the_saving_of_a_rule_counts_time_or_memory():
+    rule = leave_out.Rule("r", "", 0.0, 1e-10, "", 1.0, 2.0, 10, 10)
+    assert rule.holds and not leave_out.Rule("r", "", 1.0, 1e-10, "", 1.0, 2.0, 10, 10).holds
+    assert not leave_out.Rule("r", "", 0.0, 1e-10, "", 2.0, 2.0, 10, 10).holds

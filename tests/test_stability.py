@@ -1,0 +1,191 @@
+"""`raceway stability`: expectations, guards against hangs and crashes, the numbers of a few cases, the command."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import attrs
+import pytest
+
+from raceway.errors import ConvergenceError, SceneError
+from raceway.registry import default_registry
+from raceway.studies import stability as study_module
+from raceway.studies.stability import stability
+from raceway.studies.stability_case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
+from raceway.studies.stability_catalogue import SCENES, catalogue
+from raceway.studies.stability_systems import pair_laws, transient
+from raceway.studies.stability_workers import in_parallel, rows_of
+from tests.command_line import ARTICLE, invoke
+
+REGISTRY = default_registry()
+CASES = catalogue(REGISTRY)
+
+
+def case(function, **arguments):
+    return Case(function, f"tests.stability_cases:{function}", arguments)
+
+
+def rows_named(name, **wanted):
+    """Rows of the catalogue's cases with a name and some arguments."""
+    found = [c for c in CASES if c.name == name and all(c.arguments.get(k) == v for k, v in wanted.items())]
+    assert found, (name, wanted)
+    return [row for one in found for row in rows_of(one, REGISTRY)]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "penalty", "around the limit, linear", "around the limit, small motions", "safe limit", "undamped steps", "impact",
+        "loose", "lift-off", "radial load 50 x", "axial load 1 N", "100 kN", "speed 1 r/min", "200 000 r/min", "3 balls",
+        "60 balls", "conformity 0.501", "conformity 0.60", "clearance", "interference", "0.4999", "rubber", "ceramic balls",
+        "friction 0.3", "friction 1.0", "rotor of 1 g", "rotor of 10 t", "slender elements", "deep initial penetration",
+        "two balls on the line", "chatter",
+    ],
+)  # fmt: skip
+def test_the_catalogue_has(words):
+    assert any(words in one.name for one in CASES)
+
+
+def test_every_law_and_transient_integrator_takes_part():
+    laws = {one.arguments["shown"].get("law") for one in CASES if "shown" in one.arguments}
+    assert set(pair_laws(REGISTRY)) | {"unilateral"} <= laws
+    for name in ("steps around the limit, linear", "orbit at the safe limit", "undamped steps", "impact"):
+        assert {one.arguments["integrator"] for one in CASES if one.name == name} == set(transient(REGISTRY))
+    assert not {"periodic", "quasi_static"} & set(transient(REGISTRY))
+    assert len({name for name, *_ in SCENES}) == len(SCENES)
+
+
+def test_expectations_judge():
+    def verdict(expectation, predicted, value):
+        return judged("c", {}, "q", expectation, predicted, lambda: (value, None)).verdict
+
+    assert verdict(Near(0.01, ""), 2.0, 2.019) == AS_EXPECTED and verdict(Near(0.01, ""), 2.0, 2.021) == FAILED
+    assert verdict(AtMost(1.0, ""), None, 1.0) == AS_EXPECTED and verdict(AtMost(1.0, ""), None, 1.1) == FAILED
+    assert verdict(AtLeast(1.0, ""), None, 1.0) == AS_EXPECTED and verdict(AtLeast(1.0, ""), None, 0.9) == FAILED
+    assert verdict(AtMost(1.0, ""), None, math.nan) == FAILED and verdict(AtLeast(1.0, ""), None, math.inf) == FAILED
+
+
+def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
+    def refuse():
+        raise ConvergenceError("nothing loads the bearing")
+
+    row = judged("c", {}, "q", AtMost(1.0, ""), None, refuse)
+    assert row.verdict == FAILED and "unexpectedly: nothing loads" in row.note and row.observed is None
+    assert refused("c", {}, "nothing loads", "", refuse).verdict == AS_EXPECTED
+    assert refused("c", {}, "another message", "", refuse).verdict == FAILED
+    assert refused("c", {}, "nothing loads", "", lambda: 1.0).note == "it was computed instead"
+
+
+def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
+    (row,) = rows_of(case("answer"), REGISTRY)
+    assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
+    cases = [case("hang"), case("die"), case("answer", value=1.05), case("answer", value=2.0)]
+    found = {(one.name, one.arguments.get("value")): rows for one, rows, _ in in_parallel(cases, 2, (), patience=6.0)}
+    notes = {key: rows[0].note for key, rows in found.items()}
+    assert "it hangs" in notes["hang", None] and "exit code 7" in notes["die", None]
+    assert found["answer", 1.05][0].verdict == AS_EXPECTED and found["answer", 2.0][0].verdict == FAILED
+
+
+@pytest.mark.parametrize("name", ["steps around the limit, linear", "steps around the limit, small motions of the bearing"])
+def test_explicit_steps_hold_up_to_the_predicted_limit(name):
+    rows = rows_named(name, integrator="central_difference")
+    assert all(row.verdict == AS_EXPECTED for row in rows)
+    limits = [row.observed / row.predicted for row in rows if row.quantity.startswith("stable limit")]
+    # The motions are linear and bisected to 1e-3.
+    assert limits and all(abs(limit - 1.0) < 2e-3 for limit in limits)
+
+
+def test_the_safe_limit_holds_on_large_orbits():
+    rows = rows_named("orbit at the safe limit", integrator="central_difference")
+    assert any(row.setting["contacts open"] for row in rows)
+    # Errors of 25 steps a turn are percents; an unstable motion would be off by many times the orbit.
+    assert all(row.observed < 0.2 for row in rows)
+
+
+@pytest.mark.parametrize("integrator", ["central_difference", "newmark"])
+def test_energy_of_symplectic_steps_has_no_trend(integrator):
+    found = [one for one in CASES if one.name == "undamped steps" and one.arguments["integrator"] == integrator]
+    for one in found:
+        (row,) = rows_of(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
+        # The catalogue holds a million steps to the same bounds.
+        assert row.verdict == AS_EXPECTED, row
+
+
+def test_newmark_chatters_and_generalized_alpha_or_finer_steps_do_not():
+    rows = rows_named("chatter")
+    assert all(row.verdict == AS_EXPECTED for row in rows)
+    coarse = [row for row in rows if row.setting["integrator"] == "newmark" and row.setting["step/period"] == 1.0]
+    assert coarse and all(row.observed > 1.0 and "open in 5" in row.note for row in coarse)  # open about every other step
+    cured = [row for row in rows if row.setting["integrator"] == "generalized_alpha"]
+    assert cured and all(row.observed < 1e-6 for row in cured)
+
+
+@pytest.mark.parametrize(
+    "name", ["axial load 1 N under 50 N rotating: rattling", "no load", "two balls on the line of the load"]
+)
+def test_hard_scenes_end_as_expected(name):
+    assert all(row.verdict == AS_EXPECTED for row in rows_named(name))
+
+
+def test_elements_without_a_volume_are_refused_and_soft_on_hard_is_exact():
+    for name in ("elements without a volume", "rubber on ceramic, elements", "slender elements, tension"):
+        assert all(row.verdict == AS_EXPECTED for row in rows_named(name))
+
+
+def test_the_command_writes_its_report_and_reuses_finished_cases(tmp_path):
+    words = ("stability", "--only", "chatter", "--processes", 0, "--out", tmp_path, "--json")
+    first = invoke(*words)
+    assert first.exit_code == 0
+    content = json.loads(first.stdout)
+    keys = {"case", "setting", "expected", "predicted", "observed", "energy_drift", "verdict"}
+    assert all(keys <= set(row) for row in content["rows"]) and content["failed"] == content["reused"] == 0
+    assert json.loads((tmp_path / "stability.json").read_text())["rows"] == content["rows"]
+    assert "## chatter" in (tmp_path / "stability.md").read_text()
+    again = json.loads(invoke(*words).stdout)
+    assert again["reused"] == again["cases"] and again["rows"] == content["rows"]
+
+
+def test_a_scene_of_the_user_is_put_through_the_cases_that_suit_any(tmp_path):
+    found = invoke("stability", ARTICLE, "--only", "small motions", "--processes", 0, "--out", tmp_path, "--all")
+    assert found.exit_code == 0 and "B7206C" in found.stdout
+    names = {one.name for one in catalogue(REGISTRY, {"bearing": {"preset": "B7206C"}})}
+    assert "undamped steps" in names and "no load" not in names
+
+
+def test_a_case_that_fails_is_exit_code_1_and_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr(study_module, "catalogue", lambda *_: (case("answer", value=3.0),))
+    found = invoke("stability", "--processes", 0, "--out", tmp_path)
+    assert found.exit_code == 1 and "failed: answer, one, equal within 0.1, 1, 3" in found.stdout
+    page = (tmp_path / "stability.md").read_text()
+    assert page.index("## Failed") < page.index("## answer")
+
+
+def test_an_interruption_keeps_finished_cases(tmp_path):
+    def stop(what, done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    store = tmp_path / "rows.jsonl"
+    with pytest.raises(KeyboardInterrupt):
+        stability(only="chatter", processes=0, store=store, on_progress=stop)
+    assert stability(only="chatter", processes=0, store=store).reused == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--only", "chater"), "no case is called so"),
+        (("--set", "load.axial=1"), "none is given"),
+        ((ARTICLE, "--set", "load.axal=1"), "load.axal"),
+        (("nowhere.toml",), "no such file"),
+    ],
+)
+def test_bad_input(words, message, tmp_path):
+    found = invoke("stability", *words, "--processes", 0, "--out", tmp_path)
+    assert found.exit_code == 2 and message in found.output
+
+
+def test_surface_points_are_refused():
+    with pytest.raises(SceneError, match="whole contacts"):
+        catalogue(REGISTRY, {"contact": {"discretisation": "nodal"}})
