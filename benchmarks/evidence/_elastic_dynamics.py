@@ -1,4 +1,7 @@
-"""Elastic bodies in motion: a ball that falls on a block, a block that slides, a whole bearing by two integrators."""
+"""Elastic bodies in motion: a ball that falls on a block, a block that slides, a whole bearing by two integrators.
+
+Not run as a whole yet: `mv` it to elastic_dynamics.py, run it, and commit its report with it.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ from tests.stepping.block import Block
 TITLE = "Elastic bodies in motion"
 COMMAND = "python -m benchmarks.evidence elastic_dynamics"
 #: The impact: elements at the contact [m], their zone [m], hourglass coefficient, steps of the implicit run.
-FINE, ZONE, HOURGLASS, IMPLICIT_STEPS = 0.1e-3, 0.34e-3, 0.005, 120
+FINE, ZONE, HOURGLASS, IMPLICIT_STEPS = 0.14e-3, 0.34e-3, 0.005, 120
 #: A whole bearing, coarse: it is for comparing programs' ways, not for accuracy.
 BEARING: dict[str, Any] = {
     "title": "coarse whole bearing",
