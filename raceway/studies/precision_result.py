@@ -54,7 +54,7 @@ class Precision:
     def _errors(self, row: Row) -> Row:
         out: Row = {"value": None, "error": None, "errors": {}, "at_bound": False, "order": None}
         values = row["quantities"]
-        if not values:  # refused or failed: it may not even have a physics of its own
+        if not values:
             return out
         reference = self.references[row["physics"]]
         out["value"] = main_size(values)
