@@ -1,8 +1,5 @@
 """Elastic bodies in motion: a ball that falls on a block, a block that slides, a whole bearing by two integrators.
 
-Not run as a whole yet: `mv` it to elastic_dynamics.py, run it, and commit its report with it.
-"""
-
 from __future__ import annotations
 
 import tempfile
