@@ -1,4 +1,4 @@
-"""Elastic bodies in motion: a ball that falls on a block, a block that slides, a whole bearing by two integrators.
+"""Elastic bodies in motion: a ball that falls on a block, a block that slides, a whole bearing by two integrators."""
 
 from __future__ import annotations
 
