@@ -19,12 +19,12 @@ _SHARE = 0.8
 #: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
 _FACTORS = 60_000
 #: Processor seconds a cell on one core of a small server: meshing and first forces; factors or multigrid; a linear solve with
-#: the forces that follow it.  Measured with factors at 4500 and 17 000 cells, with multigrid at 4500.
-_BUILD_S, _SETUP_S, _SOLVE_S = 7.0e-5, (1.6e-4, 2.5e-4), (7.0e-5, 1.3e-4)
+#: the forces that follow it.  Measured with factors at 4500, 12 000 and 17 000 cells, with multigrid at 4500.
+_BUILD_S, _SETUP_S, _SOLVE_S = 7.0e-5, (1.6e-4, 2.5e-4), (6.0e-5, 1.3e-4)
 #: Processor seconds a cell of an explicit step, hexahedra of one point and others, and of its Python beside.
 _FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
 #: Linear solves of an equilibrium from rigid bodies with its stiffness, of one from its neighbour, of a time step.
-_EQUILIBRIUM, _NEIGHBOUR, _STEP = 14, 5, 4
+_EQUILIBRIUM, _NEIGHBOUR, _STEP = 8, 5, 4
 #: Imports of what solves [s].
 _IMPORTS_S = 1.5
 
