@@ -6,7 +6,9 @@ import resource
 import shutil
 import subprocess
 import tempfile
+import time
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import attrs
@@ -164,19 +166,38 @@ def run(deck: str, seconds: float = 3600.0) -> CalculixRun:
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "deck.inp").write_text(deck)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(
-            [program, "deck"], cwd=folder, capture_output=True, text=True, timeout=seconds, env={"OMP_NUM_THREADS": "1"}
-        )
+        said_in = Path(folder) / "out.txt"
+        with said_in.open("w") as out:
+            process = subprocess.Popen([program, "deck"], cwd=folder, stdout=out, env={"OMP_NUM_THREADS": "1"})
+            memory = _watched(process, seconds)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        printed = said_in.read_text()
         data = Path(folder) / "deck.dat"
         reaction, pressure = read(data.read_text() if data.exists() else "")
-        # ru_maxrss is the largest of all children so far: the first run of a process is the one that tells.
-        said = [line.strip() for line in done.stdout.splitlines() if "*ERROR" in line or "diverge" in line]
-        failed = done.returncode != 0 or pressure == 0.0
-        why = "; ".join(said[:2]) or f"exit code {done.returncode}, no contact pressure"
-        iterations = done.stdout.count(" iteration ")
-        return CalculixRun(cpu, after.ru_maxrss * 1024, iterations, reaction, pressure, why if failed else "")
+        said = [line.strip() for line in printed.splitlines() if "*ERROR" in line or "diverge" in line]
+        failed = process.returncode != 0 or pressure == 0.0
+        why = "; ".join(said[:2]) or f"exit code {process.returncode}, no contact pressure"
+        return CalculixRun(cpu, memory, printed.count(" iteration "), reaction, pressure, why if failed else "")
+
+
+def _watched(process: subprocess.Popen[bytes], seconds: float) -> int:
+    """Peak memory [bytes] of a process that is waited for; 0 where the system does not tell.
+
+    Notes
+    -----
+    getrusage would not do: before a child has loaded its program, it counts the memory of its parent.
+    """
+    status, peak, end = Path(f"/proc/{process.pid}/status"), 0, time.monotonic() + seconds
+    while process.poll() is None:
+        if time.monotonic() > end:
+            process.kill()
+            process.wait()
+            break
+        with suppress(OSError):
+            peak = max([peak, *(1024 * int(line.split()[1]) for line in status.read_text().splitlines() if "VmHWM" in line)])
+        time.sleep(0.05)
+    return peak
 
 
 def read(text: str) -> tuple[np.ndarray, float]:
@@ -190,7 +211,7 @@ def read(text: str) -> tuple[np.ndarray, float]:
             numbers = [float(word) for word in words]
         except ValueError:
             if "total force" in line:
-                inside, pressure = "force", pressure
+                inside = "force"
             elif "contact" in line and "stress" in line:
                 inside, pressure = "stress", 0.0
             else:

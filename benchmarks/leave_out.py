@@ -300,8 +300,14 @@ def planning() -> float:
     from raceway.plan import make_plan
 
     worst = 0.0
+    coarse = ("mesh.nodes_per_semi_axis=1", "mesh.element_size=3.2e-3", "mesh.growth=3.0")
     nodal = ("contact.discretisation=nodal", "mesh.kind=structured")
-    for changes in ((), ("bodies.kind=condensed",), ("bodies.kind=condensed", *nodal), ("bodies.kind=elastic", *nodal)):
+    for changes in (
+        (),
+        ("bodies.kind=condensed",),
+        ("bodies.kind=condensed", *nodal),
+        ("bodies.kind=elastic", *nodal, *coarse),
+    ):
         scene = load_scene(SCENE, changes)
         times = []
         for _ in range(_REPEATS):

@@ -11,15 +11,16 @@ from raceway.estimate import axial_approach
 from raceway.mesh_plan import predicted_mesh
 from raceway.scene import Scene
 
-#: Bytes of a cell while matrices and multigrid are kept (resident memory measured at 18 000 to 130 000 cells).
-_BYTES_A_CELL = 9000
+#: Bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory measured at 4500 and
+#: 17 000 cells with factors, at 60 000 with multigrid).
+_BYTES, _BYTES_A_CELL = 2.0e8, (7.5e4, 4.0e4)
 #: Share of the machine's memory that a run may take.
 _SHARE = 0.8
 #: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
 _FACTORS = 60_000
 #: Processor seconds a cell on one core of a small server: meshing and first forces; factors or multigrid; a linear solve with
-#: the forces that follow it.  Measured with factors at 4500 and 29 000 cells, with multigrid at 4500.
-_BUILD_S, _SETUP_S, _SOLVE_S = 7.0e-5, (1.6e-4, 2.5e-4), (4.5e-5, 1.3e-4)
+#: the forces that follow it.  Measured with factors at 4500 and 17 000 cells, with multigrid at 4500.
+_BUILD_S, _SETUP_S, _SOLVE_S = 7.0e-5, (1.6e-4, 2.5e-4), (7.0e-5, 1.3e-4)
 #: Processor seconds a cell of an explicit step, hexahedra of one point and others, and of its Python beside.
 _FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
 #: Linear solves of an equilibrium from rigid bodies with its stiffness, of one from its neighbour, of a time step.
@@ -58,14 +59,15 @@ def elastic_cost(scene: Scene) -> ElasticCost | None:
     unknowns = int(3.4 * cells)  # nodes of coarse bodies are more than their cells
     large = int(unknowns > _FACTORS)
     setup, solve = cells * _SETUP_S[large], cells * _SOLVE_S[large]
+    memory = int(_BYTES + _BYTES_A_CELL[large] * cells)
     first = _IMPORTS_S + cells * _BUILD_S + 1.5 * setup + _EQUILIBRIUM * solve
     neighbour = _NEIGHBOUR * solve
     if not method.inertial:
-        return ElasticCost(cells, unknowns, _BYTES_A_CELL * cells, 0.0, first, neighbour, neighbour)
+        return ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
     plain = int(scene.bodies.formulation != "one_point")
     step = _STEP * solve + 0.2 * setup if method.implicit else cells * _FORCE_S[plain] + _PYTHON_S
     start = 4.0 * neighbour + setup if scene.integrator.start == "orbit" else 0.0
-    return ElasticCost(cells, unknowns, _BYTES_A_CELL * cells, _stable_step(scene), first, start, step)
+    return ElasticCost(cells, unknowns, memory, _stable_step(scene), first, start, step)
 
 
 def _stable_step(scene: Scene) -> float:

@@ -46,7 +46,12 @@ def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress 
     registry = registry or default_registry()
     wall = working_clock()
     try:
-        return _run(scene, registry, on_progress, wall)
+        try:
+            return _run(scene, registry, on_progress, wall)
+        except (ArithmeticError, np.linalg.LinAlgError) as why:
+            raise ConvergenceError(
+                f"the numbers of this scene leave what can be computed with ({why}): check its units"
+            ) from why
     except RacewayError as error:
         try:
             registry.notify("raceway_run_failed", error=error)

@@ -213,7 +213,7 @@ class Kinematics:
         "none", help="gyroscopic moment of the balls: the hypothesis", rule=one_of("none", "outer_race", "shared")
     )
     spin_speed_rpm: float | None = option(
-        None, unit="r/min", help="default: excitation.speed_rpm, 0 in a static scene", rule=optional(at_least(0.0))
+        None, unit="r/min", help="default: excitation.speed_rpm, 0 in a static scene", rule=optional(between(0.0, 1e9))
     )
     radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
     ring_growth: bool = option(False, help="adds the centrifugal growth of the inner ring")

@@ -146,8 +146,8 @@ def test_the_key_of_a_row_follows_the_scene_and_the_files_it_names(tmp_path):
     keys = []
     for force in (100.0, 200.0):
         lines = [f"{k / 1000:.4f},{force * math.cos(k):.4f},{force * math.sin(k):.4f}" for k in range(50)]
-        file.write_text("\n".join(["time_s,fy_n,fz_n", *lines]) + "\n")
-        keys.append(key(excitation={"kind": "measured", "file": str(file), "frequency_hz": 200.0}))
+        file.write_text("\n".join(["t,Fy,Fz", *lines]) + "\n")
+        keys.append(key(excitation={"kind": "measured", "file": str(file), "speed_rpm": 12000.0}))
     assert keys[0] != keys[1]
 
 

@@ -60,7 +60,7 @@ def test_wrong_parameters_are_refused(params, found):
 
 
 def test_a_sound_law_passes_in_milliseconds():
-    law, kernel, params, state = Hertz(), Hertz().kernel(), np.full((N, 1), 1e10), np.zeros((N, 0))
+    law, kernel, params, state = Hertz(), Hertz().kernel(), np.tile([1e10, 0.0], (N, 1)), np.zeros((N, 0))
     probe_law(law, kernel, params, state)
     start = time.perf_counter()
     probe_law(law, kernel, params, state)

@@ -53,9 +53,10 @@ class Precision:
 
     def _errors(self, row: Row) -> Row:
         out: Row = {"value": None, "error": None, "errors": {}, "at_bound": False, "order": None}
-        values, reference = row["quantities"], self.references[row["physics"]]
+        values = row["quantities"]
         if not values:
             return out
+        reference = self.references[row["physics"]]
         out["value"] = main_size(values)
         if not reference.values:
             return out

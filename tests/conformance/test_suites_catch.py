@@ -223,7 +223,7 @@ def expecting(tmp_path, monkeypatch):
     return make
 
 
-WRONG = "def build(self, pairs): return (pairs.hertz_factor / (1.0 + pairs.curvature_b))[:, None].copy()"
+WRONG = "def build(self, pairs): return (pairs.hertz_factor / (1.0 + pairs.curvature_b))[:, None] * [1.0, 0.0]"
 
 
 def test_an_expected_failure_conforms_and_xfails_under_pytest(expecting):

@@ -88,7 +88,8 @@ def test_combination(cell, record_property):
     assert "NaN" not in found.text
     assert found.stiffness > 0.0
     # Newmark and its kin leave 1e-4 of the largest energy at 120 steps a turn; central differences less.
-    assert found.drift is None or found.drift < 5e-3
+    # Elastic bodies take eight steps a turn: some percent.
+    assert found.drift is None or found.drift < (0.05 if cell.bodies == "elastic" else 5e-3)
     expected = reference(cell.excitation, cell.tilt, cell.bodies)
     if expected is None:
         return

@@ -11,6 +11,7 @@ from raceway.core.bodies.ring import CAGE
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Path, Problem, Solved, solve
 from raceway.core.periodic.first_guess import guess, response, standing
+from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.symmetry import one_pitch, one_turn
 from raceway.core.system import System
@@ -93,10 +94,12 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
     except ConvergenceError:
         pass
     nodes = mesh_of(problem, highest)
-    if len(nodes) > _MOST:
+    if len(nodes) > _MOST or stiff(problem, standing(problem, q, nodes)):
+        # Each point would take seconds.
         raise ConvergenceError(
-            f"no motion of the period of the force was found from rest; with natural frequencies up to {highest:.3g} times the "
-            "force's it is not looked for along branches. A transient integrator with start = 'ramp' shows what the ring does.",
+            "no motion of the period of the force was found from rest, and it is not looked for along branches: natural "
+            f"frequencies go up to {highest:.3g} times the force's, or dashpots are strong. A transient integrator with "
+            "start = 'ramp' shows what the ring does.",
             {"q": q.copy()},
         )
     points = from_rest(problem, q, tangent, nodes)

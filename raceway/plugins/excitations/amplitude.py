@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.options import at_least, between, finite, one_of, option, optional, positive
+from raceway.options import at_least, between, finite, inside, one_of, option, optional, positive
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class Amplitude:
     """Options of a harmonic force: how large it is at a speed, and when it peaks."""
 
-    speed_rpm: float = option(unit="r/min", help="whirl speed = spin speed", rule=positive())
+    speed_rpm: float = option(unit="r/min", help="whirl speed = spin speed", rule=inside(0.0, 1e9))
     amplitude: str = option(
         "unbalance",
         help="'unbalance': load_share * unbalance * w^2; 'constant': the same force at every speed",

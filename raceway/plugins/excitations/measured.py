@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import option, positive
+from raceway.options import inside, option
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,7 +32,7 @@ class Measured:
     name: ClassVar[str] = "measured"
 
     file: str = option(help="CSV file with a header line, relative to the scene file", path=True)
-    speed_rpm: float = option(unit="r/min", help="speed whose 1x line is identified", rule=positive())
+    speed_rpm: float = option(unit="r/min", help="speed whose 1x line is identified", rule=inside(0.0, 1e9))
     repeats: bool = option(False, help="the record is repeated for as long as the scene runs")
 
     def __attrs_post_init__(self) -> None:

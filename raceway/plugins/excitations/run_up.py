@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import at_least, between, finite, one_of, option, positive
+from raceway.options import at_least, between, finite, inside, one_of, option, positive
 from raceway.plugins.excitations.bidirectional import Bidirectional
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ class RunUp:
 
     name: ClassVar[str] = "run_up"
 
-    first_speed_rpm: float = option(unit="r/min", help="speed at the beginning", rule=positive())
-    speed_rpm: float = option(unit="r/min", help="speed at the end", rule=positive())
+    first_speed_rpm: float = option(unit="r/min", help="speed at the beginning", rule=inside(0.0, 1e9))
+    speed_rpm: float = option(unit="r/min", help="speed at the end", rule=inside(0.0, 1e9))
     duration_s: float = option(unit="s", help="time between the two", rule=positive())
     unbalance: float = option(unit="kg m", help="mass times eccentricity of the whole rotor", rule=at_least(0.0))
     load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
