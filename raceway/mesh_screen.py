@@ -43,5 +43,7 @@ def mesh_screen(found: Mapping[str, Any]) -> RenderableType:
     for name, body in found["bodies"].items():
         words = f"hexahedra, {body['nodes']} nodes, scaled Jacobian {body['scaled_jacobian']['min']:.3g} and more"
         bodies[name] = str(body["elements"]), words
-    rows += [(name, *said) for name, said in grouped(bodies)]
+    rows += [
+        (name, cells, f"each: {words}" if name.startswith("balls") else words) for name, (cells, words) in grouped(bodies)
+    ]
     return Group(Text(found["title"], style="bold"), sections(rows), *written(found["files"]))

@@ -39,9 +39,11 @@ def load(path: Any, reader: Callable[[Any], Any]) -> Any:
         raise MeshError(f"'{path}' is empty")
     try:
         return reader(path)
+    except OSError as why:
+        raise MeshError(f"'{path}' cannot be read: {why.strerror or why}") from why
     except Exception as why:  # meshio raises whatever its parsers stumble over
-        told = f"{type(why).__name__}: {why}" if str(why) else "it is damaged, or not what its ending says"
-        raise MeshError(f"'{path}' cannot be read: {told}") from why
+        told = f" ({type(why).__name__}: {why})" if str(why) else ""
+        raise MeshError(f"'{path}' cannot be read: it is damaged, cut short, or not what its ending says{told}") from why
 
 
 def store(path: Any, writer: Callable[[Any, Any], Any], content: Any) -> None:
