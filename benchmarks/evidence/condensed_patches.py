@@ -25,7 +25,6 @@ PROTOTYPE: dict[str, dict[str, float]] = {
 }  # fmt: skip
 #: Its stiffness [N/um, N m/mrad]: tangents at one place of the points, which ripple.
 TANGENTS = {"locked": (65.52, 256.0, 257.3, 17.61, 17.67), "free": (66.08, 269.6, 256.2)}
-RIPPLE = 0.018
 NAMES = ("kxx", "kyy", "kzz", "k tilt_y", "k tilt_z")
 
 
@@ -101,7 +100,7 @@ def _bearing() -> list[Row]:
         for k, expected in enumerate(TANGENTS[tilt]):
             note = f"the column is a tangent at one place of the points, which ripples by 1.8 %; ours there {point[k]:.5g}"
             what = f"{word}: {NAMES[k]}, {'N/um' if k < 3 else 'N m/mrad'}"
-            out.append(near(what, float(diagonal[k]), expected, RIPPLE, COMMAND, note))
+            out.append(near(what, float(diagonal[k]), expected, 0.01, COMMAND, note))
         out += _beside(tilt, found)
     return out
 

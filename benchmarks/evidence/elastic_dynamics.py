@@ -28,7 +28,7 @@ from tests.stepping.block import Block
 TITLE = "Elastic bodies in motion"
 COMMAND = "python -m benchmarks.evidence elastic_dynamics"
 #: The impact: elements at the contact [m], their zone [m], hourglass coefficient, steps of the implicit run.
-FINE, ZONE, HOURGLASS, IMPLICIT_STEPS = 0.14e-3, 0.34e-3, 0.005, 120
+FINE, ZONE, HOURGLASS, IMPLICIT_STEPS = 0.14e-3, 0.34e-3, 0.005, 240
 #: A whole bearing, coarse: it is for comparing programs' ways, not for accuracy.
 BEARING: dict[str, Any] = {
     "title": "coarse whole bearing",
