@@ -1,7 +1,5 @@
 """The probe at plan time refuses laws and excitations that would corrupt a run, by name and with the contract's words."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -59,13 +57,8 @@ def test_wrong_parameters_are_refused(params, found):
         _probe(Hertz().kernel(), params=params)
 
 
-def test_a_sound_law_passes_in_milliseconds():
-    law, kernel, params, state = Hertz(), Hertz().kernel(), np.tile([1e10, 0.0], (N, 1)), np.zeros((N, 0))
-    probe_law(law, kernel, params, state)
-    start = time.perf_counter()
-    probe_law(law, kernel, params, state)
-    # Measured 0.35 ms; twenty times that on a busy machine.
-    assert time.perf_counter() - start < 7e-3
+def test_a_sound_law_passes():
+    probe_law(Hertz(), Hertz().kernel(), np.tile([1e10, 0.0], (N, 1)), np.zeros((N, 0)))
 
 
 def test_the_distribution_is_looked_up():
