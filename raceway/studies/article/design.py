@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from importlib.resources import files
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import attrs
 
 from raceway.errors import SceneError
 from raceway.registry import Registry
-from raceway.scene_file import with_value
+from raceway.scene_file import read_toml, with_value
 from raceway.studies.axes import Axis, parse_axis, points
 from raceway.studies.points import tables_at
 
@@ -20,6 +20,7 @@ DIRECTIONS = ("unidirectional", "bidirectional")
 AMPLITUDES = ("constant", "unbalance")
 TILTS = ("locked", "shaft", "free")
 BODIES = ("rigid", "condensed")
+ARTICLE = Path(__file__).resolve().parents[2] / "data" / "article.toml"
 #: The article's ranges: section 4 (speeds) and 3.3 (axial loads); how finely is ours.
 SPEEDS = "10980:15000:9"
 LOADS = "400:2000:9"
@@ -102,10 +103,7 @@ def shaft_tilt_stiffness(diameter: float = SHAFT_DIAMETER, span: float = SPAN, y
 
 def article_tables() -> dict[str, Any]:
     """The article's scene, which the package brings."""
-    import tomllib
-
-    found: dict[str, Any] = tomllib.loads(files("raceway").joinpath("data/article.toml").read_text(encoding="utf-8"))
-    return found
+    return read_toml(ARTICLE)
 
 
 def design(

@@ -11,6 +11,7 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import RacewayError
 from raceway.registry import Registry, default_registry
 from raceway.result import without_nan
 from raceway.scene_file import scene_from_dict
@@ -52,7 +53,7 @@ class Article:
     cpu_s: float
     tasks: int
     reused: int
-    fault: Exception | None = None
+    fault: RacewayError | None = None
 
     @cached_property
     def verdicts(self) -> list[Verdict]:
