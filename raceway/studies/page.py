@@ -83,7 +83,7 @@ class Page:
         """
         body = [[cell if isinstance(cell, Cell) else Cell(_shown(cell)) for cell in row] for row in rows]
         columns = list(columns)
-        right = [bool(body) and all(_NUMBER.fullmatch(row[k].text.strip()) for row in body) for k in range(len(columns))]
+        right = [_numbers([row[k] for row in body]) for k in range(len(columns))]
         head = "".join(f'<th scope="col"{_class(number=right[k])}>{_inline(name)}</th>' for k, name in enumerate(columns))
         lines = []
         for row in body:
@@ -168,6 +168,12 @@ def data_uri(content: bytes) -> str:
 def _inline(words: str) -> str:
     """Escaped text; what stands between backticks is code."""
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(words, quote=False))
+
+
+def _numbers(column: Sequence[Cell]) -> bool:
+    """Whether a column stands to the right: half of its cells, or more, are numbers and none is a sentence."""
+    count = sum(bool(_NUMBER.fullmatch(cell.text.strip())) and bool(cell.text.strip()) for cell in column)
+    return count > 0 and 2 * count >= len(column) and all(len(cell.text) <= _SENTENCE // 2 for cell in column)
 
 
 def _toned(cell: Cell) -> str:

@@ -10,15 +10,15 @@ import numpy as np
 from raceway.registry import Registry
 from raceway.scene_file import with_value
 from raceway.studies.article.curves import Curves
-from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, Design, Setting
+from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILTS, Design, Setting
 from raceway.studies.article.runs import Row, Task, curve
 
 #: Swaps of one choice against the article's bidirectional model with ball inertia; the first changes nothing.
 SWAPS: dict[str, dict[str, Any]] = {
-    "rotating force m e w^2, ball inertia": {},
-    "direction: one-way force m e w^2": {"direction": DIRECTIONS[0]},
-    "amplitude: rotating force, constant": {"amplitude": AMPLITUDES[0]},
-    "both: one-way force, constant": {"direction": DIRECTIONS[0], "amplitude": AMPLITUDES[0]},
+    "rotating force m e w², ball inertia": {},
+    "direction swapped: one-way force m e w²": {"direction": DIRECTIONS[0]},
+    "amplitude law swapped: rotating force, constant": {"amplitude": AMPLITUDES[0]},
+    "both swapped: one-way force, constant": {"direction": DIRECTIONS[0], "amplitude": AMPLITUDES[0]},
     "weightless balls": {"inertia": False},
     "condensed bodies": {"bodies": "condensed"},
 }
@@ -33,16 +33,18 @@ def swapped(tilt: str, change: dict[str, Any], bodies: tuple[str, ...]) -> Setti
     return attrs.evolve(base, **change)
 
 
-def one_at_a_time(curves: Curves, load: float, measure: str = "K") -> list[tuple[str, dict[str, float | None]]]:
-    """Of each swap k*(1) - 1 at each tilt boundary; None where a run failed or its motion is unstable."""
+def one_at_a_time(curves: Curves, load: float, measure: str = "K") -> list[tuple[str, dict[str, float | str]]]:
+    """Of each swap k*(1) - 1 at each tilt boundary, or why there is no number: "unstable", "failed", "refused"."""
     out = []
     for name, change in SWAPS.items():
         if change.get("bodies", curves.design.bodies[0]) not in curves.design.bodies:
             continue
-        row: dict[str, float | None] = {}
-        for tilt in ("locked", "shaft", "free"):
-            found = curves.normalised(swapped(tilt, change, curves.design.bodies), load, measure)[-1] - 1.0
-            row[tilt] = float(found) if np.isfinite(found) else None
+        row: dict[str, float | str] = {}
+        for tilt in TILTS:
+            setting = swapped(tilt, change, curves.design.bodies)
+            found = curves.normalised(setting, load, measure)[-1] - 1.0
+            fates = [curves.rows[setting, load][end]["status"] for end in (0, -1)]
+            row[tilt] = float(found) if np.isfinite(found) else next(fate for fate in fates if fate != "completed")
         out.append((name, row))
     return out
 

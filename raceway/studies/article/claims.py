@@ -162,7 +162,7 @@ def _one_way(curves: Curves) -> list[Verdict]:
         return None if found is None else found == "falls"
 
     out = []
-    for letter, measure, words in (("a", "K", "K = Re Z + m w^2"), ("b", "|Z|", "|Z|, which holds the inertia of the mass")):
+    for letter, measure, words in (("a", "K", "K = Re Z + m w²"), ("b", "|Z|", "|Z|, which holds the inertia of the mass")):
         found = _course(curves, ONE_WAY, measure, falls)
         text = f"k*(w* = 1): {by_tilt(found)}"
         claim = f"Unidirectional: the radial stiffness falls with speed; k = {words}."
@@ -183,12 +183,12 @@ def _rotating(curves: Curves) -> Verdict:
     text = f"k*(w* = 1): {by_tilt(found)}"
     if shares:
         text += (
-            f". Where it rises, {min(shares):.0%} to {max(shares):.0%} of the rise is quadratic in w* (a law in w^2 alone: "
+            f". Where it rises, {min(shares):.0%} to {max(shares):.0%} of the rise is quadratic in w* (a law in w² alone: "
         )
         text += f"{(last - first) / (last + first):.0%})"
     rule = (
-        f"rotating force m e w^2: K rises at every step of the speed, by at least {LEVEL:.1%}, and the parabola "
-        f"1 + a w* + b w*^2 has b > 0 and leaves at most {MISFIT:.0%} of the rise"
+        f"rotating force m e w²: K rises at every step of the speed, by at least {LEVEL:.1%}, and the parabola "
+        f"1 + a w* + b w*² has b > 0 and leaves at most {MISFIT:.0%} of the rise"
     )
     return judge("4", "Bidirectional: rises roughly quadratically with speed.", rule, text, found)
 
@@ -214,10 +214,13 @@ class _Effect:
 
 
 _READINGS = {
-    "a": ("speed", "change of K with speed inside each zone, at one axial load: K(0.25)/K(0) and K(1)/K(0.75)"),
-    "b": ("speed", "change of K with speed from w* = 0 to the end of each zone, at one axial load: k*(0.25) and k*(1)"),
-    "c": ("axial load", "change of K with the axial load (largest over smallest, largest in the zone)"),
-    "d": ("axial load", "change of k* with the axial load (largest over smallest, largest in the zone)"),
+    "a": ("effect of speed inside each zone", "size of the change of K at one axial load: K(0.25)/K(0) and K(1)/K(0.75)"),
+    "b": ("effect of speed up to the end of each zone", "size of the change at one axial load: k*(0.25) and k*(1)"),
+    "c": ("effect of the axial load on K", "largest K over smallest, of all axial loads, where that is largest in the zone"),
+    "d": (
+        "effect of the axial load on k*",
+        "largest k* over smallest, of all axial loads, where that is largest in the zone",
+    ),
 }
 
 
@@ -248,10 +251,10 @@ def _axial(curves: Curves) -> list[Verdict]:
     for letter, (of, words) in _READINGS.items():
         low = [Finding(one.at, one.as_claimed, one.low, one.why) for one in effects[letter]]
         high = [Finding(one.at, one.as_claimed, one.high, one.why) for one in effects[letter]]
-        text = f"low zone: {by_tilt(low, 100.0, ' %', 2)}. High zone: {by_tilt(high, 100.0, ' %', 2)}"
-        out.append(judge(f"5{letter}", f"{claim}; read as effect of {of}.", f"{words}: {asked}", text, high))
+        text = f"low zone: {by_tilt(low, 100.0, ' %', '.1f')}. High zone: {by_tilt(high, 100.0, ' %', '.1f')}"
+        out.append(judge(f"5{letter}", f"{claim}; read as {of}.", f"{words}: {asked}", text, high))
     grows = [Finding(one.at, None if one.growth is None else one.growth > 0.0, one.growth, one.why) for one in effects["c"]]
-    text = f"change of that effect from the low to the high zone, in points of percent: {by_tilt(grows, 100.0, '', 2)}"
+    text = f"change of that effect from the low to the high zone, in points of percent: {by_tilt(grows, 100.0, '', '+.1f')}"
     rule = "the effect of 5c is larger in the high zone than in the low one"
     out.append(judge("5e", "The influence of the axial load grows with speed.", rule, text, grows))
     return out
@@ -286,7 +289,7 @@ def _both(curves: Curves) -> list[Verdict]:
         together = False if False in parts else None if None in parts else True
         whole.append(Finding(model, together, None, why))
     first, last = curves.design.loads[0], curves.design.loads[-1]
-    step = "rotating force m e w^2: K rises at every step of the"
+    step = "rotating force m e w²: K rises at every step of the"
     return [
         judge("6a", "The stiffness rises with axial load.", f"{step} axial load, at each speed",
               f"K at {last:g} N over K at {first:g} N: {by_tilt(with_load)}", with_load),
@@ -294,7 +297,7 @@ def _both(curves: Curves) -> list[Verdict]:
               f"k*(w* = 1): {by_tilt(rises)}", rises),
         judge("6c", "The speed's influence grows with axial load.",
               "the size of the change with speed, |k*(1) - 1|, rises at every step of the axial load",
-              f"from {first:g} to {last:g} N that size changes by, in points of percent: {by_tilt(grows, 100.0, '', 2)}",
+              f"from {first:g} to {last:g} N that size changes by, in points of percent: {by_tilt(grows, 100.0, '', '+.1f')}",
               grows),
         judge("6", "All of this together.", "6a, 6b and 6c, at all speeds and axial loads", "see 6a, 6b and 6c", whole),
     ]  # fmt: skip

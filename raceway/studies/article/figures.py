@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _WIDTH, _HEIGHT = 4.7, 3.8
 _GRID = "#d8dee4"
-_STAR, _SPEED, _LOAD, _STIFFNESS = "k* = k / k(w_min)", "w* [-]", "axial load [N]", "k [10⁶ N/m]"
+_STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
 _PAIRS = {
     (DIRECTIONS[1], AMPLITUDES[1]): ("#c8501e", "-", 2.4, "rotating, m e w²"),
     (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "one-way, constant"),
@@ -169,16 +169,21 @@ def _cut(axes: Any, lines: list[np.ndarray]) -> None:
 def _colours(count: int) -> list[Any]:
     from matplotlib import colormaps
 
-    return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.86, count)]
+    return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.72, count)]
 
 
 def _end_labels(axes: Any, x: float, labels: list[tuple[float, str, Any]]) -> None:
     """Names at the right ends of curves, pushed apart where they would cover each other."""
+    known = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
     low, high = axes.get_ylim()
-    gap, last = 0.062 * (high - low), -np.inf
-    for y, text, colour in sorted(label for label in labels if np.isfinite(label[0])):
-        place = max(y, last + gap)
-        last = place
+    gap = 0.062 * (high - low)
+    places: list[float] = []
+    for y, *_ in known:
+        places.append(max(y, places[-1] + gap) if places else y)
+    top = high + 0.5 * gap
+    for k in reversed(range(len(places))):  # what was pushed out at the top pushes back
+        places[k] = top = min(places[k], top - gap)
+    for place, (_, text, colour) in zip(places, known, strict=True):
         axes.annotate(text, (x, place), xytext=(5, 0), textcoords="offset points", fontsize=8.5, color=colour, va="center",
                       annotation_clip=False)  # fmt: skip
 
@@ -275,7 +280,7 @@ def _map(curves: Curves, setting: Setting) -> Panel:
         size = float(np.nanmax(np.abs(star - 1.0)))
         levels = np.linspace(1.0 - size, 1.0 + size, 41)
         axes.contourf(w, loads, star, levels=levels, cmap="RdBu_r", alpha=0.9)
-        lines = axes.contour(w, loads, star, levels=8, colors="#1b2733", linewidths=0.7)
+        lines = axes.contour(w, loads, star, levels=6, colors="#1b2733", linewidths=0.7)
         axes.clabel(lines, fontsize=8.5, fmt=lambda value: f"{value:.4g}")
         _finish(axes, TILT_WORDS[setting.tilt], _SPEED, _LOAD)
         axes.grid(False)
@@ -296,8 +301,11 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
         axes.set_ylabel(_LOAD, fontsize=9)
         axes.set_zlabel(_STIFFNESS, fontsize=9)
         axes.tick_params(labelsize=8)
+        axes.set_xticks([0.0, 0.5, 1.0])
+        axes.set_yticks([loads.min(), 0.5 * (loads.min() + loads.max()), loads.max()])
+        axes.locator_params(axis="z", nbins=5)
         axes.view_init(24, -128)
-        axes.set_box_aspect(None, zoom=0.86)
+        axes.set_box_aspect(None, zoom=0.92)
 
     words = (
         f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {np.nanmin(k):.4g} to {np.nanmax(k):.4g} 10⁶ N/m"

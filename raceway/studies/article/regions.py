@@ -87,7 +87,7 @@ def _ranges(chosen: list[float], every: list[float], unit: str) -> str:
     return f"{' and '.join(words)} {unit}"
 
 
-def by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", digits: int = 3) -> str:
+def by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", form: str = ".3f") -> str:
     """The range of the values at each tilt boundary."""
     parts = []
     for tilt in dict.fromkeys(one.at["tilt"] for one in findings):
@@ -95,6 +95,6 @@ def by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", dig
         if not values:
             parts.append(f"{TILT_WORDS[tilt]}: no number")
             continue
-        low, high = (f"{value:.{digits}g}" for value in (min(values), max(values)))
+        low, high = (f"{value:{form}}" for value in (min(values), max(values)))
         parts.append(f"{TILT_WORDS[tilt]}: {low if low == high else f'{low} to {high}'}{unit}")
     return "; ".join(parts)

@@ -41,10 +41,18 @@ def page(study: Article, pictures: Sequence[Picture], command: str) -> Page:
 
 def _opening(out: Page, study: Article) -> None:
     counts = {kind: sum(one.kind == kind for one in study.verdicts) for kind in TONES}
-    words = ", ".join(f"{count} {kind.removesuffix(' for')}" for kind, count in counts.items() if count)
+    words = {
+        HOLDS: "hold",
+        PARTLY: "hold only in a region",
+        NOT: "do not hold",
+        FAILED: "failed",
+        UNTESTED: "cannot be tested",
+    }
+    told_counts = ", ".join(f"{count} {words[kind]}" for kind, count in counts.items() if count)
     out.text(
-        f"Six claims of {ARTICLE} are put to runs of this program, each in every reading that its words allow: {words}. "
-        "No claim is fitted: each verdict follows from a rule that is printed beside it.",
+        f"The claims of {ARTICLE} are put to {sum(len(rows) for rows in study.curves.rows.values())} steady orbits of this "
+        f"program, each claim in every reading that its words allow. Of {len(study.verdicts)} readings {told_counts}. No claim "
+        "is fitted: each verdict follows from a rule that is printed beside it.",
         kind="lead",
     )
     out.listing(in_short(study))
@@ -52,29 +60,38 @@ def _opening(out: Page, study: Article) -> None:
 
 def in_short(study: Article) -> list[str]:
     """What the numbers say, in a few sentences."""
-    curves, load = study.curves, shown_load(study.curves)
-    swaps = dict(causes.one_at_a_time(curves, load))
-    first = next(iter(swaps.values()))
-    parts = [f"{TILT_WORDS[tilt]} {_percent(first[tilt])}" for tilt in TILTS]
+    load = shown_load(study.curves)
+    swaps = dict(causes.one_at_a_time(study.curves, load))
+    first, *others = swaps
     out = [
-        f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {'; '.join(parts)}."
+        f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {_each(swaps[first])}."
     ]
     turns = {load: causes.turning_point(causes.hardening(rows)) for load, rows in study.scan.items()}
-    known = [f"{value:.3g} N m/rad at {load:g} N" for load, value in turns.items() if value is not None]
+    known = [f"{_round(value)} N m/rad at {load:g} N" for load, value in turns.items() if value is not None]
     if known:
         out.append(
             f"What turns hardening into softening is the tilt stiffness of the shaft: K stops rising with speed above "
-            f"{', '.join(known)}. The rig’s shaft is taken with {study.curves.design.shaft:.3g} N m/rad."
+            f"{', '.join(known)}. The shaft is taken with {_round(study.curves.design.shaft)} N m/rad."
         )
-    for name in list(swaps)[1:]:
-        row = swaps[name]
-        parts = [f"{TILT_WORDS[tilt]} {_percent(row[tilt])} instead of {_percent(first[tilt])}" for tilt in TILTS]
-        out.append(f"With one choice swapped ({name}): {'; '.join(parts)}.")
-    return out
+    return out + [f"The same with {_lower(name)}: {_each(swaps[name])}." for name in others]
 
 
-def _percent(change: float | None) -> str:
-    return "not computed" if change is None else f"{100.0 * change:+.2f} %"
+def _lower(name: str) -> str:
+    head, colon, rest = name.partition(": ")
+    return f"the {head} ({rest})" if colon and head != "both swapped" else f"{head} ({rest})" if colon else name
+
+
+def _each(row: dict[str, float | str]) -> str:
+    return ", ".join(f"{_percent(row[tilt])} ({TILT_WORDS[tilt]})" for tilt in TILTS)
+
+
+def _round(value: float) -> str:
+    """Three significant digits without an exponent."""
+    return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u202f")
+
+
+def _percent(change: float | str) -> str:
+    return change if isinstance(change, str) else f"{100.0 * change:+.2f} %".replace("-", "−")
 
 
 def _verdicts(out: Page, study: Article) -> None:
@@ -106,7 +123,7 @@ def _setting(out: Page, study: Article) -> None:
         "(unidirectional). Its amplitude is m e w², or constant: that at "
         f"{tables['excitation'].get('reference_speed_rpm', made.speeds[0]):g} r/min. The article changes both at once; here "
         "each is varied alone, too.",
-        f"Tilt of the inner ring: locked, free, or against the shaft with {made.shaft:.4g} N m/rad (2 E I / L of a shaft of "
+        f"Tilt of the inner ring: locked, free, or against the shaft with {_round(made.shaft)} N m/rad (2 E I / L of a shaft of "
         "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
         "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
         "contacts.",
@@ -136,15 +153,15 @@ def _figures(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
     for load in dict.fromkeys((curves.design.loads[0], shown_load(curves), curves.design.loads[-1])):
         rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in causes.one_at_a_time(curves, load)]
         out.table(columns, rows, f"k*(1) − 1 at {load:g} N")
-    _picture(out, pictures["tilt-stiffness"], wide=False)
+    _picture(out, pictures["tilt-stiffness"])
     if "bodies" in pictures:
         out.section("Rigid and condensed bodies")
         _picture(out, pictures["bodies"])
 
 
-def _picture(out: Page, picture: Picture, wide: bool = False) -> None:
+def _picture(out: Page, picture: Picture) -> None:
     out.heading(picture.title)
-    out.figures([(panel.figure(), panel.alternative, panel.caption) for panel in picture.panels], wide=wide)
+    out.figures([(panel.figure(), panel.alternative, panel.caption) for panel in picture.panels])
 
 
 def _static(out: Page, study: Article) -> None:
