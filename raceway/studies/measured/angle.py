@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import pi
+from typing import Any
 
 import attrs
 import numpy as np
@@ -16,6 +17,8 @@ MOST_PER_TURN, MOST_RANGE = 0.01, 0.10
 LEAST_PER_TURN = 8
 #: A mark counts once the probe was below the lower and is above the upper of these parts of its range.
 _LOW, _HIGH = 0.4, 0.6
+#: Turns between two knots of the angle's spline: a mark is known to a sample only.
+_TURNS_PER_KNOT = 12
 #: The speed of a column is taken as the mean over this many turns.
 _SMOOTH_TURNS = 1.0
 
@@ -29,6 +32,7 @@ class Turning:
     recording : the samples from the first to the last mark
     angle : (n,) from the first mark [rad];  speed : (n,) [rad/s]
     turns : whole turns;  marked : whether angle 0 is the mark, or just where the record begins
+    doubt : by which the angle of all marks together may be off [rad], at most
     """
 
     recording: Recording
@@ -36,6 +40,7 @@ class Turning:
     speed: np.ndarray
     turns: int
     marked: bool
+    doubt: float = 0.0
 
 
 def turning(recording: Recording) -> Turning:
@@ -55,10 +60,8 @@ def turning(recording: Recording) -> Turning:
 
 
 def _by_marks(recording: Recording) -> Turning:
-    from scipy.interpolate import CubicSpline
-
     assert recording.key is not None
-    marks = marks_of(recording.time, recording.key)
+    marks, doubt = marks_of(recording.time, recording.key)
     if len(marks) < 3:
         raise RacewayError(f"{max(len(marks) - 1, 0)} whole turns between the marks of `key`; at least two are needed")
     lengths = np.diff(marks)
@@ -70,13 +73,35 @@ def _by_marks(recording: Recording) -> Turning:
             "Cut the record there"
         )
     inside = (recording.time >= marks[0]) & (recording.time < marks[-1])
-    spline = CubicSpline(marks, 2.0 * pi * np.arange(len(marks)), bc_type="natural" if len(marks) > 3 else "not-a-knot")
+    spline = _smooth_angle(marks)
     part = recording.part(inside)
-    return Turning(part, spline(part.time), spline(part.time, 1), len(marks) - 1, True)
+    # The ends of the smooth angle miss their marks by as much as the samples do; whole turns are counted from zero.
+    angle = np.clip(spline(part.time), 0.0, np.nextafter(2.0 * pi * (len(marks) - 1), 0.0))
+    return Turning(part, angle, spline(part.time, 1), len(marks) - 1, True, doubt * 2.0 * pi / float(np.median(lengths)))
 
 
-def marks_of(time: np.ndarray, key: np.ndarray) -> np.ndarray:
-    """Times [s] at which a probe's voltage (n,) rises through the middle of its range, between samples by a straight line."""
+def _smooth_angle(marks: np.ndarray) -> Any:
+    """The angle over time [rad]: cubic splines with a knot every few turns, through the scatter of marks between samples."""
+    from scipy.interpolate import make_lsq_spline
+
+    count = len(marks)
+    degree = min(3, count - 1) if count >= 8 else 1 if count < 5 else 2
+    pieces = max((count - 1) // _TURNS_PER_KNOT, 1)
+    inner = np.interp(np.linspace(0, count - 1, pieces + 1)[1:-1], np.arange(count), marks)
+    knots = np.concatenate([[marks[0]] * (degree + 1), inner, [marks[-1]] * (degree + 1)])
+    return make_lsq_spline(marks, 2.0 * pi * np.arange(count), knots, degree)
+
+
+def marks_of(time: np.ndarray, key: np.ndarray) -> tuple[np.ndarray, float]:
+    """Times [s] at which a probe's voltage (n,) rises through the middle of its range, and their common doubt [s].
+
+    Notes
+    -----
+    Between two samples the voltage is taken for a straight line.  Of a flank that is steeper than the samples are apart a mark
+    is known to half an interval.  That averages out where the marks fall anywhere between samples; where sampling keeps step
+    with the shaft they all fall on the same place, and the doubt stays: it is weighed with the size of their mean direction
+    on a circle of one interval.
+    """
     low, high = float(key.min()), float(key.max())
     if high - low <= 0.0:
         raise RacewayError("`key` never changes: no mark is seen")
@@ -84,12 +109,17 @@ def marks_of(time: np.ndarray, key: np.ndarray) -> np.ndarray:
     state = np.where(level > _HIGH, 1, np.where(level < _LOW, -1, 0))
     known = np.flatnonzero(state)
     rises = np.flatnonzero((state[known][:-1] < 0) & (state[known][1:] > 0))
-    found = []
+    found, jumps, places = [], [], []
     for before, after in zip(known[rises], known[rises + 1], strict=True):
         k = before + int(np.argmax(level[before : after + 1] >= 0.5))
         part = (0.5 - level[k - 1]) / (level[k] - level[k - 1])
         found.append(time[k - 1] + part * (time[k] - time[k - 1]))
-    return np.array(found)
+        jumps.append(level[k] - level[k - 1])
+        places.append(part)
+    if not found:
+        return np.array(found), 0.0
+    together = max(float(abs(np.exp(2j * pi * np.array(places)).mean())), len(found) ** -0.5)
+    return np.array(found), 0.5 * float(np.median(np.diff(time))) * float(np.mean(jumps)) * together
 
 
 def _by_speed(recording: Recording) -> Turning:
@@ -118,14 +148,15 @@ def _smooth(values: np.ndarray, width: int) -> np.ndarray:
 
 
 def _refuse_change(found: Turning) -> None:
-    marks = np.interp(2.0 * pi * np.arange(found.turns + 1), found.angle, found.recording.time)
-    marks[-1] = marks[-2] + 2.0 * pi / found.speed[-1]
-    speeds = 1.0 / np.diff(marks)
+    turn = np.minimum((found.angle / (2.0 * pi)).astype(int), found.turns - 1)
+    counts = np.maximum(np.bincount(turn, minlength=found.turns), 1)
+    speeds = np.bincount(turn, found.speed, minlength=found.turns) / counts
+    begins = np.bincount(turn, found.recording.time, minlength=found.turns) / counts
     change = np.abs(np.diff(speeds)) / speeds[1:]
     if change.max() > MOST_PER_TURN:
         k = int(np.argmax(change))
         raise RacewayError(
-            f"the speed is not constant: it changes by {100 * change[k]:.2g} % from one turn to the next at {marks[k + 1]:.6g} s; "
+            f"the speed is not constant: it changes by {100 * change[k]:.2g} % from one turn to the next at {begins[k + 1]:.6g} s; "
             f"order tracking follows up to {100 * MOST_PER_TURN:g} %"
         )
     span = (speeds.max() - speeds.min()) / speeds.mean()

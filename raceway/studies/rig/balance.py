@@ -116,4 +116,6 @@ def find_root(
             tried = value(u + step)
         jacobian += np.outer(tried - f - jacobian @ step, step) / (step @ step)
         u, f = u + step, tried
-    raise ConvergenceError(f"shaft and bearing find no common motion after {_MOST} tries: they differ by {np.abs(f).max():.1e}")
+    raise ConvergenceError(
+        f"shaft and bearing find no common motion after {_MOST} tries: they differ by {np.abs(f).max():.1e}"
+    )

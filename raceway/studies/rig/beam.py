@@ -23,7 +23,9 @@ import attrs
 import numpy as np
 
 #: Two points a node less would still integrate the stiffness exactly; mass needs degree 6.
-_POINTS, _WEIGHTS = (0.5 * (values + shift) for values, shift in zip(np.polynomial.legendre.leggauss(4), (1.0, 0.0), strict=True))
+_POINTS, _WEIGHTS = (
+    0.5 * (values + shift) for values, shift in zip(np.polynomial.legendre.leggauss(4), (1.0, 0.0), strict=True)
+)
 
 
 @attrs.frozen(eq=False)

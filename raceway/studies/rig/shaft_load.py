@@ -33,6 +33,4 @@ class ShaftLoad(Bidirectional):
 
 def shaft_load(speed_rpm: float, force: complex, moment: complex) -> ShaftLoad:
     """The excitation of a force F_y + j F_z [N] and a moment M_z - j M_y [N m], both at time zero."""
-    return ShaftLoad(
-        speed_rpm=speed_rpm, amplitude="constant", force=abs(force), turning_force=force, turning_moment=moment
-    )
+    return ShaftLoad(speed_rpm=speed_rpm, amplitude="constant", force=abs(force), turning_force=force, turning_moment=moment)
