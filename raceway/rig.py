@@ -27,7 +27,9 @@ class Signals:
     noise_db: float = option(
         40.0, unit="dB", help="rms of the response at the speed over rms of the white noise", rule=between(0.0, 300.0)
     )
-    drift: float = option(5e-6, unit="m", help="slow wandering of the gap over a record", rule=at_least(0.0))
+    drift: float = option(
+        5e-6, unit="m", help="slow wandering of the gap over a record: half straight, half a half-wave", rule=at_least(0.0)
+    )
     run_out: float = option(5e-6, unit="m", help="run-out of the measured track, once a turn", rule=at_least(0.0))
     run_out_angle_deg: float = option(70.0, unit="deg", help="angle of the run-out from the mark", rule=finite())
     slow_roll_rpm: float = option(300.0, unit="r/min", help="speed of the slow-roll record", rule=positive())

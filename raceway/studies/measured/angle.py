@@ -61,7 +61,7 @@ def turning(recording: Recording) -> Turning:
 
 def _by_marks(recording: Recording) -> Turning:
     assert recording.key is not None
-    marks, doubt = marks_of(recording.time, recording.key)
+    marks, jump = marks_of(recording.time, recording.key)
     if len(marks) < 3:
         raise RacewayError(f"{max(len(marks) - 1, 0)} whole turns between the marks of `key`; at least two are needed")
     lengths = np.diff(marks)
@@ -77,7 +77,25 @@ def _by_marks(recording: Recording) -> Turning:
     part = recording.part(inside)
     # The ends of the smooth angle miss their marks by as much as the samples do; whole turns are counted from zero.
     angle = np.clip(spline(part.time), 0.0, np.nextafter(2.0 * pi * (len(marks) - 1), 0.0))
-    return Turning(part, angle, spline(part.time, 1), len(marks) - 1, True, doubt * 2.0 * pi / float(np.median(lengths)))
+    speed = spline(part.time, 1)
+    return Turning(part, angle, speed, len(marks) - 1, True, _doubt(recording.time, marks, spline, jump))
+
+
+def _doubt(time: np.ndarray, marks: np.ndarray, spline: Any, jump: float) -> float:
+    """By which all marks together may be off [rad].
+
+    Notes
+    -----
+    A flank that is steeper than the samples are apart tells a mark to half an interval; one that takes n samples to about
+    1 / n^2 of that.  It averages out where marks fall anywhere between samples; where sampling keeps step with the shaft they
+    all fall on the same place, and the doubt stays: it is weighed with their mean direction on a circle of one interval.
+    """
+    smooth = marks - (spline(marks) - 2.0 * pi * np.arange(len(marks))) / spline(marks, 1)
+    after = np.clip(np.searchsorted(time, smooth), 1, len(time) - 1)
+    places = (smooth - time[after - 1]) / (time[after] - time[after - 1])
+    together = max(float(abs(np.exp(2j * pi * places).mean())), len(marks) ** -0.5)
+    speed = 2.0 * pi * (len(marks) - 1) / float(marks[-1] - marks[0])
+    return 0.5 * speed * float(np.median(np.diff(time))) * jump**2 * together
 
 
 def _smooth_angle(marks: np.ndarray) -> Any:
@@ -93,15 +111,8 @@ def _smooth_angle(marks: np.ndarray) -> Any:
 
 
 def marks_of(time: np.ndarray, key: np.ndarray) -> tuple[np.ndarray, float]:
-    """Times [s] at which a probe's voltage (n,) rises through the middle of its range, and their common doubt [s].
-
-    Notes
-    -----
-    Between two samples the voltage is taken for a straight line.  Of a flank that is steeper than the samples are apart a mark
-    is known to half an interval.  That averages out where the marks fall anywhere between samples; where sampling keeps step
-    with the shaft they all fall on the same place, and the doubt stays: it is weighed with the size of their mean direction
-    on a circle of one interval.
-    """
+    """Times [s] at which a probe's voltage (n,) rises through the middle of its range, between samples by a straight line,
+    and the mean rise from the sample before to the sample after, over the range."""
     low, high = float(key.min()), float(key.max())
     if high - low <= 0.0:
         raise RacewayError("`key` never changes: no mark is seen")
@@ -109,17 +120,13 @@ def marks_of(time: np.ndarray, key: np.ndarray) -> tuple[np.ndarray, float]:
     state = np.where(level > _HIGH, 1, np.where(level < _LOW, -1, 0))
     known = np.flatnonzero(state)
     rises = np.flatnonzero((state[known][:-1] < 0) & (state[known][1:] > 0))
-    found, jumps, places = [], [], []
+    found, jumps = [], []
     for before, after in zip(known[rises], known[rises + 1], strict=True):
         k = before + int(np.argmax(level[before : after + 1] >= 0.5))
         part = (0.5 - level[k - 1]) / (level[k] - level[k - 1])
         found.append(time[k - 1] + part * (time[k] - time[k - 1]))
         jumps.append(level[k] - level[k - 1])
-        places.append(part)
-    if not found:
-        return np.array(found), 0.0
-    together = max(float(abs(np.exp(2j * pi * np.array(places)).mean())), len(found) ** -0.5)
-    return np.array(found), 0.5 * float(np.median(np.diff(time))) * float(np.mean(jumps)) * together
+    return np.array(found), float(np.mean(jumps)) if jumps else 0.0
 
 
 def _by_speed(recording: Recording) -> Turning:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cmath import exp
 from math import pi, radians, sqrt
-from pathlib import Path
 from typing import Any
 
 import attrs
@@ -18,9 +17,9 @@ from raceway.studies.measured.inversion import invert, scatter, sensitivities, w
 from raceway.studies.measured.orders import Order, order
 from raceway.studies.measured.recording import Recording
 from raceway.studies.measured.run_out import RunOut, less_response
-from raceway.studies.rig.balance import State
-from raceway.studies.rig.bearing import Bearing
-from raceway.studies.rig.rotor import Rotor, rotor
+from raceway.studies.shaft.balance import State
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import Rotor, rotor
 
 #: Half-width of an interval of 95 % over the standard error.
 _COVERAGE = 1.96

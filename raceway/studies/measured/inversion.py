@@ -12,9 +12,9 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.studies.rig.balance import State, find_root
-from raceway.studies.rig.bearing import Bearing
-from raceway.studies.rig.rotor import Rotor
+from raceway.studies.shaft.balance import State, find_root
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import Rotor
 
 
 def invert(line: Rotor, held: Bearing, sensor: complex) -> State:

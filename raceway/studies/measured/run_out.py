@@ -12,8 +12,8 @@ from raceway.errors import RacewayError
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.orders import Order, order
 from raceway.studies.measured.recording import Recording
-from raceway.studies.rig.bearing import Bearing
-from raceway.studies.rig.rotor import Rotor
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import Rotor
 
 
 @attrs.frozen

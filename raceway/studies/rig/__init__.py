@@ -1,9 +1,7 @@
-"""The article's test rig: a shaft on two of our bearings, its signals, and what can be read back from them.
+"""``raceway study rig``: the article's test rig, its signals, and what can be read back from them.
 
-beam            a shaft as Timoshenko elements in forward whirl, with rotary inertia and gyroscopic moments
-rotor           the rig's shaft and disc: what tested bearing and sensor do under unbalance, force and moment
-shaft_load      the force and the moment that a shaft passes on to a bearing: an excitation; shaft_load_kernel: compiled
-bearing         what a bearing does under them, by ``raceway.run``
-balance         the fixed point at which shaft and bearing agree
-sensors         the signals: noise, drift, run-out, changing speed; CSV
+sensors         the signals: noise, drift, run-out, changing speed
+as_printed      the article's procedure, and other corrections for the shaft
+error_split     one cause of error at a time
+study           all speeds and loads; figures, page: what is shown of them
 """

@@ -21,8 +21,8 @@ import numpy as np
 
 from raceway.rig import Rig
 from raceway.studies.measured.angle import Turning
-from raceway.studies.rig.bearing import Bearing
-from raceway.studies.rig.rotor import shaft
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import shaft
 
 _LOW_PASS_ORDERS = 5.0
 

@@ -18,10 +18,10 @@ from raceway.studies.measured.inversion import invert, with_moment, with_tilt_of
 from raceway.studies.measured.recording import Recording
 from raceway.studies.measured.run_out import slow_roll
 from raceway.studies.rig.as_printed import amplitude, readings
-from raceway.studies.rig.balance import State
-from raceway.studies.rig.bearing import Bearing
-from raceway.studies.rig.rotor import Rotor, rotor, shaft
 from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
+from raceway.studies.shaft.balance import State
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import Rotor, rotor, shaft
 
 #: No noise to speak of: below the rounding of a double.
 _SILENT_DB = 300.0

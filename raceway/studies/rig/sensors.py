@@ -9,9 +9,9 @@ import numpy as np
 
 from raceway.rig import Rig, Signals
 from raceway.studies.measured.recording import Recording
-from raceway.studies.rig.balance import State, balance
-from raceway.studies.rig.bearing import Bearing
-from raceway.studies.rig.rotor import rotor
+from raceway.studies.shaft.balance import State, balance
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import rotor
 
 #: A probe of 5 mm over a notch in a shaft of 30 mm: the mark's flanks [rad], half a cosine each, a third of it.
 _MARK = radians(3.0 * 19.0)

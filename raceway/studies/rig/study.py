@@ -19,11 +19,11 @@ from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.recording import Recording, write_recording
 from raceway.studies.measured.run_out import slow_roll
 from raceway.studies.rig.as_printed import Reading, amplitude, critical_speed, readings
-from raceway.studies.rig.balance import State, balance
-from raceway.studies.rig.bearing import bearing
 from raceway.studies.rig.error_split import Cause, split
-from raceway.studies.rig.rotor import rotor
 from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
+from raceway.studies.shaft.balance import State, balance
+from raceway.studies.shaft.bearing import bearing
+from raceway.studies.shaft.rotor import rotor
 
 OnProgress = Callable[[str, int, int], None]
 

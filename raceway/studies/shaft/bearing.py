@@ -11,7 +11,7 @@ from raceway.errors import SceneError
 from raceway.registry import Registry
 from raceway.run import run
 from raceway.scene import Rotor, Scene
-from raceway.studies.rig.shaft_load import shaft_load
+from raceway.studies.shaft.shaft_load import shaft_load
 
 
 @attrs.frozen(eq=False)

@@ -26,7 +26,7 @@ class ShaftLoad(Bidirectional):
         return np.array([self.whirl_speed, force.real, force.imag, moment.real, moment.imag])
 
     def kernel(self) -> Any:
-        from raceway.studies.rig.shaft_load_kernel import shaft_load
+        from raceway.studies.shaft.shaft_load_kernel import shaft_load
 
         return shaft_load
 

@@ -8,12 +8,12 @@ import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError
-from raceway.studies.rig.bearing import Bearing
-from raceway.studies.rig.rotor import Rotor
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import Rotor
 
 #: Agreement of shaft and bearing, over the bearing's motion: a hundredth of what is asked of the identification, squared.
 TOLERANCE = 1e-7
-_MOST = 40
+_MOST, _HALVINGS = 40, 4
 
 
 @attrs.frozen
@@ -107,13 +107,23 @@ def find_root(
     u = np.concatenate([start.real, start.imag])
     f = value(u)
     for count in range(1, _MOST):
-        if np.abs(f).max() < TOLERANCE:
+        worst = float(np.abs(f).max())
+        if worst < TOLERANCE:
             return u[:n] + 1j * u[n:], count
-        step = -np.linalg.solve(jacobian, f)
-        tried, worse = value(u + step), 0
-        while np.abs(tried).max() > 2.0 * np.abs(f).max() and worse < 4:
-            step, worse = 0.5 * step, worse + 1
-            tried = value(u + step)
+        try:
+            step = -np.linalg.solve(jacobian, f)
+        except np.linalg.LinAlgError:
+            raise ConvergenceError(f"shaft and bearing find no common motion: they differ by {worst:.1e}") from None
+        for half in range(_HALVINGS + 1):
+            try:
+                tried = value(u + step)
+            except ConvergenceError:  # a load that the bearing cannot carry: nearer ones are tried
+                if half == _HALVINGS:
+                    raise
+            else:
+                if half == _HALVINGS or np.abs(tried).max() <= 2.0 * worst:
+                    break
+            step = 0.5 * step
         jacobian += np.outer(tried - f - jacobian @ step, step) / (step @ step)
         u, f = u + step, tried
     raise ConvergenceError(
