@@ -87,6 +87,9 @@ def identify_screen(found: Mapping[str, Any], files: Sequence[str]) -> Renderabl
         rows.append(
             ("C", value, f"+- {wide:.2g} N s/m at 95 %" if resolved else f"below its uncertainty of {wide:.2g} N s/m")
         )
+    locked = known["tilt_locked"]
+    wide = f"+- {number(1e-6 * locked['equivalent_stiffness_error'], 'N/µm', 2)} at 95 %"
+    rows.append(("K, tilt locked", number(1e-6 * locked["equivalent_stiffness"], "N/µm"), f"{wide}; {locked['definition']}"))
     rows.append(("Relative change of K if", "", "what is taken as known were otherwise"))
     rows += [(one["change"], f"{100 * one['stiffness']:+.2f} %", "") for one in found["sensitivities"]]
     parts: list[RenderableType] = [Text(found["title"], style="bold"), sections(rows)]

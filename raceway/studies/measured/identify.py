@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import exp
-from math import pi, radians, sqrt
+from math import pi, radians
 from typing import Any
 
 import attrs
@@ -13,7 +13,7 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.result import without_nan
 from raceway.rig import Rig
 from raceway.studies.measured.angle import Turning, turning
-from raceway.studies.measured.inversion import invert, scatter, sensitivities, with_tilt_of
+from raceway.studies.measured.inversion import invert, scatter, sensitivities, values, with_tilt_of
 from raceway.studies.measured.orders import Order, order
 from raceway.studies.measured.recording import Recording
 from raceway.studies.measured.run_out import RunOut, less_response
@@ -34,7 +34,7 @@ class Found:
     Attributes
     ----------
     turning, order : of the record;  run_out : that was subtracted;  state : of the bearing
-    parts : half-widths of K and C at 95 %, (stiffness [N/m], damping [N s/m]), by cause
+    parts : half-widths at 95 % by cause, (4,) like ``inversion.values``
     changes : ``sensitivities``
     """
 
@@ -42,20 +42,19 @@ class Found:
     order: Order
     run_out: RunOut
     state: State
-    parts: dict[str, tuple[float, float]]
+    parts: dict[str, np.ndarray]
     changes: list[dict[str, float | str]]
 
     @property
-    def uncertainty(self) -> tuple[float, float]:
-        """Half-widths of K [N/m] and C [N s/m] at 95 %, all causes together."""
-        k, c = (sqrt(sum(part[i] ** 2 for part in self.parts.values())) for i in (0, 1))
-        return k, c
+    def uncertainty(self) -> np.ndarray:
+        """Half-widths at 95 %, all causes together (4,): K [N/m] and C [N s/m] with the rig's tilt, then with it locked."""
+        return np.sqrt(sum(part**2 for part in self.parts.values()))
 
     def as_dict(self) -> dict[str, Any]:
         """Tables for JSON."""
         state, found, marked = self.state, self.order, self.order.marked
         z, rest = state.dynamic_stiffness, self.uncertainty
-        time = self.turning.recording.time
+        time, locked = self.turning.recording.time, state.locked
         return without_nan(
             {
                 "signals": {
@@ -96,12 +95,20 @@ class Found:
                     "equivalent_damping": state.damping if marked else None,
                     "equivalent_damping_error": rest[1] if marked else None,
                     "mass_used_kg": state.mass,
+                    "tilt_locked": {
+                        "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
+                        "equivalent_stiffness": locked[0],
+                        "equivalent_stiffness_error": rest[2],
+                        "equivalent_damping": locked[1] if marked else None,
+                        "equivalent_damping_error": rest[3] if marked else None,
+                    },
                 },
                 "uncertainty": {
                     "how": "half-widths at 95 %: scatter of the blocks of turns, slow roll, marks between samples, least squares against "
                     "whole-turn Fourier; what is taken as known of the rig is in `sensitivities`",
                     "parts": {
-                        name: {"stiffness": k, "damping": c if marked else None} for name, (k, c) in self.parts.items()
+                        name: {"stiffness": part[0], "damping": part[1] if marked else None}
+                        for name, part in self.parts.items()
                     },
                 },
                 "sensitivities": self.changes,
@@ -170,23 +177,18 @@ def identify(
         ) from None
     other = with_tilt_of(line, state, fourier)
     parts = {
-        "spread": _wide(scatter(line, state, found.error)),
-        "slow roll": _wide(scatter(line, state, run_out.error)),
+        "spread": _COVERAGE * scatter(line, state, found.error),
+        "slow roll": _COVERAGE * scatter(line, state, run_out.error),
         "marks": _turned(line, state, turned.doubt if found.marked else 0.0),
-        "window": (abs(other.stiffness - state.stiffness), abs(other.damping - state.damping)),
+        "window": np.abs(values(other) - values(state)),
     }
     return Found(turned, found, run_out, state, parts, sensitivities(changed_rotors(rig, found.speed), line, state))
 
 
-def _wide(errors: tuple[float, float]) -> tuple[float, float]:
-    return _COVERAGE * errors[0], _COVERAGE * errors[1]
-
-
-def _turned(line: Rotor, state: State, angle: float) -> tuple[float, float]:
-    """Largest change of K and C when the line turns by an angle [rad] either way."""
+def _turned(line: Rotor, state: State, angle: float) -> np.ndarray:
+    """Largest change of ``values`` (4,) when the line turns by an angle [rad] either way."""
     others = [with_tilt_of(line, state, state.sensor * exp(1j * turn)) for turn in (-angle, angle)]
-    k = max(abs(other.stiffness - state.stiffness) for other in others)
-    return k, max(abs(other.damping - state.damping) for other in others)
+    return np.max([np.abs(values(other) - values(state)) for other in others], axis=0)
 
 
 def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:

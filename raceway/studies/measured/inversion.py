@@ -40,7 +40,7 @@ def invert(line: Rotor, held: Bearing, sensor: complex) -> State:
     start = np.array([-at_zero / gain])
     size = np.abs(held.compliance[1]) @ np.abs([force(start[0]), start[0]])
     (moment,), runs = find_root(apart, start, np.array([[gain]]), np.array([size]))
-    return _state(line, force(moment), moment, held.mass, runs)
+    return _state(line, force(moment), moment, held, runs)
 
 
 def with_tilt_of(line: Rotor, state: State, sensor: complex, stiffer: float = 1.0) -> State:
@@ -62,32 +62,39 @@ def with_tilt_of(line: Rotor, state: State, sensor: complex, stiffer: float = 1.
     rows = np.array([abs(line.sensor[1]), scale[2], abs(state.slope) * scale[1]])
     known = np.array([sensor - line.sensor[0] * line.unbalance_force, -line.ring[1, 0] * line.unbalance_force, 0.0])
     load = scale * np.linalg.solve(matrix * scale / rows[:, None], known / rows)
-    return _state(line, load[0], load[1], state.mass, 0)
+    return _state(line, load[0], load[1], state, 0)
 
 
-def with_moment(line: Rotor, sensor: complex, moment: complex, mass: float) -> State:
+def with_moment(line: Rotor, sensor: complex, moment: complex, like: State | Bearing) -> State:
     """What the bearing does by the sensor's line under a moment that is known [N m]."""
     force = (sensor - line.at_sensor(0.0, moment)) / line.sensor[1]
-    return _state(line, force, moment, mass, 0)
+    return _state(line, force, moment, like, 0)
 
 
-def _state(line: Rotor, force: complex, moment: complex, mass: float, runs: int) -> State:
+def _state(line: Rotor, force: complex, moment: complex, like: State | Bearing, runs: int) -> State:
     deflection, slope = line.at_ring(force, moment)
-    return State(line.speed, force, moment, deflection, slope, line.at_sensor(force, moment), mass, runs)
+    sensor = line.at_sensor(force, moment)
+    return State(line.speed, force, moment, deflection, slope, sensor, like.mass, like.coupling, runs)
 
 
-def scatter(line: Rotor, state: State, error: float) -> tuple[float, float]:
-    """Standard errors of K [N/m] and C [N s/m] for one of the sensor's line [m], real and imaginary part together.
+def values(state: State) -> np.ndarray:
+    """K [N/m] and C [N s/m] with the rig's tilt, then with the tilt locked (4,)."""
+    return np.array([state.stiffness, state.damping, *state.locked])
+
+
+def scatter(line: Rotor, state: State, error: float) -> np.ndarray:
+    """Standard errors of ``values`` (4,) for one of the sensor's line [m], real and imaginary part together.
 
     Notes
     -----
     Z is analytic in the line while moment over tilt stays; half of the line's variance lies along each direction.
     """
     step = 1e-4 * abs(state.sensor)
-    moved = with_tilt_of(line, state, state.sensor + step).dynamic_stiffness
-    slope = abs(moved - with_tilt_of(line, state, state.sensor - step).dynamic_stiffness) / (2.0 * step)
-    each = slope * error / np.sqrt(2.0)
-    return float(each), float(each / line.speed)
+    more, less = (values(with_tilt_of(line, state, state.sensor + sign * step)) for sign in (1.0, -1.0))
+    change = (more - less) / (2.0 * step)
+    slopes = np.hypot(change[::2], state.speed * change[1::2])
+    each = slopes * error / np.sqrt(2.0)
+    return np.array([each[0], each[0] / state.speed, each[1], each[1] / state.speed])
 
 
 def sensitivities(rig_lines: dict[str, Rotor], line: Rotor, state: State) -> list[dict[str, float | str]]:

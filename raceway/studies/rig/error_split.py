@@ -6,7 +6,7 @@ Signals without noise, drift and run-out, read by order tracking and inverted wi
 from __future__ import annotations
 
 from cmath import exp
-from math import pi, radians
+from math import radians
 
 import attrs
 import numpy as np
@@ -99,24 +99,19 @@ def _model(rig: Rig, line: Rotor, held: Bearing, state: State) -> list[Cause]:
     thin = rotor(rig, state.speed, shaft(rig, shear=False))
     moved = changed_rotors(rig, state.speed)
     found = {
-        "bearing taken to resist no tilt": with_moment(line, sensor, 0.0, state.mass),
-        "tilt stiffness of the bearing at rest": _at_rest(line, held, sensor, state.mass),
+        "bearing taken to resist no tilt": with_moment(line, sensor, 0.0, state),
+        "tilt stiffness of the bearing at rest": _at_rest(line, held, sensor),
         "Euler-Bernoulli shaft without rotary inertia": with_tilt_of(thin, state, sensor),
         **{words: with_tilt_of(other, state, sensor) for words, other in moved.items()},
     }
     return [Cause("model", words, _error(other, state)) for words, other in found.items()]
 
 
-def _at_rest(line: Rotor, held: Bearing, sensor: complex, mass: float) -> State:
+def _at_rest(line: Rotor, held: Bearing, sensor: complex) -> State:
     """The inversion with the bearing's tilt by its tangent under the axial load alone."""
     slope = held.compliance[1] - line.ring[1, 1:]
     known = np.array([sensor - line.sensor[0] * line.unbalance_force, line.ring[1, 0] * line.unbalance_force])
     matrix = np.array([line.sensor[1:], slope])
     rows = np.abs(matrix).max(axis=1)
     moment = np.linalg.solve(matrix / rows[:, None], known / rows)[1]
-    return with_moment(line, sensor, moment, mass)
-
-
-def rpm(state: State) -> float:
-    """Speed of a state [r/min]."""
-    return state.speed * 30.0 / pi
+    return with_moment(line, sensor, moment, held)

@@ -61,6 +61,8 @@ class Point:
             "true": {
                 "equivalent_stiffness": true,
                 "equivalent_damping": state.damping,
+                "tilt_locked_stiffness": state.locked[0],
+                "tilt_locked_damping": state.locked[1],
                 "force_n": abs(state.force),
                 "force_over_half_unbalance": 2.0 * abs(state.force) / self.unbalance_force,
                 "moment_nm": abs(state.moment),

@@ -24,12 +24,13 @@ class State:
     ----------
     speed : [rad/s];  force, moment : of the shaft on the inner ring [N, N m]
     deflection, slope : of the inner ring [m, rad];  sensor : deflection there [m]
-    mass : of the inner ring [kg]
+    mass : of the inner ring [kg];  coupling : force by tilt at rest, of the bearing [N/rad]
     runs : of the bearing, that it took
 
     Notes
     -----
-    Complex amplitudes in forward whirl; the unbalance force is real.
+    Complex amplitudes in forward whirl; the unbalance force is real.  The shaft bends the bearing, too: what it carries for
+    its tilt, ``coupling`` times the slope, taken off the force leaves the stiffness against deflection alone.
     """
 
     speed: float
@@ -39,6 +40,7 @@ class State:
     slope: complex
     sensor: complex
     mass: float
+    coupling: float
     runs: int
 
     @property
@@ -55,6 +57,12 @@ class State:
     def damping(self) -> float:
         """C = Im Z / w [N s/m]."""
         return self.dynamic_stiffness.imag / self.speed
+
+    @property
+    def locked(self) -> tuple[float, float]:
+        """K [N/m] and C [N s/m] without the part that the slope brings: as with the tilt locked."""
+        z = (self.force - self.coupling * self.slope) / self.deflection
+        return z.real + self.mass * self.speed**2, z.imag / self.speed
 
 
 def balance(line: Rotor, held: Bearing) -> State:
@@ -75,7 +83,7 @@ def balance(line: Rotor, held: Bearing) -> State:
     size = np.abs(held.compliance @ start)
     load, runs = find_root(apart, start.astype(complex), gain, size)
     deflection, slope = line.at_ring(*load)
-    return State(speed, load[0], load[1], deflection, slope, line.at_sensor(*load), held.mass, runs)
+    return State(speed, load[0], load[1], deflection, slope, line.at_sensor(*load), held.mass, held.coupling, runs)
 
 
 def find_root(

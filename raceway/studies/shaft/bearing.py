@@ -30,6 +30,11 @@ class Bearing:
     compliance: np.ndarray
     mass: float
 
+    @property
+    def coupling(self) -> float:
+        """Force by tilt at rest [N/rad]."""
+        return float(np.linalg.inv(self.compliance)[0, 1])
+
     def answer(self, speed: float, force: complex, moment: complex) -> np.ndarray:
         """Deflection [m] and slope [rad] (2,) of the inner ring in forward whirl, with its inertia.
 
