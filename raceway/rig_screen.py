@@ -41,7 +41,6 @@ def _point(row: Mapping[str, Any]) -> dict[str, str]:
     return {
         "r/min": f"{row['speed_rpm']:.0f}",
         "axial N": f"{row['axial_n']:.0f}",
-        "force N": f"{true['force_n']:.0f}",
         "x um": f"{1e6 * true['deflection_m']:.2f}",
         "sensor um": f"{1e6 * true['sensor_m']:.2f}",
         "K N/um": f"{1e-6 * true['equivalent_stiffness']:.2f}",

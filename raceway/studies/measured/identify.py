@@ -179,16 +179,16 @@ def identify(
     parts = {
         "spread": _COVERAGE * scatter(line, state, found.error),
         "slow roll": _COVERAGE * scatter(line, state, run_out.error),
-        "marks": _turned(line, state, turned.doubt if found.marked else 0.0),
+        "marks": _turned(line, state, found.line * exp(-1j * angle), found.doubt),
         "window": np.abs(values(other) - values(state)),
     }
     return Found(turned, found, run_out, state, parts, sensitivities(changed_rotors(rig, found.speed), line, state))
 
 
-def _turned(line: Rotor, state: State, angle: float) -> np.ndarray:
-    """Largest change of ``values`` (4,) when the line turns by an angle [rad] either way."""
-    others = [with_tilt_of(line, state, state.sensor * exp(1j * turn)) for turn in (-angle, angle)]
-    return np.max([np.abs(values(other) - values(state)) for other in others], axis=0)
+def _turned(line: Rotor, state: State, seen: complex, angle: float) -> np.ndarray:
+    """Largest change of ``values`` (4,) when the line that is seen, run-out and all, turns by an angle [rad] either way."""
+    moved = [state.sensor + seen * (exp(1j * turn) - 1.0) for turn in (-angle, angle)]
+    return np.max([np.abs(values(with_tilt_of(line, state, other)) - values(state)) for other in moved], axis=0)
 
 
 def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:

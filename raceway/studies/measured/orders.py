@@ -34,6 +34,7 @@ class Order:
     speed : mean [rad/s];  lowest, highest : of the blocks [rad/s]
     fourier : the line by a whole-turn Fourier transform over equal angles [m]
     residual : rms of what the fit leaves, over the rms of the line
+    doubt : by which all marks together may be off [rad]
     turns, blocks, marked
     """
 
@@ -45,6 +46,7 @@ class Order:
     highest: float
     fourier: complex
     residual: float
+    doubt: float
     turns: int
     blocks: int
     marked: bool
@@ -69,6 +71,7 @@ def order(found: Turning) -> Order:
         highest=float(speeds.max()),
         fourier=_fourier(straight),
         residual=rest / abs(value) if value else np.inf,
+        doubt=found.doubt,
         turns=found.turns,
         blocks=len(lines),
         marked=found.marked,
@@ -77,7 +80,8 @@ def order(found: Turning) -> Order:
 
 def _blocks(found: Turning) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Forward and backward line and speed of each block (m,), and the rms of what is left."""
-    count = min(_BLOCKS, found.turns)
+    # Two turns tell a curved drift from the line, one does not.
+    count = min(_BLOCKS, found.turns // 2) if found.turns > 3 else found.turns
     edges = 2.0 * pi * np.round(np.linspace(0, found.turns, count + 1))
     signal, lines, backward, speeds, squares = found.recording.plane, [], [], [], 0.0
     for first, last in zip(edges[:-1], edges[1:], strict=True):

@@ -61,4 +61,5 @@ def less_response(found: Order, held: Bearing, line: Rotor, unbalance_angle: flo
     load = np.linalg.solve(held.compliance - line.ring[:, 1:], line.ring[:, 0] * line.unbalance_force)
     response = line.at_sensor(load[0], load[1]) * exp(1j * unbalance_angle)
     rpm = found.speed * 30.0 / np.pi
-    return RunOut(found.line - response, found.error, f"slow roll at {rpm:.0f} r/min, {found.turns} turns")
+    error = float(np.hypot(found.error, 0.5 * found.doubt * abs(found.line)))  # the doubt is a bound: two standard errors
+    return RunOut(found.line - response, error, f"slow roll at {rpm:.0f} r/min, {found.turns} turns")

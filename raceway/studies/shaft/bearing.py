@@ -10,7 +10,7 @@ import numpy as np
 from raceway.errors import SceneError
 from raceway.registry import Registry
 from raceway.run import run
-from raceway.scene import Rotor, Scene
+from raceway.scene import Identifying, Rotor, Scene
 from raceway.studies.shaft.shaft_load import shaft_load
 
 
@@ -22,7 +22,7 @@ class Bearing:
     ----------
     scene : with the axial load; free to tilt and without a rotor's mass, which are the shaft's
     compliance : (2, 2) of deflection and slope by force and moment, tangent at rest [m/N, 1/N; 1/N, rad/(N m)]
-    mass : of the inner ring [kg]
+    mass : of the inner ring [kg]; 0 with an integrator that knows no inertia
     """
 
     scene: Scene
@@ -76,8 +76,9 @@ def bearing(scene: Scene, axial: float, registry: Registry) -> Bearing:
         supports=attrs.evolve(scene.supports, tilt="free"),
         rotor=Rotor(damping=scene.rotor.damping),
         excitation=None,
+        identifier=Identifying(method=registry.find("identifier", "fft_1x").plugin()),  # the motion is read here, not there
     )
     still = run(free, registry)
     stiffness = still.equilibrium.stiffness
     chosen = np.ix_([1, 4], [1, 4])  # y and theta_z; by symmetry the same for z and -theta_y
-    return Bearing(free, registry, np.linalg.inv(stiffness[chosen]), float(still.model.system.mass[1, 1]))
+    return Bearing(free, registry, np.linalg.inv(stiffness[chosen]), still.model.mass_used)
