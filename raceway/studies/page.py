@@ -1,0 +1,178 @@
+"""One self-contained HTML page: words, tables and figures in one file that opens without a network and runs no script.
+
+page = Page("Title", "what it is about")
+page.section("Results")
+page.text("One paragraph; `code` stands between backticks.")
+page.table(["speed [r/min]", "k [N/um]"], [[12000, "163.0"]], caption="Tilt locked")
+page.figures([(figure, "what is seen, for those who cannot see it", "caption")])
+page.write(folder / "page.html")
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from collections.abc import Iterable, Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.files import write_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: How a word of a verdict is coloured.
+TONES = ("good", "bad", "partly", "failed")
+_NUMBER = re.compile(r"[-+−]?\d[\d\s.,]*(e[-+]?\d+)?\s?%?|[-–]|")
+#: Cells longer than this are sentences, which need some width to be read [letters].
+_SENTENCE = 40
+
+
+@attrs.frozen
+class Cell:
+    """A table's cell with a colour, which its words must say, too."""
+
+    text: str
+    tone: str = attrs.field(default="", validator=attrs.validators.in_(("", *TONES)))
+
+
+class Page:
+    """A page, put together from top to bottom.
+
+    Parameters
+    ----------
+    title : also of the browser's window;  subtitle : a line below it;  footer : where the page comes from
+    """
+
+    def __init__(self, title: str, subtitle: str = "", footer: str = "") -> None:
+        self.title, self.subtitle, self.footer = title, subtitle, footer
+        self._blocks: list[str] = []
+        self._sections: list[tuple[str, str]] = []
+
+    def section(self, heading: str) -> None:
+        """A new part, which the line of links at the top leads to."""
+        anchor = f"s{len(self._sections) + 1}"
+        self._sections.append((anchor, heading))
+        self._blocks.append(f'<h2 id="{anchor}">{_inline(heading)}</h2>')
+
+    def heading(self, text: str) -> None:
+        """A smaller heading within a section."""
+        self._blocks.append(f"<h3>{_inline(text)}</h3>")
+
+    def text(self, *paragraphs: str, kind: str = "") -> None:
+        """Paragraphs; ``kind`` "lead" for the first of a page, "note" for a caution."""
+        mark = f' class="{escape(kind)}"' if kind else ""
+        self._blocks += [f"<p{mark}>{_inline(words)}</p>" for words in paragraphs]
+
+    def listing(self, items: Iterable[str]) -> None:
+        """A list of points."""
+        self._blocks.append("<ul>" + "".join(f"<li>{_inline(item)}</li>" for item in items) + "</ul>")
+
+    def table(self, columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "") -> None:
+        """A table in a box of its own that scrolls where the screen is narrow; the first cell of a row names it.
+
+        Parameters
+        ----------
+        rows : cells are text, numbers (six digits are shown) or ``Cell``
+        """
+        body = [[cell if isinstance(cell, Cell) else Cell(_shown(cell)) for cell in row] for row in rows]
+        columns = list(columns)
+        right = [bool(body) and all(_NUMBER.fullmatch(row[k].text.strip()) for row in body) for k in range(len(columns))]
+        head = "".join(f'<th scope="col"{_class(number=right[k])}>{_inline(name)}</th>' for k, name in enumerate(columns))
+        lines = []
+        for row in body:
+            first = f'<th scope="row"{_class(number=right[0])}>{_toned(row[0])}</th>'
+            cells = [
+                f"<td{_class(number=right[k], words=len(cell.text) > _SENTENCE)}>{_toned(cell)}</td>"
+                for k, cell in enumerate(row[1:], start=1)
+            ]
+            lines.append(f"<tr>{first}{''.join(cells)}</tr>")
+        title = f"<caption>{_inline(caption)}</caption>" if caption else ""
+        label = escape(caption or columns[0], quote=True)
+        self._blocks.append(
+            f'<div class="scroll" tabindex="0" role="region" aria-label="{label}"><table>{title}'
+            f"<thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table></div>"
+        )
+
+    def figures(self, items: Iterable[tuple[Figure | bytes, str, str]], wide: bool = False) -> None:
+        """Figures side by side as far as the screen is wide, or one below the other with ``wide``.
+
+        Parameters
+        ----------
+        items : (figure of matplotlib or bytes of a PNG or SVG file, what is seen, caption)
+        """
+        parts = []
+        for picture, alternative, caption in items:
+            uri = data_uri(picture if isinstance(picture, bytes) else svg(picture))
+            words = f"<figcaption>{_inline(caption)}</figcaption>" if caption else ""
+            parts.append(f'<figure><img alt="{escape(alternative, quote=True)}" src="{uri}">{words}</figure>')
+        self._blocks.append(f'<div class="figures{" wide" if wide else ""}">{"".join(parts)}</div>')
+
+    def html(self) -> str:
+        """The whole page."""
+        style = files("raceway").joinpath("data/page.css").read_text(encoding="utf-8")
+        links = "".join(f'<li><a href="#{anchor}">{_inline(heading)}</a></li>' for anchor, heading in self._sections)
+        head = f"<h1>{_inline(self.title)}</h1>"
+        head += f'<p class="subtitle">{_inline(self.subtitle)}</p>' if self.subtitle else ""
+        head += f'<nav aria-label="Sections"><ul>{links}</ul></nav>' if len(self._sections) > 1 else ""
+        end = f"<footer><p>{_inline(self.footer)}</p></footer>" if self.footer else ""
+        # The empty icon keeps browsers from asking a server for one.
+        return (
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+            f'<title>{escape(self.title)}</title>\n<link rel="icon" href="data:,">\n<style>\n{style}</style>\n</head>\n'
+            f"<body>\n<header>{head}</header>\n<main>\n" + "\n".join(self._blocks) + f"\n</main>\n{end}</body>\n</html>\n"
+        )
+
+    def write(self, path: Path) -> Path:
+        """Write the page, whole or not at all.
+
+        Raises
+        ------
+        RacewayError
+            A folder or disk that cannot be written.
+        """
+        return write_whole(self.html().encode(), path)
+
+
+def svg(figure: Figure) -> bytes:
+    """A figure as SVG, the same bytes for the same figure; letters are drawn as paths, so that no font is needed."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    memory = io.BytesIO()
+    with rc_context({"svg.fonttype": "path", "svg.hashsalt": "raceway"}):
+        FigureCanvasSVG(figure).print_svg(memory, metadata={"Date": None})
+    return memory.getvalue()
+
+
+def data_uri(content: bytes) -> str:
+    """A PNG or SVG file as a data URI."""
+    kind = "image/png" if content.startswith(b"\x89PNG") else "image/svg+xml"
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
+
+
+def _inline(words: str) -> str:
+    """Escaped text; what stands between backticks is code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(words, quote=False))
+
+
+def _toned(cell: Cell) -> str:
+    words = _inline(cell.text)
+    return f'<span class="tone {cell.tone}">{words}</span>' if cell.tone else words
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "–"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _class(**chosen: bool) -> str:
+    names = " ".join(name for name, there in chosen.items() if there)
+    return f' class="{names}"' if names else ""
