@@ -22,6 +22,7 @@ from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 from raceway.studies_group import study
 from raceway.study_commands import precision, stability
+from raceway.view_commands import view
 
 if TYPE_CHECKING:
     from raceway.scene import Scene
@@ -239,5 +240,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, study):
+for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, study, view):
     main.add_command(_command)

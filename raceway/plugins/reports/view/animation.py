@@ -13,12 +13,14 @@ from raceway.files import write_whole
 from raceway.plugins.reports.view import scene, surfaces
 from raceway.plugins.reports.view.bearing import Bearing, Part
 
-_SIZE = (760, 760)
+_SIZE = (640, 640)
 _SECONDS = 4.0
 _INK, _ORBIT, _FORCE = "#20262c", "#c8501e", "#0b5fa5"
 
 
-def animate(bearing: Bearing, turn: Any, heading: str, path: Path, on_frame: Callable[[int, int], None] | None = None) -> Path:
+def animate(
+    bearing: Bearing, turn: Any, heading: str, path: Path, on_frame: Callable[[int, int], None] | None = None
+) -> Path:
     """Write a GIF that repeats itself.
 
     Parameters
@@ -45,8 +47,13 @@ def animate(bearing: Bearing, turn: Any, heading: str, path: Path, on_frame: Cal
             f"{np.degrees(turn.angle[k]):3.0f} deg of the turn; balls {loads[k].min():.0f} to {loads[k].max():.0f} N; "
             f"force {np.hypot(*turn.force[k]):.4g} N"
         )
-        moving = [*_rings(bearing, state), *bearing.balls(state), *bearing.arrows(state, top), *_inside(bearing, turn, k, strongest)]
-        frames.append(scene.quietly(pyvista, lambda parts=moving, text=words: _frame(pyvista, parts, heading, text, top, peak)))
+        moving = [
+            *_rings(bearing, state),
+            *bearing.balls(state),
+            *bearing.arrows(state, top),
+            *_inside(bearing, turn, k, strongest),
+        ]
+        frames.append(scene.quietly(pyvista, _frame, pyvista, moving, heading, words, top, peak))
     return write_whole(_gif(frames), path)
 
 
@@ -86,9 +93,9 @@ def _inside(bearing: Bearing, turn: Any, k: int, strongest: float) -> list[Part]
 def _frame(pyvista: Any, parts: list[Part], heading: str, words: str, top: float, peak: float) -> np.ndarray:
     plotter = scene.new_plotter(pyvista, _SIZE)
     scene.add_parts(pyvista, plotter, parts, top, peak)
-    scene.colour_bar(pyvista, plotter, "ball load [N]", scene.LOADS, top, (0.02, 0.06))
-    plotter.add_text(heading, position="upper_edge", font_size=9, color=_INK)
-    plotter.add_text(words, position="lower_edge", font_size=9, color=_INK)
+    scene.colour_bar(pyvista, plotter, "ball load [N]", scene.LOADS, top, (0.075, 0.05))
+    plotter.add_text(heading, position="upper_edge", font_size=8, color=_INK)
+    plotter.add_text(words, position="lower_edge", font_size=8, color=_INK)
     plotter.enable_anti_aliasing("ssaa")
     plotter.camera_position = [(1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
     plotter.enable_parallel_projection()
@@ -96,7 +103,7 @@ def _frame(pyvista: Any, parts: list[Part], heading: str, words: str, top: float
     # One scale for all frames: what is farthest out, the arrows, changes its length.
     plotter.camera.parallel_scale = 1.0
     reach = max(float(np.abs(part.surface.points[:, 1:]).max()) for part in parts if part.name == "outer ring")
-    plotter.camera.parallel_scale = 1.42 * reach
+    plotter.camera.parallel_scale = 1.5 * reach
     image = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()
     return image
@@ -105,9 +112,10 @@ def _frame(pyvista: Any, parts: list[Part], heading: str, words: str, top: float
 def _gif(frames: list[np.ndarray]) -> bytes:
     from PIL import Image
 
-    # One palette for all frames, from the first: colours then do not flicker.
-    first = Image.fromarray(frames[0]).quantize(colors=128, method=Image.Quantize.MEDIANCUT)
-    pages = [Image.fromarray(frame).quantize(palette=first, dither=Image.Dither.NONE) for frame in frames]
+    # One palette for all frames, from some of them side by side: colours then do not flicker.
+    chosen = np.concatenate(frames[:: max(len(frames) // 4, 1)], axis=1)
+    palette = Image.fromarray(chosen).quantize(colors=160, method=Image.Quantize.MEDIANCUT)
+    pages = [Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     memory = io.BytesIO()
     duration = int(1e3 * _SECONDS / len(frames))
     pages[0].save(memory, format="GIF", save_all=True, append_images=pages[1:], duration=duration, loop=0, optimize=False)

@@ -153,8 +153,24 @@ class Bearing:
                 # Along the line of contact, begun where that leaves the ring.
                 radius = np.hypot(*centre[1:])
                 start = centre + towards[k] * (reach - radius) / max(float(np.hypot(*towards[k][1:])), 0.3)
-                parts.append(Part(f"load {k}", surfaces.arrow(start, towards[k], length, 0.22 * self.diameter), load=float(state.load[k])))
+                parts.append(
+                    Part(
+                        f"load {k}",
+                        surfaces.arrow(start, towards[k], length, 0.22 * self.diameter),
+                        load=float(state.load[k]),
+                    )
+                )
         return parts
+
+    def tips(self, state: State, top: float) -> np.ndarray:
+        """(Z, 3) places beyond the arrows, for their labels [mm]."""
+        z = len(state.azimuth)
+        length = self.diameter * (0.12 + _LONGEST * state.load[z:] / max(top, 1e-12) + 0.45)
+        angle = np.where(np.isfinite(state.angle[z:]), state.angle[z:], self.shape.contact_angle)
+        sides = np.repeat([side for side, _ in self.shape.rows], self.shape.ball_count)
+        axial = self.centres(state)[:, 0] + sides * np.sin(angle) * length
+        reach = 0.5 * _MM * self.shape.outer_diameter + length
+        return np.asarray(reach[:, None] * _radial(state.azimuth) + axial[:, None] * [1.0, 0.0, 0.0])
 
     def patches(self, state: State, races: tuple[str, ...] = ("inner", "outer")) -> list[Part]:
         """The contact ellipses on the balls, coloured by Hertz's pressure [MPa]."""
@@ -182,7 +198,10 @@ class Bearing:
 
 def _groove(bearing: Any) -> float:
     """Radius of the circle of inner groove centres [m]."""
-    return float(0.5 * bearing.pitch_diameter + (bearing.conformity_inner - 0.5) * bearing.ball_diameter * np.cos(bearing.contact_angle))
+    return float(
+        0.5 * bearing.pitch_diameter
+        + (bearing.conformity_inner - 0.5) * bearing.ball_diameter * np.cos(bearing.contact_angle)
+    )
 
 
 def _radial(azimuth: np.ndarray) -> np.ndarray:

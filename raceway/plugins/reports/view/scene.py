@@ -12,7 +12,14 @@ from raceway.plugins.reports.view.bearing import Bearing, Part, State
 
 LOADS, PRESSURES = "viridis", "inferno"
 _INK = "#20262c"
-_BAR: dict[str, Any] = {"color": _INK, "title_font_size": 24, "label_font_size": 22, "n_labels": 5, "fmt": "%.0f", "vertical": True}
+_BAR: dict[str, Any] = {
+    "color": _INK,
+    "title_font_size": 24,
+    "label_font_size": 22,
+    "n_labels": 5,
+    "fmt": "%.0f",
+    "vertical": True,
+}
 
 
 def pyvista_of(otherwise: str) -> Any:
@@ -30,7 +37,7 @@ def pyvista_of(otherwise: str) -> Any:
     return pyvista
 
 
-def quietly(pyvista: Any, draw: Callable[[], Any]) -> Any:
+def quietly(pyvista: Any, draw: Callable[..., Any], *given: Any) -> Any:
     """Draw; without a display VTK says so on standard error, and then draws in memory as it was asked to.
 
     Raises
@@ -40,7 +47,7 @@ def quietly(pyvista: Any, draw: Callable[[], Any]) -> Any:
     """
     try:
         with pyvista.vtk_verbosity("off"):
-            return draw()
+            return draw(*given)
     except (RuntimeError, OSError) as error:
         raise RacewayError(f"the picture cannot be drawn: {error}") from None
 
@@ -58,7 +65,12 @@ def add_parts(pyvista: Any, plotter: Any, parts: Sequence[Part], top_load: float
         mesh.point_data["Normals"] = part.surface.normals
         mesh.point_data.active_normals_name = "Normals"
         # Loads are equal all over a part: as a field, so that all parts share one colour bar.
-        look: dict[str, Any] = {"smooth_shading": True, "split_sharp_edges": False, "opacity": part.opacity, "show_scalar_bar": False}
+        look: dict[str, Any] = {
+            "smooth_shading": True,
+            "split_sharp_edges": False,
+            "opacity": part.opacity,
+            "show_scalar_bar": False,
+        }
         if part.colour is not None:
             ambient = 0.65 if "cut face" in part.name else 0.25
             plotter.add_mesh(mesh, color=part.colour, ambient=ambient, diffuse=1.0 - ambient, specular=0.1, **look)
@@ -92,9 +104,8 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         peak = max((float(part.surface.values.max()) for part in patches if part.surface.values is not None), default=1.0)
         parts = [*bearing.rings(), *bearing.balls(state), *bearing.arrows(state, top), *patches]
         add_parts(pyvista, plotter, parts, top, peak)
-        tips = _tips(bearing, state, top)
         plotter.add_point_labels(
-            tips, [f"{k}: {state.load[k]:.3g} N" for k in range(z)], font_size=20, text_color=_INK, shape=None, show_points=False,
+            bearing.tips(state, top), [f"{k}: {state.load[k]:.3g} N" for k in range(z)], font_size=20, text_color=_INK, shape=None, show_points=False,
             always_visible=True, justification_horizontal="center", justification_vertical="center",
         )  # fmt: skip
         colour_bar(pyvista, plotter, "ball load [N]", LOADS, top, (0.03, 0.54))
@@ -110,14 +121,3 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         return image
 
     return np.asarray(quietly(pyvista, draw))
-
-
-def _tips(bearing: Bearing, state: State, top: float) -> np.ndarray:
-    """(Z, 3) places of the labels, beyond the arrows [mm]."""
-    z = len(state.azimuth)
-    radial = np.stack([np.zeros(z), np.cos(state.azimuth), np.sin(state.azimuth)], axis=-1)
-    length = 0.12 + 1.1 * state.load[z:] / top + 0.45
-    centre = bearing.centres(state) * [1.0, 0.0, 0.0]
-    lean = np.sin(np.nan_to_num(state.angle[z:], nan=bearing.shape.contact_angle))[:, None] * [1.0, 0.0, 0.0]
-    reach = 500.0 * bearing.shape.outer_diameter + bearing.diameter * length
-    return np.asarray(centre + reach[:, None] * radial + bearing.diameter * length[:, None] * lean)

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 #: The largest motion in an animation over the ball diameter.
 _LARGEST = 0.12
+#: Moments of a turn among which the peak is looked for.
+_EVERY = 360
 
 
 @attrs.frozen(eq=False)
@@ -55,8 +57,16 @@ def at_rest(result: Result) -> State:
     return State(model.azimuth, column("load_{}_n"), angle, half, column("peak_pressure_{}_pa"), np.zeros(5))
 
 
+def at_peak(result: Result) -> tuple[State, float]:
+    """The moment of the last turn when a ball carries most on the inner race, and how far the turn is by then [deg]."""
+    z = result.model.system.ball_count
+    turn = last_turn(result, _EVERY)
+    k = int(np.argmax([state.load[:z].max() for state in turn.states]))
+    return attrs.evolve(turn.states[k], motion=np.zeros(5)), float(np.degrees(turn.angle[k]))
+
+
 def last_turn(result: Result, frames: int) -> Turn:
-    """The last turn of the recorded motion.
+    """The last turn of the recorded motion in at most so many frames.
 
     Raises
     ------
@@ -79,7 +89,9 @@ def last_turn(result: Result, frames: int) -> Turn:
     for k in chosen:
         load, t = record.contact_force[k], float(record.time[k])
         angle = np.concatenate(contact_angles(model, record.displacement[k], record.ball[k], load, t))
-        halves, peaks = zip(*(_ellipse(e, part) for e, part in ((model.inner, load[:z]), (model.outer, load[z:]))), strict=True)
+        halves, peaks = zip(
+            *(_ellipse(e, part) for e, part in ((model.inner, load[:z]), (model.outer, load[z:]))), strict=True
+        )
         motion = factor * (record.displacement[k] - result.equilibrium.displacement)
         azimuth = model.azimuth + cage * t
         states.append(State(azimuth, load, angle, np.concatenate(halves), np.concatenate(peaks), motion))

@@ -1,52 +1,9 @@
-<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<link rel="icon" href="data:,">
-<title>$title</title>
-<style>
-body { margin: 0 auto; max-width: 1180px; padding: 12px 16px 40px; font: 16px/1.45 system-ui, sans-serif; color: #20262c; background: #fff; }
-h1 { font-size: 1.35rem; margin: 0.4rem 0; overflow-wrap: anywhere; }
-h2 { font-size: 1.1rem; margin: 1.6rem 0 0.4rem; }
-p { max-width: 75ch; }
-.stage { position: relative; border: 1px solid #d5dbe1; border-radius: 6px; overflow: hidden; background: #fafbfc; }
-canvas { display: block; width: 100%; height: 64vw; max-height: 720px; touch-action: none; cursor: grab; }
-.label { position: absolute; left: 0; top: 0; font-size: 0.75rem; font-weight: 600; pointer-events: none; white-space: nowrap; text-shadow: 0 0 3px #fff, 0 0 3px #fff; }
-.bars { display: flex; flex-wrap: wrap; gap: 8px 32px; margin: 8px 0; }
-.bar { flex: 1 1 220px; max-width: 420px; font-size: 0.875rem; }
-.bar i { display: block; height: 14px; border-radius: 3px; }
-.bar div { display: flex; justify-content: space-between; }
-#told { min-height: 1.5em; font-size: 0.9rem; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.875rem; }
-th, td { padding: 3px 10px; text-align: right; border-bottom: 1px solid #e3e7eb; white-space: nowrap; }
-th { font-weight: 600; vertical-align: bottom; }
-figure { margin: 1rem 0; }
-img { max-width: 100%; height: auto; }
-figcaption { font-size: 0.9rem; color: #4d5862; }
-</style>
-</head>
-<body>
-<h1>$title</h1>
-<p>$summary</p>
-<h2>The bearing $state</h2>
-<div class="stage" id="stage"><canvas id="scene" aria-label="The bearing in three dimensions"></canvas></div>
-<p id="told">Drag to turn, wheel or two fingers to zoom; point at a ball for its numbers.</p>
-<label><input type="checkbox" id="outer" checked> outer ring</label>
-<label><input type="checkbox" id="inner" checked> inner ring</label>
-<div class="bars">$bars</div>
-<h2>Balls</h2>
-<div class="scroll">$table</div>
-$figures
-<script id="data" type="application/json">$data</script>
-<script>
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
   const stage = document.getElementById("stage"), canvas = document.getElementById("scene");
   const told = document.getElementById("told"), hint = told.textContent;
-  const gl = canvas.getContext("webgl", { antialias: true, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: true });
   if (!gl) {  // the pictures below show the same
     stage.remove();
     told.textContent = "This browser has no WebGL: the pictures below show the bearing instead.";
@@ -193,6 +150,3 @@ $figures
   new ResizeObserver(redraw).observe(stage);
   draw();
 }());
-</script>
-</body>
-</html>
