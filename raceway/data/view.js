@@ -23,7 +23,7 @@
     "void main() { vec3 q = turn * (p + at); normal = turn * n; tone = c; gl_Position = vec4(q.xy * size, -q.z * deep, 1.0); }"));
   gl.attachShader(program, shader(gl.FRAGMENT_SHADER,
     "precision mediump float; varying vec3 normal, tone; uniform vec4 colour; uniform float flat_;" +
-    "void main() { vec3 n = normalize(normal); if (!gl_FrontFacing) n = -n;" +
+    "void main() { vec3 n = normalize(normal); if (n.z < 0.0) n = -n;" +
     "float light = 0.38 + 0.62 * max(dot(n, normalize(vec3(0.35, 0.5, 1.0))), 0.0);" +
     "gl_FragColor = flat_ > 0.5 ? vec4(tone, 1.0) : vec4(colour.rgb * light, colour.a); }"));
   gl.linkProgram(program);
