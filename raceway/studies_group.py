@@ -12,6 +12,7 @@ from raceway.console import Commands
 #: Name of a sub-command -> where it is, as "module:object".
 STUDIES = {
     "article": "raceway.article_command:article",
+    "map": "raceway.map_command:study_map",
 }
 
 

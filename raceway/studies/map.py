@@ -120,8 +120,8 @@ def study_map(
     else:
         # The first curve here: it compiles what is not in the cache yet, once.
         alone(tasks[:1])
-        for rows in in_processes(design, tasks[1:], processes, plugins):
-            keep(rows)
+        for finished in in_processes(design, tasks[1:], processes, plugins):
+            keep(finished)
     rows = [{"point": point, **_copy(store.get(key))} for point, key in zip(points, keys, strict=True)]
     found = curves(rows)
     amplitude = amplitude_words(design.scene(points[0], registry))

@@ -11,7 +11,7 @@ from raceway.studies.map_design import ANGLE, AXIAL, SPEED, TILT
 #: Local exponents n = d ln k / d ln w closer to 0 than this count as level.
 LEVEL = 0.02
 #: Hardening has saturated where n, past its largest value, has fallen below this share of it.
-SATURATED = 0.5
+SATURATED = 0.75
 
 
 def curves(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -31,12 +31,11 @@ def curves(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 def _curve(rows: list[dict[str, Any]]) -> dict[str, Any]:
     first = rows[0].get("stiffness")
     for row, before in zip(rows, [None, *rows[:-1]], strict=True):
-        k = row.get("stiffness")
-        row["change"] = k / first - 1.0 if _both(k, first) else None
+        row["change"] = _ratio(row.get("stiffness"), first)
         row["exponent"] = None
-        if before is not None and _both(k, before.get("stiffness")):
-            span = math.log(row["point"][SPEED] / before["point"][SPEED])
-            row["exponent"] = math.log(k / before["stiffness"]) / span
+        step = None if before is None else _ratio(row.get("stiffness"), before.get("stiffness"))
+        if before is not None and step is not None:
+            row["exponent"] = math.log1p(step) / math.log(row["point"][SPEED] / before["point"][SPEED])
     steps = [row for row in rows if row["exponent"] is not None]
     steepest = max(steps, key=lambda row: row["exponent"], default=None)
     hardens = steepest is not None and steepest["exponent"] > LEVEL
@@ -84,13 +83,9 @@ def _from(rows: Sequence[dict[str, Any]], holds: Any) -> float | None:
     return next((row["point"][SPEED] for row in rows if holds(row)), None)
 
 
-def _both(a: float | None, b: float | None) -> bool:
-    """Whether two stiffnesses have a ratio with a logarithm: a secant may be negative beyond a resonance."""
-    return a is not None and b is not None and a > 0.0 and b > 0.0
-
-
 def _ratio(a: float | None, b: float | None) -> float | None:
-    return a / b - 1.0 if a is not None and b is not None and _both(a, b) else None
+    """a / b - 1; None for what failed, and for a secant below zero, as there is beyond a resonance."""
+    return a / b - 1.0 if a is not None and b is not None and a > 0.0 and b > 0.0 else None
 
 
 def words(found: Sequence[dict[str, Any]], rows: Sequence[dict[str, Any]]) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
-from importlib.resources import files
 from typing import Any
 
 import attrs
@@ -12,7 +11,7 @@ import attrs
 from raceway.errors import Mistake, SceneError
 from raceway.registry import Registry
 from raceway.scene import Scene
-from raceway.scene_file import read_toml, scene_from_dict, with_value
+from raceway.scene_file import scene_from_dict
 from raceway.studies.axes import Axis, is_number, parse_axes
 from raceway.studies.points import tables_at
 
@@ -58,13 +57,6 @@ class Design:
         return scene_from_dict(tables_at(self.tables, point, registry), registry)
 
 
-def start_tables() -> dict[str, Any]:
-    """The map's own scene: ``raceway/data/map.toml``."""
-    from pathlib import Path
-
-    return read_toml(Path(str(files("raceway").joinpath("data/map.toml"))))
-
-
 def design(tables: Mapping[str, Any], vary: Iterable[str], method: str, registry: Registry) -> Design:
     """A design whose scenes and axes have been looked at.
 
@@ -84,7 +76,9 @@ def design(tables: Mapping[str, Any], vary: Iterable[str], method: str, registry
     tables["bearing"] = bearing
     given = {axis.key: axis for axis in parse_axes(vary)} if list(vary) else {}
     mistakes = [
-        Mistake(key, None, f"is no axis of the map; axes: {', '.join(AXES)}. Change it for the whole map with --set {key}=...")
+        Mistake(
+            key, None, f"is no axis of the map; axes: {', '.join(AXES)}. Change it for the whole map with --set {key}=..."
+        )
         for key in given
         if key not in AXES
     ]
@@ -104,7 +98,9 @@ def design(tables: Mapping[str, Any], vary: Iterable[str], method: str, registry
         for value in values:
             found.scene({**{k: v[0] for k, v in axes.items()}, key: value}, registry)
     if found.scene(found.points()[0], registry).excitation is None:
-        raise SceneError.at("excitation", None, "is required: the map is about a stiffness under a turning or swinging force")
+        raise SceneError.at(
+            "excitation", None, "is required: the map is about a stiffness under a turning or swinging force"
+        )
     return found
 
 
@@ -118,7 +114,9 @@ def _wrong(axis: Axis) -> list[Mistake]:
     if axis.key in (SPEED, AXIAL) and low:
         return [Mistake(axis.key, low[0], "must be greater than 0: the map looks at logarithms of it")]
     if axis.key == SPEED and len(axis.values) < 2:
-        return [Mistake(axis.key, list(axis.values), "needs two speeds or more: the first is what the others are held against")]
+        return [
+            Mistake(axis.key, list(axis.values), "needs two speeds or more: the first is what the others are held against")
+        ]
     return []
 
 
@@ -134,8 +132,3 @@ def amplitude_words(scene: Scene) -> str:
     if law == "constant":
         return f"{part.name}, constant {part.amplitude_n:.4g} N at every speed"
     return f"{part.name}, {part.amplitude_n:.4g} N at {getattr(part, 'speed_rpm', 0.0):.6g} r/min"
-
-
-def changed(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """The tables with one key changed."""
-    return dict(with_value(dict(tables), key, value))

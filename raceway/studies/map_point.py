@@ -38,7 +38,10 @@ def point_row(scene: Scene, registry: Registry) -> dict[str, Any]:
     inner, outer, least = _reaches(result)
     loads = record.record.contact_force
     z = result.model.system.ball_count
-    peaks = [float(e.peak_pressure(part.max())) for e, part in ((result.model.inner, loads[:, :z]), (result.model.outer, loads[:, z:]))]
+    peaks = [
+        float(e.peak_pressure(part.max()))
+        for e, part in ((result.model.inner, loads[:, :z]), (result.model.outer, loads[:, z:]))
+    ]
     return {
         "status": "completed",
         "reason": "",
@@ -78,7 +81,9 @@ def _reaches(result: Result) -> tuple[float, float, float]:
     reach, least = [0.0, 0.0], np.inf
     for q, ball, force, t in zip(record.displacement, record.ball, record.contact_force, record.time, strict=True):
         angles = contact_angles(model, q, ball, force, t)
-        for lane, (ellipse, angle, load) in enumerate(((model.inner, angles[0], force[:z]), (model.outer, angles[1], force[z:]))):
+        for lane, (ellipse, angle, load) in enumerate(
+            ((model.inner, angles[0], force[:z]), (model.outer, angles[1], force[z:]))
+        ):
             half = ellipse.semi_axes(load)[0] / radius
             reach[lane] = max(reach[lane], float(np.nanmax(np.abs(angle) + half, initial=0.0)) / edge)
         least = min(least, float(np.nanmin(angles[0], initial=np.inf)))

@@ -6,9 +6,11 @@ import multiprocessing
 import signal
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
+from raceway.errors import ConvergenceError
 from raceway.registry import Registry, default_registry
 from raceway.studies.map_design import Design
 from raceway.studies.map_point import point_row
@@ -42,5 +44,10 @@ def in_processes(design: Design, tasks: Sequence[Numbered], processes: int, plug
             finished, pending = wait(pending, return_when=FIRST_COMPLETED)
             for one in finished:
                 yield one.result()
+    except BrokenProcessPool:
+        message = (
+            "a process of the map ended without an answer; finished points are kept. Run it again, or with --processes 0"
+        )
+        raise ConvergenceError(message) from None
     finally:
         pool.shutdown(wait=True, cancel_futures=True)

@@ -14,6 +14,10 @@ from tests.command_line import ARTICLE, invoke
 #: Name -> the command that writes it, without --out, and its file.
 PAGES = {
     "view": (("view", ARTICLE, "--html", "--animate", "--frames", "2"), "view.html"),
+    "map": (
+        ("study", "map", "--vary", "load.axial=400,2000", "--vary", "excitation.speed_rpm=10000,15000,60000"),
+        "map.html",
+    ),
 }
 
 
