@@ -13,7 +13,7 @@ from raceway.bodies.inertia import inertia_table
 from raceway.core.bodies import ring
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
 from raceway.core.condensed.sphere import ball_compliance
-from raceway.core.condensed.structural import SURFACE, reach, ring_compliance
+from raceway.core.condensed.structural import SURFACE, reach, ring_compliance, ring_section
 from raceway.core.meshing.ring_shape import ring_shape
 from raceway.core.system import System
 from raceway.errors import ConvergenceError, SceneError
@@ -21,6 +21,8 @@ from raceway.plan import Plan
 from raceway.scene import Scene
 
 if TYPE_CHECKING:
+    from raceway.core.meshing.ring import RingShape
+    from raceway.core.revolution.profile import Profile
     from raceway.model import Model
     from raceway.statics import Equilibrium
 
@@ -54,15 +56,12 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
     coarser : factor on all sizes of elements
     """
     b = scene.bearing
-    # p0 grows with the cube root of the load.
-    typical = float((_PRESSURE / basis.inner.peak_pressure(1.0)) ** 3)
+    typical = _typical_load(basis)
     rings = []
     for inner in (True, False):
         shape = ring_shape(b, inner)
         half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
-        length = reach(shape, b.ball_diameter)
-        bulk = 0.62 * length if scene.mesh is None else min(scene.mesh.element_size, 0.62 * length)
-        fine = SURFACE * length if scene.mesh is None else half / scene.mesh.nodes_per_semi_axis
+        bulk, fine = _sizes(scene, shape, half)
         rings.append(
             ring_compliance(
                 shape,
@@ -80,6 +79,19 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
     a, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
     return ElasticBodies(rings[0], rings[1], own, opposite)
+
+
+def _typical_load(basis: Basis) -> float:
+    """The load of ``_PRESSURE`` on the inner race [N]: p0 grows with the cube root of the load."""
+    return float((_PRESSURE / basis.inner.peak_pressure(1.0)) ** 3)
+
+
+def _sizes(scene: Scene, shape: RingShape, half: float) -> tuple[float, float]:
+    """Sizes of a ring's elements far from the groove and on it [m]; ``half``: semi-major axis of a typical contact."""
+    length = reach(shape, scene.bearing.ball_diameter)
+    if scene.mesh is None:
+        return 0.62 * length, SURFACE * length
+    return min(scene.mesh.element_size, 0.62 * length), half / scene.mesh.nodes_per_semi_axis
 
 
 @attrs.frozen(eq=False)
@@ -146,6 +158,13 @@ class Condensed:
         fine = np.diag(equilibrium.stiffness)[chosen]
         other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
         return float(np.abs(other / fine - 1.0).max()), "largest change of a diagonal stiffness from a mesh twice as coarse"
+
+    def ring_section(self, model: Model, inner: bool) -> Profile:
+        """The mesh of a ring's section that its compliance was computed on, for pictures."""
+        basis, shape = self.rigid.basis, ring_shape(model.scene.bearing, inner)
+        half = float((basis.inner if inner else basis.outer).semi_axes(_typical_load(basis))[0])
+        bulk, fine = _sizes(model.scene, shape, half)
+        return ring_section(shape, model.scene.bearing.ball_diameter, bulk, min(fine, bulk))
 
     def _nodes_per_semi_axis(self, model: Model, equilibrium: Equilibrium) -> float:
         """Elements of the inner groove's surface along the semi-major axis of the most loaded contact."""

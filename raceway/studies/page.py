@@ -112,7 +112,7 @@ class Page:
 
         Parameters
         ----------
-        items : (figure of matplotlib or bytes of a PNG or SVG file, what is seen, caption)
+        items : (figure of matplotlib or bytes of a PNG, GIF or SVG file, what is seen, caption)
         """
         parts = []
         for picture, alternative, caption in items:
@@ -120,6 +120,10 @@ class Page:
             words = f"<figcaption>{_inline(caption)}</figcaption>" if caption else ""
             parts.append(f'<figure><img alt="{escape(alternative, quote=True)}" src="{uri}">{words}</figure>')
         self._blocks.append(f'<div class="figures{" wide" if wide else ""}">{"".join(parts)}</div>')
+
+    def markup(self, html: str) -> None:
+        """A block that is HTML already, for what no other method makes; nothing is escaped."""
+        self._blocks.append(html)
 
     def html(self) -> str:
         """The whole page."""
@@ -160,8 +164,9 @@ def svg(figure: Figure) -> bytes:
 
 
 def data_uri(content: bytes) -> str:
-    """A PNG or SVG file as a data URI."""
-    kind = "image/png" if content.startswith(b"\x89PNG") else "image/svg+xml"
+    """A PNG, GIF or SVG file as a data URI."""
+    kinds = {b"\x89PNG": "png", b"GIF8": "gif"}
+    kind = f"image/{kinds.get(content[:4], 'svg+xml')}"
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 

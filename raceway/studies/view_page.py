@@ -1,0 +1,180 @@
+"""The page of ``raceway view``: the bearing to turn about with WebGL, its balls as a table, and the pictures.
+
+The page carries everything and asks for nothing.  pyvista's own ``export_html`` is not used: it wants a server's packages
+besides pyvista, and its scene carries no numbers.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+from string import Template
+from typing import Any
+
+import numpy as np
+
+from raceway.plugins.reports.view.bearing import Bearing, Part, State
+from raceway.plugins.reports.view.scene import LOADS, PRESSURES
+from raceway.plugins.reports.view.surfaces import Surface, ball, joined
+from raceway.studies.page import Page
+
+#: Points of a shape: WebGL 1 counts them in 16 bits.  Contact ellipses that go into one.
+_MOST, _TOGETHER = 65535, 100
+
+
+_COLUMNS = [
+    "ball", "azimuth [deg]", "load [N]", "contact angle [deg]", "peak pressure [MPa]",
+    "a, across [mm]", "b, rolling [mm]",
+]  # fmt: skip
+
+
+def view_page(bearing: Bearing, state: State, words: dict[str, Any], pictures: Sequence[tuple[bytes, str, str]]) -> Page:
+    """The page.
+
+    Parameters
+    ----------
+    words : title, subtitle, when (which state is shown), lead (a paragraph), notes (sentences)
+    pictures : (bytes of a PNG or GIF file, what is seen, caption)
+    """
+    page = Page(words["title"], words["subtitle"], "Made by `raceway view`; opens without a network.")
+    page.section("The bearing")
+    page.text(words["lead"], f"Shown {words['when']}.", kind="lead")
+    for note in words["notes"]:
+        page.text(note, kind="note")
+    page.markup(_stage(bearing, state))
+    page.section("Balls")
+    for inner in (True, False):
+        race = "inner" if inner else "outer"
+        page.table(
+            _COLUMNS,
+            _balls(state, inner),
+            caption=f"Contacts with the {race} race {words['when']}; a and b are the semi-axes",
+        )
+    page.section("Pictures")
+    page.figures(pictures, wide=True)
+    return page
+
+
+def _stage(bearing: Bearing, state: State) -> str:
+    z = len(state.azimuth)
+    top = max(float(state.load[:z].max()), 1e-12)
+    peak = max(1e-6 * float(state.peak.max()), 1e-12)
+    parts = {
+        "data": json.dumps(_scene(bearing, state, top, peak), separators=(",", ":")).replace("<", "\\u003c"),
+        "script": files("raceway").joinpath("data/view.js").read_text(encoding="utf-8"),
+        "bars": _bar("ball load, inner race", "N", LOADS, top) + _bar("contact pressure", "MPa", PRESSURES, peak),
+        "label": escape(f"The bearing in three dimensions, {z} balls", quote=True),
+    }
+    return Template(files("raceway").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts)
+
+
+def _scene(bearing: Bearing, state: State, top: float, peak: float) -> dict[str, Any]:
+    """What the script draws."""
+    z, centres = len(state.azimuth), bearing.centres(state)
+    shapes = {"ball": _packed(ball(bearing.diameter, 20, 32))}
+    parts: list[dict[str, Any]] = []
+
+    def add(part: Part, shape: str, at: Any, colour: Any) -> None:
+        parts.append(
+            {"name": part.name, "shape": shape, "at": _short(at), "colour": _short(colour), "opacity": part.opacity}
+        )
+
+    for k, part in enumerate(bearing.rings()):
+        shapes[f"ring {k}"] = _packed(part.surface)
+        add(part, f"ring {k}", np.zeros(3), _hex(part.colour))
+    for part, centre in zip(bearing.balls(state), centres, strict=True):
+        add(part, "ball", centre, _tone(LOADS, (part.load or 0.0) / top))
+    for k, part in enumerate(bearing.arrows(state, top)):
+        shapes[f"arrow {k}"] = _packed(part.surface)
+        add(part, f"arrow {k}", np.zeros(3), _tone(LOADS, (part.load or 0.0) / top))
+    patches = bearing.patches(state)
+    for k in range(0, len(patches), _TOGETHER):
+        some = joined([part.surface for part in patches[k : k + _TOGETHER]])
+        shapes[f"patches {k}"] = _packed(some, _tone(PRESSURES, np.asarray(some.values) / peak))
+        add(Part("contacts", some), f"patches {k}", np.zeros(3), np.ones(3))
+    told = [
+        {
+            "at": _short(centres[k]),
+            "text": f"Ball {k} at {np.degrees(state.azimuth[k]) % 360.0:.4g}°: {_ball_words(state, k)}",
+        }
+        for k in range(z)
+    ]
+    labels = [{"at": _short(tip), "text": f"{k}: {state.load[k]:.3g} N"} for k, tip in enumerate(bearing.tips(state, top))]
+    reach = 1.03 * max(float(np.abs(bearing.tips(state, top)).max()), 500.0 * bearing.shape.outer_diameter)
+    return {
+        "shapes": shapes, "parts": parts, "balls": told, "labels": labels, "reach": reach, "radius": 0.5 * bearing.diameter
+    }  # fmt: skip
+
+
+def _ball_words(state: State, k: int) -> str:
+    z, words = len(state.azimuth), []
+    for i, race in ((k, "inner"), (z + k, "outer")):
+        if state.load[i] > 0.0:
+            words.append(
+                f"{race} race {state.load[i]:.4g} N at {np.degrees(state.angle[i]):.2f}°, {1e-6 * state.peak[i]:.4g} MPa, "
+                f"ellipse {2e3 * state.half[i, 0]:.3g} x {2e3 * state.half[i, 1]:.3g} mm"
+            )
+        else:
+            words.append(f"{race} race without contact")
+    return "; ".join(words)
+
+
+def _balls(state: State, inner: bool) -> list[list[Any]]:
+    """A row for each ball, cells as ``_COLUMNS`` says."""
+    z, rows = len(state.azimuth), []
+    for k in range(z):
+        i = k if inner else z + k
+        numbers = [np.degrees(state.angle[i]), 1e-6 * state.peak[i], *(1e3 * state.half[i])]
+        cells = [f"{value:.4g}" for value in numbers] if state.load[i] > 0.0 else [None] * 4
+        rows.append([k, f"{np.degrees(state.azimuth[k]) % 360.0:.4g}", f"{state.load[i]:.4g}", *cells])
+    return rows
+
+
+def _packed(surface: Surface, tones: np.ndarray | None = None) -> dict[str, str]:
+    """Arrays in base64: points as float32, normals as int8 and tones as uint8 in fours, triangles as uint16."""
+    assert len(surface.points) <= _MOST
+    normals = np.zeros((len(surface.points), 4), dtype=np.int8)
+    normals[:, :3] = np.round(127.0 * surface.normals)
+    out = {
+        "points": _text(surface.points.astype("<f4")),
+        "normals": _text(normals),
+        "triangles": _text(surface.triangles.astype("<u2")),
+    }
+    if tones is not None:
+        colours = np.full((len(tones), 4), 255, dtype=np.uint8)
+        colours[:, :3] = np.round(255.0 * tones)
+        out["tones"] = _text(colours)
+    return out
+
+
+def _text(array: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode()
+
+
+def _tone(colours: str, share: Any) -> np.ndarray:
+    """Red, green, blue from 0 to 1 at shares (n,) from 0 to 1 of a colour map."""
+    import matplotlib
+
+    return np.asarray(matplotlib.colormaps[colours](np.asarray(share, dtype=float)))[..., :3]
+
+
+def _bar(what: str, unit: str, colours: str, top: float) -> str:
+    """A colour bar with its numbers."""
+    stops = ", ".join(
+        f"rgb({', '.join(str(round(255 * float(part))) for part in _tone(colours, share))})"
+        for share in np.linspace(0.0, 1.0, 11)
+    )
+    numbers = "".join(f"<span>{share * top:.4g}</span>" for share in (0.0, 0.25, 0.5, 0.75, 1.0))
+    return f'<div class="bar">{escape(what)} [{unit}]<i style="background: linear-gradient(90deg, {stops})"></i><div>{numbers}</div></div>'
+
+
+def _hex(colour: str | None) -> list[float]:
+    text = (colour or "#ffffff").lstrip("#")
+    return [int(text[k : k + 2], 16) / 255.0 for k in (0, 2, 4)]
+
+
+def _short(values: Any) -> list[float]:
+    return [round(float(value), 4) for value in np.asarray(values).ravel()]

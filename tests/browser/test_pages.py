@@ -1,0 +1,133 @@
+"""Every page that the program writes, opened from its file in headless chromium, as wide as a screen and as a telephone."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.browser.chromium import WIDTHS, Browser
+from tests.command_line import ARTICLE, invoke
+
+#: Name -> the command that writes it, without --out, and its file.
+PAGES = {
+    "view": (("view", ARTICLE, "--html", "--animate", "--frames", "2"), "view.html"),
+    "map": (
+        ("study", "map", "--vary", "load.axial=400,2000", "--vary", "excitation.speed_rpm=10000,15000,60000"),
+        "map.html",
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def browser():
+    one = Browser()
+    yield one
+    one.close()
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """``page(name)``: the file, written once."""
+    written: dict[str, Path] = {}
+
+    def write(name: str) -> Path:
+        if name not in written:
+            words, file = PAGES[name]
+            folder = tmp_path_factory.mktemp(name)
+            found = invoke(*words, "--out", folder)
+            assert found.exit_code == 0, found.output
+            written[name] = folder / file
+        return written[name]
+
+    return write
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_is_whole_at_both_widths_and_asks_for_nothing(browser, page, name):
+    path = page(name)
+    assert path.stat().st_size < 5e6  # the limit of the pages
+    for width in WIDTHS:
+        look = browser.look(path, width)
+        assert look.faults() == [], f"{width} px"
+        assert look.found["images"] or look.found["drawings"]
+
+
+def test_the_bearing_can_be_seen_turned_and_asked(browser, page):
+    browser.look(page("view"), 1280)
+    # Pixels that differ from the background, in the drawing's middle.
+    seen = """
+    const from = document.getElementById("scene"), flat = document.createElement("canvas");
+    flat.width = flat.height = 200;
+    const context = flat.getContext("2d");
+    context.drawImage(from, 0, 0, 200, 200);
+    const pixels = context.getImageData(0, 0, 200, 200).data, tones = new Set();
+    let other = 0;
+    for (let k = 0; k < pixels.length; k += 4) {
+      if (pixels[k] + pixels[k + 1] + pixels[k + 2] < 700) other++;
+      tones.add((pixels[k] >> 4) * 256 + (pixels[k + 1] >> 4) * 16 + (pixels[k + 2] >> 4));
+    }
+    return [other, tones.size, from.toDataURL().length];
+    """
+    other, tones, size = browser.run(seen)
+    assert 4000 < other < 36000 and tones > 40  # of 40 000: neither an empty picture nor one that is full
+    numbers = """
+    const canvas = document.getElementById("scene"), box = canvas.getBoundingClientRect(), labels = [...document.querySelectorAll(".label")];
+    const event = (kind, x, y) => canvas.dispatchEvent(new PointerEvent(kind, {clientX: x, clientY: y, pointerId: 1, bubbles: true}));
+    const words = new Set();
+    for (let x = box.left; x < box.right; x += 8) for (let y = box.top; y < box.bottom; y += 8) {
+      event("pointermove", x, y);
+      words.add(document.getElementById("told").textContent);
+    }
+    return [labels.map((e) => e.textContent), [...words]];
+    """
+    labels, words = browser.run(numbers)
+    assert len(labels) == 12 and all(" N" in text for text in labels)
+    balls = [text for text in words if text.startswith("Ball ")]
+    assert len(balls) == 12 and all("MPa" in text and "mm" in text for text in balls)
+    drag = "document.getElementById('outer').click(); return new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))"
+    browser.run(drag)
+    assert browser.run(seen)[0] < other  # without the outer ring less is covered
+
+
+def test_without_webgl_the_page_says_where_to_look(browser, page, tmp_path):
+    text = page("view").read_text(encoding="utf-8")
+    path = tmp_path / "view.html"
+    path.write_text(
+        text.replace("<style>", "<script>HTMLCanvasElement.prototype.getContext = () => null;</script><style>", 1)
+    )
+    look = browser.look(path, 400)
+    assert look.faults() == []
+    assert "pictures below" in browser.run("return document.getElementById('told').textContent")
+
+
+def test_faults_are_found(browser, tmp_path):
+    path = tmp_path / "bad.html"
+    body = '<img alt="gone" src="gone.png"><div style="width: 900px">wide</div><svg width="0" height="5"></svg>'
+    path.write_text(
+        f"<!doctype html><body>{body}<script>console.error('oops'); fetch('http://127.0.0.1:9/x');</script></body>"
+    )
+    faults = " ".join(browser.look(path, 400).faults())
+    for word in (
+        "oops",
+        "asked for http://127.0.0.1:9/x",
+        "gone.png",
+        "px wide in a window of 400",
+        "'gone' is not there",
+        "no size",
+    ):
+        assert word in faults
+
+
+def test_a_browser_that_is_missing_is_named(monkeypatch):
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    with pytest.raises(RuntimeError, match="apt-get install chromium chromium-driver"):
+        Browser()
+
+
+def test_the_data_of_the_page_are_json(page):
+    text = page("view").read_text(encoding="utf-8")
+    data = json.loads(text.split('type="application/json">')[1].split("</script>")[0])
+    assert len(data["balls"]) == 12 and set(data["shapes"]) >= {"ball", "ring 0"}

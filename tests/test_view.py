@@ -1,0 +1,163 @@
+"""raceway view: what the surfaces measure, what is drawn of a state, the command."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+
+import numpy as np
+import pytest
+
+from raceway import scene_from_dict
+from raceway.core.meshing.ring_shape import ring_shape
+from raceway.plugins.reports.view import surfaces
+from raceway.plugins.reports.view.bearing import Bearing
+from raceway.run import run
+from raceway.studies.view_states import at_peak, at_rest, last_turn
+from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
+from tests.conftest import b7206c
+
+STATIC = ("--set", "load.radial=[600.0, 0.0]")
+
+
+def volume(surface):
+    """Gauss's theorem over the triangles, with the surface's own normals."""
+    corner = surface.points[surface.triangles]
+    area = 0.5 * np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    out = surface.normals[surface.triangles].mean(axis=1)
+    return float((area * (corner.mean(axis=1) * out).sum(axis=1)).sum() / 3.0)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
+
+
+@pytest.fixture(scope="module")
+def moving():
+    excitation = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
+    tables = b7206c(load={"axial": 1000.0}, excitation=excitation, integrator={"kind": "quasi_static", "turns": 1})
+    return run(scene_from_dict(tables))
+
+
+def test_rings_and_balls_have_their_volume(result):
+    bearing = Bearing.of(result)
+    for part in bearing.rings(cut=None):
+        exact = 1e9 * ring_shape(bearing.shape, part.name.startswith("inner")).volume
+        # 120 chords a turn: (2 pi / 120)^2 / 6 = 0.05 % of an area; normals of chords add as much.
+        assert volume(part.surface) == pytest.approx(exact, rel=2e-3)
+    # 24 x 36 facets of a ball: 1 - cos of half a facet, about 1 %.
+    assert volume(surfaces.ball(9.525)) == pytest.approx(np.pi / 6.0 * 9.525**3, rel=2e-2)
+
+
+def test_a_contact_ellipse_has_its_axes_and_peak():
+    patch = surfaces.contact_patch(
+        np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 10.0, (1.0, 0.1), 2000.0
+    )
+    reach = np.abs(patch.points).max(axis=0)
+    # Laid on a ball of 5 mm: 1 mm across its tangent plane becomes 5 sin(atan(1/5)) = 0.98 mm, drawn 0.4 % above it.
+    assert reach[0] == pytest.approx(0.98 * 1.004, rel=1e-3) and reach[2] == pytest.approx(0.1, rel=6e-3)
+    assert patch.values.max() == 2000.0 and patch.values.min() == 0.0
+
+
+def test_loads_decide_colours_and_arrows_and_open_contacts_have_neither(result):
+    bearing, state = Bearing.of(result), at_rest(result)
+    z = 12
+    loads = [part.load for part in bearing.balls(state)]
+    assert loads == pytest.approx(list(result.equilibrium.contact_force[:z]))
+    open_balls = int((state.load[:z] == 0.0).sum())
+    assert open_balls > 0  # three times as much radially as axially
+    assert len(bearing.arrows(state, max(loads))) == z - open_balls
+    assert len(bearing.patches(state)) == 2 * (z - open_balls)
+    reach = [
+        np.ptp(part.surface.points @ [0.0, 1.0, 0.0]) for part in bearing.arrows(state, max(loads)) if part.name == "load 0"
+    ]
+    # Ball 0 carries most: its arrow is 1.1 diameters long, but for what its contact angle takes.
+    assert 0.9 * 9.525 < reach[0] <= 1.1 * 9.525 * 1.001
+
+
+def test_contacts_lie_where_ring_and_ball_meet(result):
+    bearing, state = Bearing.of(result), at_rest(result)
+    towards, centres = bearing.towards(state), bearing.centres(state)
+    for inner, ball in ((True, 0), (False, 12)):
+        shape = ring_shape(bearing.shape, inner)
+        x, y, _ = centres[0] + 0.5 * bearing.diameter * towards[ball]
+        away = np.hypot(x - 1e3 * shape.centre_x, y - 1e3 * shape.centre_r)
+        # The rings are drawn unloaded: off by no more than the approach and the groove's clearance for a turned angle.
+        assert away == pytest.approx(1e3 * shape.groove, abs=0.06)
+
+
+def test_a_turn_is_exaggerated_by_a_round_factor(moving):
+    turn = last_turn(moving, 8)
+    size = max(np.abs(state.motion[:3]).max() for state in turn.states)
+    assert len(turn.states) == 8 and f"{turn.factor:.0e}"[0] in "125"
+    # Largest motion 0.12 of the ball diameter, the factor rounded down by at most 2.5.
+    assert 0.12 / 2.6 * 9.525e-3 < size <= 0.12 * 9.525e-3 * 1.001
+    force = np.hypot(*turn.force.T)
+    assert force == pytest.approx(np.full(8, force[0]), rel=1e-9)
+    state, angle = at_peak(moving)
+    assert 0.0 <= angle < 360.0
+    assert state.load[:12].max() == pytest.approx(moving.simulation.record.contact_force[:, :12].max(), rel=1e-9)
+
+
+def test_a_pair_has_four_rings_and_loads_that_point_apart():
+    bearing = {"arrangement": "DB", "preload": 300.0}
+    found = run(scene_from_dict(b7206c(bearing=bearing, load={"axial": 0.0, "radial": [100.0, 0.0]})))
+    drawn = Bearing.of(found)
+    assert len(drawn.rings(cut=None)) == 4
+    towards = drawn.towards(at_rest(found))[24:]
+    assert (towards[:12, 0] > 0.2).all() and (towards[12:, 0] < -0.2).all()
+
+
+def test_rings_without_dimensions_are_drawn_and_told(result):
+    tables = b7206c()
+    b = result.model.scene.bearing
+    names = ("ball_diameter", "pitch_diameter", "ball_count", "conformity_inner", "conformity_outer", "contact_angle_deg")
+    tables["bearing"] = {name: getattr(b, name) for name in names}
+    drawn = Bearing.of(run(scene_from_dict(tables)))
+    assert drawn.assumed == ("bore", "outer_diameter", "width")
+    assert len(drawn.rings()) == 4
+
+
+def test_the_command_draws_without_a_display_and_in_silence(tmp_path):
+    found = raceway(
+        "view",
+        MINIMAL,
+        *STATIC,
+        "--set",
+        "bodies.kind=condensed",
+        "--out",
+        tmp_path,
+        "--json",
+        DISPLAY="",
+        PYTHONWARNINGS="always",
+    )
+    assert found.returncode == 0, found.stderr
+    assert found.stderr == ""
+    content = json.loads(found.stdout)
+    names = [path.rpartition("/")[2] for path in content["files"]]
+    assert names == ["bearing.png", "bearing-peak.png", "contacts.png", "ball-loads.png", "orbit.png"]
+    assert all((tmp_path / name).stat().st_size > 20_000 for name in names)  # empty pictures are smaller
+    assert content["largest_ball_load_n"] > 300.0 and 1e9 < content["largest_pressure_pa"] < 4e9
+
+
+@pytest.mark.parametrize("package", ["pyvista", "matplotlib"])
+def test_a_missing_package_is_named_before_anything_is_computed(tmp_path, monkeypatch, package):
+    real = importlib.util.find_spec
+    monkeypatch.setattr("raceway.view_commands.find_spec", lambda name: None if name == package else real(name))
+    found = invoke("view", MINIMAL, "--out", tmp_path)
+    assert found.exit_code == 2
+    assert package in found.output and "raceway[view]" in found.output
+
+
+def test_what_does_not_move_is_not_animated(tmp_path):
+    scene = tmp_path / "still.toml"
+    scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n')
+    found = invoke("view", scene, "--animate", "--out", tmp_path)
+    assert found.exit_code == 2
+    assert "--animate" in found.output and "excitation" in found.output
+
+
+def test_help_teaches():
+    text = invoke("view", "--help").output
+    assert f"raceway view {ARTICLE.rpartition('/')[2]}".replace("view ", "view examples/") in text
