@@ -23,6 +23,7 @@ from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 from raceway.rig_commands import identify
 from raceway.studies_group import study
 from raceway.study_commands import precision, stability
+from raceway.sweep_command import sweep
 from raceway.view_commands import view
 
 if TYPE_CHECKING:
@@ -241,5 +242,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, study, identify, view):
+for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, study, identify, view, sweep):
     main.add_command(_command)
