@@ -20,6 +20,7 @@ from raceway.console import Commands, print_json
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
+from raceway.store_commands import export, plot
 from raceway.study_commands import precision, stability
 
 if TYPE_CHECKING:
@@ -238,5 +239,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability):
+for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, plot, export):
     main.add_command(_command)

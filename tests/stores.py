@@ -12,7 +12,12 @@ from tests.conftest import b7206c
 
 DOFS = ["x", "y", "z", "tilt_y", "tilt_z"]
 MASS = 2.061
-UNITS = {"excitation.speed_rpm": "r/min", "load.axial": "N", "excitation.direction_deg": "deg", "kinematics.spin_speed_rpm": "r/min"}
+UNITS = {
+    "excitation.speed_rpm": "r/min",
+    "load.axial": "N",
+    "excitation.direction_deg": "deg",
+    "kinematics.spin_speed_rpm": "r/min",
+}
 SPEEDS = np.linspace(2000.0, 30000.0, 9)
 
 
@@ -60,11 +65,15 @@ def made(axes: dict[str, Any], tables: dict[str, Any] | None = None, **changed: 
         "error_total": ("1", 1e-7 + 0.0 * w),
     }
     values |= {name: (values[name][0], function(at)) for name, function in changed.items() if name in values}
-    variables: dict[str, Any] = {name: (names, array, {"units": unit, "long_name": name.replace("_", " ")}) for name, (unit, array) in values.items()}
+    variables: dict[str, Any] = {
+        name: (names, array, {"units": unit, "long_name": name.replace("_", " ")}) for name, (unit, array) in values.items()
+    }
     spring = changed["stiffness"](at) if "stiffness" in changed else spring
     variables["stiffness"] = ([*names, "dof", "dof2"], spring, {"units": "N/m", "long_name": "tangent stiffness"})
     variables["status"] = (names, np.full(shape, "done", dtype=object))
-    coords: dict[str, Any] = {key: (key, list(values), {"units": UNITS.get(key, "1"), "long_name": key}) for key, values in axes.items()}
+    coords: dict[str, Any] = {
+        key: (key, list(values), {"units": UNITS.get(key, "1"), "long_name": key}) for key, values in axes.items()
+    }
     attributes = {"scene": json.dumps(tables or scene()), "schema": 1}
     return xarray.Dataset(variables, {**coords, "dof": DOFS, "dof2": DOFS}, attributes)
 

@@ -294,7 +294,9 @@ def _resolved(selection: Selection) -> list[str]:
     hidden = np.abs(data["z_imag"].values) <= np.nan_to_num(data["error_total"].values) * z
     if not hidden.any():
         return []
-    return [f"damping is not resolved at {int(hidden.sum())} of {hidden.size} points: smaller than its error, of either sign"]
+    return [
+        f"damping is not resolved at {int(hidden.sum())} of {hidden.size} points: smaller than its error, of either sign"
+    ]
 
 
 def _table(

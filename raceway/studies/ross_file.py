@@ -112,7 +112,13 @@ def ross_file(table: Coefficients, generation: int, tag: str, node: int, head: t
     content: dict[str, Any] = {"n": node, "tag": tag}
     content |= {ross: columns[ours].tolist() for ours, ross in NAMES.items()}
     content |= {name: values.tolist() for name, values in axes.items()}
-    notes = (*head, f"{table.definition}; N/m, N s/m, rad/s", "axes: ROSS's X, Y, Z are y, z, x of the bearing", *table.notes, *_LOST)
+    notes = (
+        *head,
+        f"{table.definition}; N/m, N s/m, rad/s",
+        "axes: ROSS's X, Y, Z are y, z, x of the bearing",
+        *table.notes,
+        *_LOST,
+    )
     return RossFile(tag, generation, content, (*notes, *_reading_notes(table, generation)))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -152,7 +152,12 @@ def same(one: Any, other: Any) -> bool:
     """Whether two values of a key are equal, numbers to rounding."""
     if is_number(one) and is_number(other):
         return math.isclose(one, other, rel_tol=_SAME, abs_tol=0.0)
-    return str(one) == str(other)
+    return _text(one) == _text(other)
+
+
+def _text(value: Any) -> str:
+    """What is no number has its JSON text on an axis."""
+    return value if isinstance(value, str) else json.dumps(value)
 
 
 def listed(values: Sequence[Any]) -> str:
@@ -172,7 +177,11 @@ def only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> Non
         Naming each axis, its values and what to type.
     """
     mistakes = [
-        Mistake(key, None, f"has {len(values)} values ({listed(values)}), {purpose}: choose one with --at {key}={shown(values[0])}")
+        Mistake(
+            key,
+            None,
+            f"has {len(values)} values ({listed(values)}), {purpose}: choose one with --at {key}={shown(values[0])}",
+        )
         for key, values in selection.axes.items()
         if key not in allowed
     ]
@@ -216,7 +225,8 @@ def _as_grid(part: Dataset, axes: Mapping[str, list[Any]], fixed: Mapping[str, A
         return part
     kept = {key: dict(part[key].attrs) for key in keys}
     part = part.drop_vars([LIST], errors="ignore")
-    part = part.swap_dims({LIST: keys[0]}) if len(keys) == 1 else part.set_index({LIST: keys}).unstack(LIST)
+    names: list[Hashable] = list(keys)
+    part = part.swap_dims({LIST: names[0]}) if len(names) == 1 else part.set_index({LIST: names}).unstack(LIST)
     part = part.sel(axes).transpose(*keys, ...)
     for key, attributes in kept.items():
         part[key].attrs.update(attributes)
