@@ -22,6 +22,7 @@ from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 from raceway.store_commands import export, plot
 from raceway.study_commands import precision, stability
+from raceway.sweep_command import sweep
 
 if TYPE_CHECKING:
     from raceway.scene import Scene
@@ -239,5 +240,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, plot, export):
+for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, sweep, plot, export):
     main.add_command(_command)

@@ -26,7 +26,7 @@ _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
 #: The same for condensed bodies, and what the matrices between balls add.
 _CONDENSED_STEP_S = {"weightless": 10.5e-6, "inertial": 13.5e-6, "tangential": 22.0e-6}
 _BETWEEN_S = 23.0e-6
-_START_S = 0.6
+START_S = 0.6
 #: Kinds of bodies that this version can compute.
 BODIES = ("rigid", "condensed", "elastic")
 #: Name of what repeats itself, for ``make_plan``'s ``force``.
@@ -222,7 +222,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         dofs=ring if cost is None else cost.unknowns,
         time_step_s=period / steps_per_turn if uses_record else None,
         predicted_steps=steps,
-        predicted_wall_s=_START_S + before + 1.5 * steps * each,
+        predicted_wall_s=START_S + before + 1.5 * steps * each,
         mesh=predicted_mesh(scene),
         modules=optional_modules(scene, balls, inertia, uses_record),
     )
