@@ -107,8 +107,9 @@ def export(
       raceway export raceway-out/B7206C-sweep --ross bearing.toml --at load.axial=1000
     """
     from raceway.studies.coefficients import coefficients
-    from raceway.studies.ross_file import installed_generation, ross_file
+    from raceway.studies.ross_file import check_name, installed_generation, ross_file
 
+    check_name(ross)
     writable(ross.parent)
     selection = _selection(store, at)
     found = installed_generation()
@@ -167,6 +168,9 @@ def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
 
     axes = {name: content[name] for name in ("speed", "frequency") if content[name] is not None}
     columns = {name: np.array(values) for name, values in content["coefficients"].items()}
+    largest = {letter: max(np.max(np.abs(v)) for name, v in columns.items() if name[0] == letter) for letter in "kc"}
+    # Cross terms of an isotropic bearing are rounding: columns of it say nothing.
+    shown = [name for name, values in columns.items() if np.max(np.abs(values)) > 1e-9 * largest[name[0]]]
     shape = tuple(len(values) for values in axes.values())
     rows = []
     for place in np.ndindex(shape):
@@ -175,11 +179,9 @@ def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
         row: dict[str, Any] = {
             f"{name} [rad/s]": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)
         }
-        for name, values in columns.items():
-            if np.any(values):
-                row[f"{name} [{'N/µm' if name[0] == 'k' else 'N s/m'}]"] = float(values[place]) * (
-                    1e-6 if name[0] == "k" else 1.0
-                )
+        for name in shown:
+            scale, unit = (1e-6, "N/µm") if name[0] == "k" else (1.0, "N s/m")
+            row[f"{name} ({unit})"] = float(columns[name][place]) * scale
         rows.append(row)
     return rows
 

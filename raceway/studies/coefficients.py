@@ -282,7 +282,9 @@ def _amplitude(selection: Selection) -> list[str]:
     force = selection.dataset["force_amplitude"].values
     low, high = float(np.min(force)), float(np.max(force))
     size = f"{low:.4g} N" if high - low <= 1e-6 * high else f"{low:.4g} to {high:.4g} N"
-    return [f"of amplitude {size}; a rotor model takes them as linear: where its bearing force differs, iterate"]
+    return [
+        f"under forces of amplitude {size}; a rotor model takes the numbers as linear: where its bearing force differs, iterate"
+    ]
 
 
 def _resolved(selection: Selection) -> list[str]:

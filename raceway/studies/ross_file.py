@@ -64,8 +64,7 @@ class RossFile:
         RacewayError
             Another ending, or a folder that cannot be written.
         """
-        if path.suffix.lower() not in (".toml", ".json"):
-            raise RacewayError(f"`{path}`: ROSS reads .toml and .json, and tells them by the ending: choose one of them")
+        check_name(path)
         text = self.toml() if path.suffix.lower() == ".toml" else self.json()
         return write_whole(text.encode(), path)
 
@@ -82,6 +81,18 @@ class RossFile:
         # JSON's numbers, strings and lists of them are TOML's, and its shortest decimal gives every bit back.
         lines += [f"{name} = {json.dumps(value, allow_nan=False)}" for name, value in self.content.items()]
         return "\n".join(lines) + "\n"
+
+
+def check_name(path: Path) -> None:
+    """Refuse a file that ROSS would not read.
+
+    Raises
+    ------
+    RacewayError
+        For an ending other than .toml and .json.
+    """
+    if path.suffix.lower() not in (".toml", ".json"):
+        raise RacewayError(f"`{path}`: ROSS reads .toml and .json, and tells them by the ending: choose one of them")
 
 
 def installed_generation() -> int | None:
@@ -140,10 +151,10 @@ def _reading_notes(table: Coefficients, generation: int) -> list[str]:
     if generation >= 3:
         return ["ROSS 3 passes through every point; beyond the ends it goes on in a straight line"]
     worst = smoothing(table)
-    told = ", ".join(f"{name} {_part(value)}" for name, value in worst.items() if value > 0.0) or "none"
+    told = ", ".join(f"{name} {_part(value)}" for name, value in worst.items() if value > 1e-12) or "none"
     return [
         "ROSS 2 does not pass through the points: it smooths with a bound of 1 N/m, or 1 N s/m, a point, which is a lot for a "
-        f"damping; largest change, of the largest value: {told}. raceway.studies.ross_reading.through_points(bearing) "
+        f"damping; largest change, of the largest value of its kind: {told}. raceway.studies.ross_reading.through_points(bearing) "
         "after loading makes it exact",
         "beyond the ends ROSS 2 goes on as a cubic, and modal analyses ask at speed 0: let the table begin low",
     ]
@@ -154,13 +165,14 @@ def _part(value: float) -> str:
 
 
 def smoothing(table: Coefficients) -> Mapping[str, float]:
-    """Largest change at a point by ROSS 2's own interpolation, over the largest size of the coefficient; by our names."""
+    """Largest change at a point by ROSS 2's own interpolation, over the largest coefficient of its kind; by our names."""
     from raceway.studies.ross_reading import smoothed
 
     axis = table.speed if table.speed is not None else table.frequency
     assert axis is not None
-    found = {}
-    for name, values in table.columns().items():
-        size = float(np.max(np.abs(values)))
-        found[name] = float(np.max(np.abs(smoothed(axis, values) - values))) / size if size > 0.0 else 0.0
-    return found
+    columns = table.columns()
+    size = {letter: max(float(np.max(np.abs(v))) for name, v in columns.items() if name[0] == letter) for letter in "kc"}
+    return {
+        name: float(np.max(np.abs(smoothed(axis, values) - values))) / (size[name[0]] or 1.0)
+        for name, values in columns.items()
+    }
