@@ -177,7 +177,7 @@ def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
         if len(shape) == 2 and any(0 < k < size - 1 for k, size in zip(place, shape, strict=True)):
             continue
         row: dict[str, Any] = {
-            f"{name} [rad/s]": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)
+            f"{name} (rad/s)": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)
         }
         for name in shown:
             scale, unit = (1e-6, "N/µm") if name[0] == "k" else (1.0, "N s/m")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -225,8 +225,10 @@ def _as_grid(part: Dataset, axes: Mapping[str, list[Any]], fixed: Mapping[str, A
         return part
     kept = {key: dict(part[key].attrs) for key in keys}
     part = part.drop_vars([LIST], errors="ignore")
-    names: list[Hashable] = list(keys)
-    part = part.swap_dims({LIST: names[0]}) if len(names) == 1 else part.set_index({LIST: names}).unstack(LIST)
+    if len(keys) == 1:
+        part = part.swap_dims({LIST: keys[0]})
+    else:
+        part = part.set_index(point=keys).unstack(LIST)
     part = part.sel(axes).transpose(*keys, ...)
     for key, attributes in kept.items():
         part[key].attrs.update(attributes)

@@ -166,7 +166,7 @@ def _greet(address: str, patience: float) -> None:
     OSError, ValueError
         As a client does.
     """
-    from distributed.comm import connect
+    from distributed.comm.core import connect
 
     async def meet() -> None:
         comm = await asyncio.wait_for(connect(address, timeout=patience), patience)

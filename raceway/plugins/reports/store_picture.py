@@ -117,8 +117,8 @@ def _figure(kind: str, count: int) -> Figure:
 def _curves(axes: Any, data: DataArray, x: str, y: str | None, label: str) -> None:
     """A curve for each value of y; the points of a list without lines, since they may have no order."""
     scattered = _LIST in data.dims
-    values = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
-    values = sorted(values, key=float) if y is not None and _numeric(values) else values
+    values: list[Any] = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
+    values = sorted(values) if y is not None and _numeric(values) else values
     places, names = _places(data[x].values)
     for k, value in enumerate(values):
         if y is None:
