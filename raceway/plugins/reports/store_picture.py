@@ -81,7 +81,8 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
         figure.legend(
             handles, labels, loc="outside right upper", frameon=False, fontsize=10, title=_axis(data, y), title_fontsize=10
         )
-    figure.suptitle("\n".join([*wrap(f"{name}{f' ({words})' if words not in ('', name) else ''}: {title}", 84), *wrap(remark, 100)]), fontsize=12)
+    heading = f"{name}: {title}" if words in ("", name) else f"{name} ({words}): {title}"
+    figure.suptitle("\n".join([*wrap(heading, 84), *wrap(remark, 100)]), fontsize=12)
     return figure
 
 
