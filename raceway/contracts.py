@@ -105,6 +105,8 @@ class Integrator(Protocol):
     4. ``advance(system, start, schedule, on_chunk)``: take the steps of the schedule and return a ``Record``; call
        ``on_chunk(done, total)`` now and then, whose exceptions pass through; on failure raise ``ConvergenceError`` or
        ``StabilityError`` with the last good state.
+    5. ``start.near``, if it is not None, is the ``solution`` that the same integrator left in the record of a similar motion:
+       it may be started from, and must not change the answer beyond the method's tolerance.
     """
 
     name: ClassVar[str]

@@ -10,7 +10,7 @@ import attrs
 import click
 
 from raceway.command_frame import attempt, common, plugin_files, registry_with, show, show_progress
-from raceway.command_inputs import changed_tables, slug, tell_faults, writable
+from raceway.command_inputs import changed_tables, has_netcdf, slug, tell_faults, writable
 from raceway.console import warn
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
 
@@ -94,13 +94,12 @@ def sweep(
 
 def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | None) -> int:
     """Write the data set, then the tables or JSON; then what stopped the sweep."""
-    from raceway.studies.sweep.dataset import RESULTS, TABLE, write_csv, write_netcdf
+    from raceway.studies.sweep.dataset import TABLE, write_csv, write_netcdf
 
     files = [str(store.path / "points.sqlite")]
-    failed = attempt(lambda: [write_netcdf(store)], files)
+    failed = attempt(lambda: [write_netcdf(store)], files) if has_netcdf() else None
     if as_csv and failed is None:
         failed = attempt(lambda: [write_csv(store, store.path / TABLE)], files)
-    del RESULTS
     states = store.status()
     if isinstance(stopped, RacewayError):
         failed = stopped

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: How often the list of workers is looked at [s].
 _LOOK_S = 2.0
+#: How often a batch that is refused is given to another worker.
+_REFUSALS = 3
 _TEXT = optional(lambda _instance, _attribute, _value: None)
 
 
@@ -41,6 +43,11 @@ class Dask:
     patience: float = option(
         20.0, unit="s", help="that a scheduler may take to answer, or all workers may be away", rule=inside(0.0, 86400.0)
     )
+
+    @classmethod
+    def examples(cls) -> list[Dask]:
+        """Instances for the conformance suite."""
+        return [cls(workers=1)]
 
     def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
         with self._client() as client:
@@ -77,6 +84,7 @@ class _Flight:
         self.fit: set[str] = set()
         #: future -> its batch, and the workers that it is bound to (none: any)
         self.flying: dict[Any, tuple[Batch, frozenset[str]]] = {}
+        self.refusals: dict[int, int] = {}
         self.looked, self.alone_since = -_LOOK_S, time.monotonic()
 
     def answers(self, batches: Iterator[Batch]) -> Iterator[tuple[int, Any]]:
@@ -91,14 +99,25 @@ class _Flight:
                 for future in [f for f in self.flying if f.done()]:
                     batch, _ = self.flying.pop(future)
                     answer = _outcome(future)
-                    if isinstance(answer, Refused) and self.fit:
-                        self._submit(batch)
+                    if isinstance(answer, Refused) and self._try_others(batch):
                         continue
                     yield batch[0], answer
                 self._look()
                 self._fill(batches)
         finally:
             self.client.cancel(list(self.flying), force=True)
+
+    def _try_others(self, batch: Batch) -> bool:
+        """Give a batch that a worker refused, for one that came after the last look, to those that are fit."""
+        self.refusals[batch[0]] = self.refusals.get(batch[0], 0) + 1
+        if self.refusals[batch[0]] > _REFUSALS:
+            return False
+        self.fit.clear()
+        self.looked = -_LOOK_S
+        self._look()
+        if self.fit:
+            self._submit(batch)
+        return bool(self.fit)
 
     def _meet(self) -> None:
         """Wait for a worker; ask all; refuse where none is fit."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -68,7 +69,13 @@ class Joblib:
         before = workers * 2 if self.workers > 1 else 1
         with parallel_config(backend="loky", inner_max_num_threads=1):
             pool = Parallel(n_jobs=workers, return_as="generator_unordered", batch_size=1, pre_dispatch=before)
-            yield from pool(calls)
+            answers = pool(calls)
+            try:
+                yield from answers
+            finally:
+                with warnings.catch_warnings():
+                    warnings.filterwarnings("ignore", message=".*tasks which were still being processed")
+                    answers.close()
 
 
 def _answer(work: Callable[[list[Any]], Any], number: int, points: list[Any]) -> tuple[int, Any]:

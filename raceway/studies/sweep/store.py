@@ -11,7 +11,7 @@ import json
 import sqlite3
 import threading
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 SCHEMA = 1
 STATES = ("waiting", "running", "done", "failed")
-POINTS = "points.sqlite"
+POINTS, LOCK = "points.sqlite", ".lock"
 _TABLES = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
     "CREATE TABLE points (number INTEGER PRIMARY KEY, state TEXT NOT NULL, reason TEXT, key TEXT, content TEXT, cost TEXT)",
@@ -177,7 +177,7 @@ def written(folder: Path, facts: Mapping[str, Any] | None) -> Iterator[Store]:
     """
     with told(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        guard = (folder / ".lock").open("w")
+        guard = (folder / LOCK).open("w")
     with guard:
         try:
             fcntl.flock(guard, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -185,6 +185,7 @@ def written(folder: Path, facts: Mapping[str, Any] | None) -> Iterator[Store]:
             raise RacewayError(
                 f"`{folder}` is being written by another sweep: wait for it, or choose another --out"
             ) from None
+        new = not exists(folder)
         with told(folder):
             connection = sqlite3.connect(folder / POINTS, timeout=30.0, check_same_thread=False)
         try:
@@ -196,7 +197,22 @@ def written(folder: Path, facts: Mapping[str, Any] | None) -> Iterator[Store]:
             store = Store(folder, connection)
             yield store
         finally:
-            connection.close()
+            _leave(folder, connection, new)
+
+
+def _leave(folder: Path, connection: sqlite3.Connection, new: bool) -> None:
+    """Close a store that was written; one that was begun and got nowhere is taken away."""
+    with suppress(sqlite3.Error):  # what is wrong with the disk was said when it was written to
+        asked = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
+        empty = new and (not _made(connection) or connection.execute(asked).fetchone() is None)
+        connection.execute("PRAGMA journal_mode = DELETE")
+        connection.close()
+        if empty:
+            with suppress(OSError):
+                (folder / POINTS).unlink(missing_ok=True)
+                (folder / LOCK).unlink(missing_ok=True)
+                folder.rmdir()
+    connection.close()
 
 
 def exists(folder: Path) -> bool:

@@ -83,7 +83,7 @@ class Work:
         try:
             scene = scene_from_dict(tables_at(self.tables, point, registry), registry)
             row["key"] = row_key(scene, registry, None, self.wanted["program"])
-            result = run(scene, registry)
+            result = run(scene, registry, near=before)
             row["values"] = values_of(result)
             row["state"] = "done"
             counted = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
