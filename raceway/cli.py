@@ -22,6 +22,7 @@ from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 from raceway.rig_commands import identify
 from raceway.studies_group import study
+from raceway.store_commands import export, plot
 from raceway.study_commands import precision, stability
 from raceway.sweep_command import sweep
 from raceway.view_commands import view
@@ -242,5 +243,9 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, study, identify, view, sweep):
+_COMMANDS = (
+    *(precision, stability, sweep, study, plot, export, identify, view, mesh),
+    *(plugins, check_plugin, new_plugin, schema, cache),
+)
+for _command in _COMMANDS:
     main.add_command(_command)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -64,6 +66,7 @@ class Dask:
                 yield client
             return
         try:
+            _greet(self.scheduler, self.patience)
             client = Client(self.scheduler, timeout=self.patience)
         except (OSError, ValueError, TypeError) as why:
             message = f"no dask scheduler answers at `{self.scheduler}` within {self.patience:g} s: {why}. Start one with `dask scheduler`"
@@ -172,6 +175,25 @@ class _Flight:
             self.work, batch[1], pure=False, workers=sorted(bound) or None, key=f"sweep-{batch[0]}-{time.time_ns()}"
         )
         self.flying[future] = batch, bound
+
+
+def _greet(address: str, patience: float) -> None:
+    """Connect once and leave: a client gives up where nobody listens, but waits for ever for one who says nothing.
+
+    Raises
+    ------
+    OSError, ValueError
+        As a client does.
+    """
+    from distributed.comm.core import connect
+
+    async def meet() -> None:
+        comm = await asyncio.wait_for(connect(address, timeout=patience), patience)
+        await comm.close()
+
+    # In a thread of its own: the caller may have a loop that runs, a notebook has.
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(asyncio.run, meet()).result()
 
 
 def _fault(work: Any) -> str | None:

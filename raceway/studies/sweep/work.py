@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import platform
 import threading
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 #: One point at a time in a process: kernels may be compiling, and a run's cost is the process's.
 _ONE = threading.Lock()
 _OWN: dict[tuple[str, ...], Registry] = {}
-_FAULTS: dict[tuple[Any, ...], str | None] = {}
+_FAULTS: dict[tuple[str, ...], str | None] = {}
 
 
 @attrs.frozen
@@ -49,7 +50,7 @@ class Work:
 
     def fault(self) -> str | None:
         """Why this process is not fit for the work; None where it is."""
-        mark = (self.wanted["program"], *self.wanted["plugins"].items(), *self.plugins)
+        mark = (json.dumps(self.wanted, sort_keys=True), *self.plugins)
         if mark not in _FAULTS:
             try:
                 there = identity(registry_of(self.plugins), used_by(self.wanted))

@@ -1,0 +1,224 @@
+"""Coefficients for rotor programs: their numbers, and the files, read by a small reader of ROSS's layout.
+
+ROSS itself reads them in benchmarks/evidence/ross.py: it is not in the extra ``all``.
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+
+from raceway.errors import RacewayError, SceneError
+from raceway.studies.coefficients import coefficients
+from raceway.studies.ross_file import NAMES, ross_file
+from raceway.studies.ross_reading import smoothed, through_points
+from raceway.studies.selection import select
+from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
+
+SPEED, SPIN, DIRECTION = "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.direction_deg"
+RADIANS = np.pi / 30.0
+
+
+def table(data, at=None, source=None):
+    return coefficients(select(data, at or {}), source)
+
+
+def read(path):
+    """The keyword arguments that ``ross.BearingElement.load`` takes out of a file: its first table."""
+    text = path.read_text(encoding="utf-8")
+    content = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
+    ((name, section),) = content.items()
+    assert name.startswith("BearingElement_")
+    return section
+
+
+@pytest.mark.parametrize("shape", [lambda data: data, as_list], ids=["grid", "list"])
+def test_a_rotating_force_gives_an_isotropic_bearing(shape):
+    found = table(shape(made({SPEED: SPEEDS, "load.axial": [400.0, 1000.0]})), {"load.axial": 1000.0})
+    columns = found.columns()
+    # Selected, not computed: equal to the last bit.
+    np.testing.assert_array_equal(found.speed, SPEEDS * RADIANS)
+    for name in ("kyy", "kzz"):
+        np.testing.assert_array_equal(columns[name], stiffness(SPEEDS, 1000.0))
+    for name in ("cyy", "czz"):
+        np.testing.assert_array_equal(columns[name], damping(SPEEDS))
+    assert not any(columns[name].any() for name in ("kyz", "kzy", "cyz", "czy"))
+    np.testing.assert_array_equal(columns["kxx"], np.full(len(SPEEDS), 6e7))
+    notes = " ".join(found.notes)
+    assert f"{MASS:.4g} kg, is taken out" in notes
+    assert "isotropic" in notes
+
+
+@pytest.mark.parametrize("ending", [".toml", ".json"])
+@pytest.mark.parametrize("generation, axis", [(2, "frequency"), (3, "speed")])
+def test_the_file_holds_every_number_under_the_names_of_ross(tmp_path, ending, generation, axis):
+    found = table(made({SPEED: SPEEDS}))
+    path = ross_file(found, generation, "made-up", 4, ("where from",)).write(tmp_path / f"bearing{ending}")
+    section = read(path)
+    assert (section["n"], section["tag"]) == (4, "made-up")
+    columns = found.columns()
+    for ours, ross in NAMES.items():
+        # Written with the shortest decimal that gives the same bits.
+        np.testing.assert_array_equal(section[ross], columns[ours])
+    np.testing.assert_array_equal(section[axis], found.speed)
+    assert len({"frequency", "speed"} & set(section)) == 1
+    text = path.read_text(encoding="utf-8")
+    for words in ("where from", "ROSS is linear", "translations only", "X, Y, Z are y, z, x"):
+        assert words in text
+
+
+def test_axes_are_renamed_in_rotation():
+    assert [NAMES[name] for name in ("kyy", "kyz", "kzy", "kzz", "kxx")] == ["kxx", "kxy", "kyx", "kyy", "kzz"]
+
+
+def whole(at):
+    """A full symmetric tangent that differs from point to point."""
+    base = np.array(
+        [
+            [6e7, 2e6, 0, 0, 4e5],
+            [2e6, 2e8, 1e7, 3e5, 1e6],
+            [0, 1e7, 3e8, -1e6, 2e5],
+            [0, 3e5, -1e6, 2e4, 0],
+            [4e5, 1e6, 2e5, 0, 3e4],
+        ]
+    )
+    return base * (1.0 + at[SPEED][..., None, None] / 1e5)
+
+
+@pytest.mark.parametrize("tilt, spring", [("locked", None), ("free", 0.0), (5000.0, 5000.0)])
+@pytest.mark.parametrize("axial", ["force", "displacement"])
+def test_the_tangent_condenses_what_the_scene_leaves_free(tilt, spring, axial):
+    tables = scene() | {"supports": {"tilt": tilt, "axial": axial}}
+    found = table(made({SPEED: SPEEDS}, tables, stiffness=whole), source="tangent")
+    matrix = whole({SPEED: SPEEDS})
+    if spring is not None:
+        matrix[:, 3, 3] += spring
+        matrix[:, 4, 4] += spring
+    held = [1, 2] + ([] if axial == "displacement" else [0]) + ([] if spring is None else [3, 4])
+    # The stiffness seen at y, z is the inverse of the compliance there, all that is held struck out.
+    compliance = np.linalg.inv(matrix[:, held][:, :, held])[:, :2, :2]
+    # Two ways to the same numbers through matrices of condition up to 1e5.
+    np.testing.assert_allclose(found.stiffness, np.linalg.inv(compliance), rtol=1e-10)
+    assert not found.damping.any()
+    assert "left out: the coupling of axial and radial motions" in " ".join(found.notes)
+
+
+def test_directions_give_both_columns_and_the_cross_terms():
+    """Receptances from a known symmetric matrix; the exporter gives the matrix back."""
+    w = SPEEDS * RADIANS
+    k = np.array([[2e8, 3e7], [3e7, 1.5e8]])
+    c = np.array([[4.0, 1.0], [1.0, 3.0]])
+    h = np.linalg.inv(k - MASS * w[:, None, None] ** 2 * np.eye(2) + 1j * w[:, None, None] * c)
+
+    def along(at):
+        n = np.stack([np.cos(np.radians(at[DIRECTION])), np.sin(np.radians(at[DIRECTION]))], axis=-1)
+        return n, np.einsum("abi,aij,abj->ab", n, h, n)
+
+    def amplitude(sign):
+        def find(at):
+            n, _ = along(at)
+            r = np.einsum("aij,abj->abi", h, n) * 3.195e-4 * (at[SPEED][..., None] * RADIANS) ** 2
+            return 0.5 * np.abs(r[..., 0] + sign * 1j * r[..., 1])
+
+        return find
+
+    changes = {
+        "z_real": lambda at: (1.0 / along(at)[1]).real,
+        "z_imag": lambda at: (1.0 / along(at)[1]).imag,
+        "forward_amplitude": amplitude(1),
+        "backward_amplitude": amplitude(-1),
+    }
+    tables = scene(excitation={"kind": "unidirectional"})
+    found = table(made({SPEED: SPEEDS, DIRECTION: [0, 45, 90]}, tables, **changes))
+    assert found.source == "directions"
+    # Two inversions of well-conditioned 2x2 matrices; w C is 1e-5 of K, which costs the damping five digits.
+    np.testing.assert_allclose(found.stiffness, np.broadcast_to(k, found.stiffness.shape), rtol=1e-12)
+    np.testing.assert_allclose(found.damping, np.broadcast_to(c, found.damping.shape), rtol=1e-8)
+    with pytest.raises(RacewayError, match="cross terms are there, and two directions do not tell them"):
+        table(made({SPEED: SPEEDS, DIRECTION: [0, 90]}, tables, **changes))
+
+
+def test_a_table_over_speed_and_frequency_is_for_ross_3():
+    spins = np.linspace(0.0, 20000.0, 6)
+    found = table(made({SPEED: SPEEDS, SPIN: spins}))
+    np.testing.assert_array_equal(found.speed, spins * RADIANS)
+    np.testing.assert_array_equal(found.frequency, SPEEDS * RADIANS)
+    content = ross_file(found, 3, "t", 0, ()).content
+    assert np.shape(content["kxx"]) == (len(spins), len(SPEEDS))
+    np.testing.assert_array_equal(np.array(content["kxx"])[2], stiffness(SPEEDS, 1000.0))
+    with pytest.raises(RacewayError, match="ROSS 2 takes one axis"):
+        ross_file(found, 2, "t", 0, ())
+
+
+def test_a_fixed_spin_speed_makes_it_a_table_over_frequency():
+    found = table(made({SPEED: SPEEDS}, scene() | {"kinematics": {"spin_speed_rpm": 12000.0}}))
+    assert found.speed is None
+    assert set(ross_file(found, 3, "t", 0, ()).content) & {"speed", "frequency"} == {"frequency"}
+
+
+def test_what_ross_2_smooths_is_said_and_can_be_undone():
+    found = table(made({SPEED: SPEEDS}))
+    told = " ".join(ross_file(found, 2, "t", 0, ()).notes)
+    assert "ROSS 2 does not pass through the points" in told
+    changed = np.max(np.abs(smoothed(found.speed, found.damping[:, 0, 0]) - found.damping[:, 0, 0]))
+    assert f"cyy {changed / np.max(found.damping):.1%}" in told
+    assert changed > 0.1  # below the bound of 1 N s/m a point: all that varies is lost
+
+    class Element:  # as ROSS 2 leaves it
+        frequency = found.speed
+
+        def __init__(self):
+            self.kxx, self.kxx_interpolated = found.stiffness[:, 0, 0].tolist(), None
+
+    exact = through_points(Element()).kxx_interpolated
+    np.testing.assert_array_equal(exact(found.speed), found.stiffness[:, 0, 0])
+    ends = found.speed[[0, -1]]
+    slopes = (exact(ends + [1.0, 0.0]) - exact(ends - [0.0, 1.0])).ravel()
+    # Straight beyond the ends, with the slope of the end: a difference over 1 rad/s bends by its curvature.
+    outside = exact(ends + [-100.0, 100.0]) - exact(ends)
+    np.testing.assert_allclose(outside, [-100.0 * slopes[0], 100.0 * slopes[1]], rtol=1e-2)
+
+
+@pytest.mark.parametrize(
+    "axes, tables, changes, source, words",
+    [
+        ({SPEED: SPEEDS, "load.axial": [1.0, 2.0]}, None, {}, None, "choose one with --at load.axial=1"),
+        ({SPEED: SPEEDS[:4]}, None, {}, None, "has 4 points (2000, 5500, 9000, 12500); rotor programs put cubics"),
+        ({"load.axial": [1.0, 2.0, 3.0]}, None, {}, None, "choose one with --at load.axial=1"),
+        ({SPEED: SPEEDS[:1]}, None, {}, None, "does not vary here (`excitation.speed_rpm` has the one value 2000)"),
+        ({SPEED: SPEEDS}, scene(excitation={"kind": "unidirectional"}), {}, None, "one direction does not tell"),
+        ({SPEED: SPEEDS}, None, {"backward_amplitude": lambda at: 3e-8 + 0 * at[SPEED]}, None, "not isotropic: the orbit's counter-rotating part reaches 3.0%"),
+        ({SPEED: SPEEDS, DIRECTION: [0, 30, 90]}, scene(excitation={"kind": "unidirectional"}), {}, None, "both columns take 0 and 90"),
+        ({SPEED: SPEEDS}, None, {}, "directions", "there is one direction only"),
+        ({SPEED: SPEEDS, "excitation.kind": ["a", "b"]}, None, {}, None, "choose one with --at excitation.kind=a"),
+    ],
+)  # fmt: skip
+def test_what_makes_no_table_is_refused_with_the_way_out(axes, tables, changes, source, words):
+    with pytest.raises(RacewayError) as told:
+        table(made(axes, tables, **changes), source=source)
+    assert words in str(told.value)
+
+
+def test_gaps_are_refused():
+    data = made({SPEED: SPEEDS})
+    data["status"][2] = "failed"
+    with pytest.raises(RacewayError, match="1 failed of its points have no result"):
+        table(data)
+
+
+def test_a_static_sweep_has_its_tangent():
+    tables = scene()
+    del tables["excitation"]
+    data = made({SPIN: SPEEDS}, tables).drop_vars(["z_real", "z_imag"])
+    assert table(data).source == "tangent"
+    with pytest.raises(RacewayError, match="static and has a tangent only"):
+        table(data, source="rotating")
+
+
+def test_another_ending_is_refused(tmp_path):
+    with pytest.raises(RacewayError, match="ROSS reads .toml and .json"):
+        ross_file(table(made({SPEED: SPEEDS})), 3, "t", 0, ()).write(tmp_path / "bearing.xls")
+    assert issubclass(SceneError, RacewayError)
