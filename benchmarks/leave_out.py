@@ -169,7 +169,8 @@ def history() -> Rule:
     from raceway.core.record import Schedule
     from raceway.core.start import at_rest
     from raceway.model import build_model
-    from raceway.plan import make_plan, recorded_per_turn
+    from raceway.plan import make_plan
+    from raceway.recording import recorded_per_turn
     from raceway.statics import settle
 
     per_turn, many = 2880, 50
