@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import ceil
 
 import attrs
+import numpy as np
 
 from raceway.core.orbit import Orbit, steady_orbit
 from raceway.core.record import Motion, Record, Schedule
@@ -117,6 +118,9 @@ def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -
 
 def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:
     q, ball = equilibrium.displacement, equilibrium.ball
+    if getattr(model.scene.integrator.method, "steady", False):
+        # Searched for from the equilibrium: what would happen there under the force at once is of no use.
+        return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
     if not model.scene.integrator.method.inertial:
         return static_orbit(model.system, q, ball, start == "ramp")
     if orbit is not None:
