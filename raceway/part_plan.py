@@ -145,18 +145,27 @@ def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -
 
 
 def decide_output(scene: Scene, parts: Decisions, motion: Motion) -> None:
-    """What of the answer is not made, and which bodies stand for their likes."""
-    samples = recorded_per_turn(motion.steps_per_turn, motion.turns) if motion.recorded else 0
-    if samples < motion.steps_per_turn:
-        why = f"{samples} of {motion.steps_per_turn} steps a turn are recorded: lines up to some tens of 1x need no more"
-        parts.leave_out("history of every step", why)
-    if scene.bodies.kind == "condensed" and scene.contact.discretisation != "nodal":
-        parts.leave_out("a compliance for each ball and contact", "balls are equal and rings are bodies of revolution")
-        why = "rings and balls are symmetric about each plane through their axis: a harmonic is one real system"
-        parts.leave_out("mirror half", why)
-    if scene.bodies.kind != "rigid":
-        parts.leave_out("stress recovery", "no stress inside the bodies is asked for")
+    """Which bodies stand for their likes, and what of the answer is not made."""
+    decide_likes(scene, parts)
+    every = motion.steps_per_turn
+    samples = recorded_per_turn(every, motion.turns) if motion.recorded else 0
+    why_not = f"{samples} of {every} steps a turn are recorded: lines up to some tens of 1x need no more"
+    part, why = "history of every step", f"the {every} steps of a turn are the samples of the answer"
+    parts.decide(0 < every <= samples, part, why, why_not if every else "nothing moves")
     parts.leave_out("pictures", "drawn by --pictures only")
+
+
+def decide_likes(scene: Scene, parts: Decisions) -> None:
+    """What deforming bodies are computed for: equal ones once or each, a half or the whole, stresses inside or none."""
+    kind = scene.bodies.kind
+    flat = "bodies.kind is rigid: no body is meshed"
+    why_not = flat if kind == "rigid" else "balls are equal and rings are bodies of revolution"
+    why = "every node of every ball and ring is an unknown"
+    parts.decide(kind == "elastic", "a compliance for each ball and contact", why, why_not)
+    why_not = "rings and balls are symmetric about each plane through their axis: a harmonic is one real system"
+    why = "every node of both halves: the forces may have any direction; a half model is no part of this program"
+    parts.decide(kind == "elastic", "other mirror half", why, flat if kind == "rigid" else why_not)
+    parts.leave_out("stress recovery", flat if kind == "rigid" else "no stress inside the bodies is asked for")
 
 
 def _balls_meet(scene: Scene) -> bool:
