@@ -130,7 +130,7 @@ def test_a_part_that_is_forced_in_is_kept_and_says_so():
     assert "friction" in {part.part for part in plan.left_out}
 
 
-@pytest.mark.parametrize("rule", ["tangential", "ball_inertia", "orbiting", "turns", "integration", "pitch"])
+@pytest.mark.parametrize("rule", ["tangential", "ball_inertia", "orbiting", "turns", "integration", "pitch", "mirror"])
 def test_answers_are_equal_with_a_part_and_without(rule, monkeypatch):
     monkeypatch.setattr(leave_out, "_REPEATS", 1)  # times are the benchmark's
     found = leave_out.RULES[rule]()
