@@ -169,7 +169,8 @@ def history() -> Rule:
     from raceway.core.record import Schedule
     from raceway.core.start import at_rest
     from raceway.model import build_model
-    from raceway.plan import make_plan, recorded_per_turn
+    from raceway.plan import make_plan
+    from raceway.recording import recorded_per_turn
     from raceway.statics import settle
 
     per_turn, many = 2880, 50
@@ -221,6 +222,66 @@ def _not_kept(*words: Any, **more: Any) -> Any:
     """In the place of the cache of arrays: computes anew."""
     compute = next(word for word in (*words, *more.values()) if callable(word))
     return compute()
+
+
+def mirror() -> Rule:
+    """Harmonics of a ring: as it is, each is Hermitian; its mirror planes make it real."""
+    from scipy.sparse import diags_array
+
+    from raceway import load_scene
+    from raceway.core.condensed.structural import ring_section
+    from raceway.core.meshing.ring_shape import ring_shape
+    from raceway.core.revolution.body import Revolution
+    from raceway.core.revolution.factor import factorised
+
+    bearing = load_scene(SCENE).bearing
+    profile = ring_section(ring_shape(bearing, inner=False), bearing.ball_diameter)
+    body = Revolution(profile, 16 * bearing.ball_count, bearing.rings.young, bearing.rings.poisson, 1.0)
+    turn = np.where(body.unknowns % 3 == 1, 1j, 1.0)  # circumferential displacements are counted in units of i
+    loads = np.eye(len(turn))[:, np.searchsorted(body.unknowns, 3 * profile.race)]
+    real = [body.harmonic(n) for n in range(0, 13, 3)]
+    whole = [(diags_array(turn) @ one @ diags_array(turn.conj())).tocsc() for one in real]
+
+    def halves() -> Answer:
+        return np.array([factorised(one, ordered=False).solve(loads) for one in real])
+
+    def both() -> Answer:
+        pushed = turn[:, None] * loads
+        found = (factorised(one, ordered=False).solve(pushed) for one in whole)
+        return np.array([turn.conj()[:, None] * one for one in found])
+
+    why = "the same systems, solved in complex numbers"
+    return compared("other mirror half", "bodies.kind=condensed, five harmonics of a ring", halves, both, 1e-9, why, 2)
+
+
+def stresses() -> Rule:
+    """One sample of the motion of elastic bodies: its forces, and the stresses in all elements."""
+    from raceway import load_scene
+    from raceway.model import build_model
+    from raceway.plan import make_plan
+
+    changes = (
+        "bodies.kind=elastic", "contact.discretisation=nodal", "mesh.kind=structured", "mesh.nodes_per_semi_axis=1",
+        "mesh.element_size=3.2e-3", "mesh.growth=3.0", "bearing.ball_count=6",
+    )  # fmt: skip
+    scene = load_scene(SCENE, changes)
+    model = build_model(scene, make_plan(scene))
+    bodies = model.system.bodies
+    place, places, _ = model.system.companion.settle(model.guess)
+    system, y = bodies.system, bodies.guess(place, places)
+
+    def sample(recovers: bool) -> Answer:
+        system.locate(y)
+        force = system.static_internal(y)
+        seen = bodies.look(system, y, np.zeros_like(y))
+        if recovers:
+            u = system.assembly.nodal(y)
+            for k, body in enumerate(system.assembly.bodies):
+                body.operator.stress(u[system.assembly.part(k)])
+        return np.concatenate([force, *(np.ravel(part) for part in seen)])
+
+    what = "bodies.kind=elastic, one sample of 12 000 elements"
+    return compared("stress recovery", what, lambda: sample(False), lambda: sample(True))
 
 
 _PROBE = """
@@ -289,7 +350,7 @@ RULES: dict[str, Callable[[], Rule]] = {
     one.__name__: one
     for one in (
         tangential, ball_inertia, orbiting, tilts, coupled, turns, pitch, integration, history, compliances,
-        pictures, modules,
+        mirror, stresses, pictures, modules,
     )
 }  # fmt: skip
 

@@ -20,6 +20,7 @@ from typing import Any
 import click
 
 from raceway.errors import MeshError, RacewayError, SceneError
+from raceway.interrupt import Interrupts
 from raceway.options import nearest
 
 
@@ -51,7 +52,8 @@ def guarded(command: Callable[[], Any], words: list[str]) -> int:
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
         try:
-            code = command()
+            with Interrupts():
+                code = command()
             sys.stdout.flush()
             return code if isinstance(code, int) else 0
         except (click.Abort, KeyboardInterrupt):

@@ -26,6 +26,13 @@ _METHODS = {
     "central_difference": "central_difference",
     "quasi_static": "quasi_static",
 }
+#: Kernels of the built-in excitations; without one, the force that is none.
+_EXCITATIONS = {
+    "unidirectional": "harmonic",
+    "bidirectional": "harmonic",
+    "run_up": "run_up",
+    "measured": "samples",
+}
 #: Libraries and who imports them.
 _MESHING = {
     "gmsh": ("gmsh",),
@@ -73,6 +80,18 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
         decide(kind == "condensed", f"raceway.core.{part}", "elastic rings and balls, reduced", f"bodies.kind is {kind}")
     decide(kind == "elastic", "raceway.core.elastic", "every node moves", f"bodies.kind is {kind}")
     decide(kind != "rigid", "raceway.core.hexahedron", "finite elements of the bodies", "no body is meshed")
+    excitation = "none" if scene.excitation is None else scene.excitation.name
+    if excitation in (*_EXCITATIONS, "none"):
+        for part in dict.fromkeys(_EXCITATIONS.values()):
+            if excitation == "run_up" and part == "harmonic":
+                continue  # it may start on the orbit of its first moment
+            needed = part == _EXCITATIONS.get(excitation, "harmonic")
+            decide(
+                needed,
+                f"raceway.core.excitations.{part}",
+                f"the excitation is {excitation}",
+                f"the excitation is {excitation}",
+            )
     method = scene.integrator.kind
     unused = "nothing is integrated" if not integrates else f"the integrator is {method}"
     if method in _METHODS or method == "periodic" or not integrates:

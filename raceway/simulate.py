@@ -6,13 +6,15 @@ from collections.abc import Callable
 from math import ceil
 
 import attrs
+import numpy as np
 
 from raceway.core.orbit import Orbit, steady_orbit
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.model import Model, build_model
-from raceway.plan import STEPS_PER_TURN, make_plan, recorded_per_turn
+from raceway.plan import make_plan
+from raceway.recording import STEPS_PER_TURN, recorded_per_turn
 from raceway.statics import Equilibrium, settle
 
 OnProgress = Callable[[str, int, int], None]
@@ -120,6 +122,9 @@ def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -
 
 def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:
     q, ball = equilibrium.displacement, equilibrium.ball
+    if getattr(model.scene.integrator.method, "steady", False):
+        # Searched for from the equilibrium: what would happen there under the force at once is of no use.
+        return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
     if not model.scene.integrator.method.inertial:
         return static_orbit(model.system, q, ball, start == "ramp")
     if orbit is not None:

@@ -65,7 +65,7 @@ def precision(
         try:
             found = study(tables, vary, reference, repeats, limit, kept, registry, progress)
         except KeyboardInterrupt:
-            warn(f"finished rows are kept in {kept}; the same command goes on from there", label="")
+            tell_kept("rows", kept)
             raise
     content, files = found.as_dict(), list[str]()
     failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
@@ -128,12 +128,18 @@ def stability(
         try:
             found = study(tables, only, processes, kept, registry, plugins, progress)
         except KeyboardInterrupt:
-            warn(f"finished cases are kept in {kept}; the same command goes on from there", label="")
+            tell_kept("cases", kept)
             raise
     content, files = found.as_dict(), list[str]()
     failed = attempt(lambda: found.write(folder), files) or found.fault
     show(content, as_json, failed, lambda s: s.stability_screen(content, every, files))
     return 1 if found.failed else 0
+
+
+def tell_kept(what: str, file: Path) -> None:
+    """Where a study that was stopped goes on, if anything was finished."""
+    if file.is_file():
+        warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")
 
 
 def verdict(content: dict, converged: bool, given: bool) -> ConvergenceError | SceneError | None:

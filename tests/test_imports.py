@@ -45,3 +45,13 @@ def test_a_run_without_pictures_loads_no_package_for_pictures_or_meshes(tmp_path
     found = python("-c", LOOK.format(code=code))
     assert found.returncode == 0, found.stderr
     assert not set(json.loads(found.stderr)) & {"meshio", "gmsh", "pyvista", "matplotlib"}
+
+
+@pytest.mark.parametrize("words", [["precision", ARTICLE, "--vary", "no.key=1,2"], ["stability", "--only", "no such case"]])
+def test_a_mistake_in_a_study_is_told_before_the_compiler_is_loaded(words):
+    code = LOOK.replace("assert not end.code", "assert end.code == 2").format(
+        code=f"from raceway.cli import main; main({words!r})"
+    )
+    found = python("-c", code)
+    assert found.returncode == 0, found.stderr
+    assert not set(json.loads(found.stderr.splitlines()[-1])) & set(HEAVY)

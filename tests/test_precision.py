@@ -15,6 +15,7 @@ from raceway.motion import peak
 from raceway.registry import default_registry
 from raceway.scene_file import read_toml, scene_from_dict
 from raceway.studies import precision as module
+from raceway.studies.measured_run import measured
 from raceway.studies.precision import precision
 from raceway.studies.precision_design import make_design
 from raceway.studies.precision_result import THRESHOLDS
@@ -132,6 +133,23 @@ def test_a_disk_that_takes_no_more_rows_does_not_stop_the_study(tmp_path):
     found = precision(FEW, ["integrator.steps_per_turn=90"], repeats=1, store=tmp_path)  # a folder takes no lines
     assert found.judged[0]["error"] is not None
     assert isinstance(found.fault, RacewayError) and "takes no more rows" in str(found.fault)
+
+
+def test_a_run_that_compiled_is_not_among_the_repeats(monkeypatch):
+    from raceway.core.jit import clock
+    from raceway.run import run
+
+    done = []
+
+    def compiling(scene, registry):
+        done.append(1)
+        clock["compile_s"] += 100.0 if len(done) == 1 else 0.0
+        return run(scene, registry)
+
+    monkeypatch.setattr("raceway.run.run", compiling)
+    cost = measured(scene_from_dict(FEW), default_registry(), 2)["cost"]
+    assert len(done) == 3 and cost["repeats"] == 2 and cost["compile_s"] >= 100.0
+    assert 0.0 < cost["cpu_s"] == cost["time_s"] < 50.0
 
 
 def test_the_key_of_a_row_follows_the_scene_and_the_files_it_names(tmp_path):

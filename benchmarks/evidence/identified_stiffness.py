@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.evidence import Row
 from benchmarks.evidence._scenes import rig_force, rotating
 from raceway import scene_from_dict
-from raceway.plan import ring_inertia
+from raceway.ring import ring_inertia
 from raceway.run import run
 from tests.reference.ring import Ring
 from tests.reference.shooting import dynamic_stiffness, periodic

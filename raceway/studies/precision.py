@@ -9,17 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from raceway.errors import SceneError
 from raceway.registry import Registry, default_registry
 from raceway.scene_file import parse_change
-from raceway.simulate import OnProgress
 from raceway.studies.measured_run import measured
 from raceway.studies.precision_design import Setting, make_design, needs_motion, setting_at
 from raceway.studies.precision_reference import Reference, Runner, find_reference
 from raceway.studies.precision_result import Precision, words_of
 from raceway.studies.row_store import RowStore, row_key
+
+if TYPE_CHECKING:
+    from raceway.simulate import OnProgress
 
 #: Runs of each setting, and the longest predicted run [s].
 REPEATS = 3

@@ -12,18 +12,20 @@ import resource
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from raceway.errors import RacewayError, SceneError
 from raceway.options import nearest
 from raceway.registry import Registry, default_registry
-from raceway.simulate import OnProgress
 from raceway.studies.row_store import RowStore, program_key
 from raceway.studies.stability_case import FAILED, Case, Row
 from raceway.studies.stability_catalogue import catalogue
 from raceway.studies.stability_workers import in_parallel, rows_of
+
+if TYPE_CHECKING:
+    from raceway.simulate import OnProgress
 
 PROCESSES = 2
 
@@ -109,7 +111,7 @@ def stability(
         names = list(dict.fromkeys(case.name for case in cases))
         cases = tuple(case for case in cases if only in case.name)
         if not cases:
-            raise SceneError.at("--only", only, f"no case is called so{nearest(only, names)}; there are {', '.join(names)}")
+            raise SceneError.at("--only", only, f"no case is called so{nearest(only, names)}; cases: {'; '.join(names)}")
     kept, program = RowStore(store), program_key(registry)
     found: dict[int, list[Row]] = {}
     keys = [_key(case, program) for case in cases]

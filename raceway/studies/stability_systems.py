@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from raceway.core.excitations.harmonic import no_force
-from raceway.core.record import Motion
-from raceway.core.system import System
-from raceway.model import Model, build_model
 from raceway.plan import make_plan
 from raceway.registry import Entry, Registry
 from raceway.scene import Scene
 from raceway.scene_file import scene_from_dict
-from raceway.statics import Equilibrium, settle
 from raceway.studies.points import tables_at
+
+if TYPE_CHECKING:
+    from raceway.core.record import Motion
+    from raceway.core.system import System
+    from raceway.model import Model
+    from raceway.statics import Equilibrium
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
 BASE: dict[str, Any] = {
@@ -82,6 +83,8 @@ class Still:
 
     def displaced(self, by: np.ndarray) -> Motion:
         """At rest, moved by (5,) [m, rad]."""
+        from raceway.core.record import Motion
+
         system, q = self.system, self.equilibrium.displacement + by
         now = system.evaluate(q, ball=self.equilibrium.ball)
         a = system.acceleration(q, np.zeros(5), np.zeros(5), now)
@@ -95,6 +98,10 @@ class Still:
 
 def still(scene: Scene) -> Still:
     """The bearing of a scene, in equilibrium, nothing exciting it."""
+    from raceway.core.excitations.harmonic import no_force
+    from raceway.model import build_model
+    from raceway.statics import settle
+
     model = build_model(scene, make_plan(scene))
     equilibrium = settle(model)
     system = attrs.evolve(model.system, force=no_force, force_params=np.zeros(1))

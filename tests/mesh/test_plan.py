@@ -9,10 +9,11 @@ import attrs
 import pytest
 
 from raceway import load_scene, scene_from_dict
+from raceway.combinations import BODIES
 from raceway.errors import MeshError, PluginError, SceneError
 from raceway.mesh_plan import predicted_mesh
 from raceway.meshing import mesh_scene
-from raceway.plan import BODIES, make_plan
+from raceway.plan import make_plan
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.plugins.meshers.structured import Structured

@@ -93,6 +93,14 @@ def test_the_tangent_is_the_derivative(coarse, law):
         assert np.abs(found - now.viscous[:, 0]).max() < 1e-5 * np.abs(now.viscous).max()
 
 
+def test_a_single_point_carries_what_it_carries_among_others(coarse):
+    law = linear(coarse, 0.05)
+    alone = law(np.array([-1e-9]), np.zeros(1))
+    among = law(np.array([-1e-9, -2e-9]), np.zeros(2))
+    assert alone[0] > 0.0
+    assert all(one[0] == two[0] for one, two in zip(alone, among, strict=True))
+
+
 def test_the_mean_stiffness_has_no_ripple(coarse):
     """Over one distance of rows the point tangent along the groove swings by percents, the mean one does not."""
     contact = Contact(coarse.patch, None)

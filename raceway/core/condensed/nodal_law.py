@@ -41,7 +41,7 @@ class PointLaw:
         n = len(gap)
         none = np.zeros((n, 0))
         pressure, by_gap, by_rate = np.empty(n), np.empty(n), np.empty(n)
-        params = np.ascontiguousarray(np.broadcast_to(self.params, (n, len(self.params))))
+        params = np.tile(self.params, (n, 1))  # a broadcast of a single row would be read-only, which no kernel takes
         self.kernel(np.ascontiguousarray(gap), rate, params, none, none.copy(), 0.0, pressure, by_gap, by_rate)
         return self.area * pressure, self.area * by_gap, self.area * by_rate
 
