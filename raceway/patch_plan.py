@@ -69,8 +69,7 @@ def patch_faults(scene: Scene) -> list[Mistake]:
 
     instead = "use discretisation = 'resultant'"
     kinematics, contact = scene.kinematics, scene.contact
-    why = f"surface points carry pressures only, forces along the surface are not solved for: {instead}"
-    refuse(contact.friction > 0.0, "contact.friction", contact.friction, why)
+    why = f"surface points carry no gyroscopic moments: {instead}"
     refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
     remembers = getattr(contact.law, "state_size", 0) > 0
     why = f"remembers what a contact did, but surface points of condensed bodies travel with the contact: {instead}"
