@@ -112,8 +112,7 @@ class Balls:
         moved = (self.coupling @ force.reshape(-1)).reshape(-1, 2)
         seen = np.concatenate([place - centre, place]) + moved
         pressed = [
-            contact.press(d, r, given.of(k))
-            for k, (contact, d, r) in enumerate(zip(self.contacts, seen, rate, strict=True))
+            contact.press(d, r, given.of(k)) for k, (contact, d, r) in enumerate(zip(self.contacts, seen, rate, strict=True))
         ]
         self.evaluations += 1
         answer = np.array([one.force for one in pressed])
@@ -129,8 +128,7 @@ class Balls:
         moved = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
         seen = np.concatenate([place - centre, place]) + moved
         stiffness = [
-            contact.mean_stiffness(d) + one.along
-            for contact, d, one in zip(self.contacts, seen, now.pressed, strict=True)
+            contact.mean_stiffness(d) + one.along for contact, d, one in zip(self.contacts, seen, now.pressed, strict=True)
         ]
         shown, held, carried, turned = self._together(stiffness, now.rest.reshape(-1), now.pressed)
         return attrs.evolve(now, shown=shown, held=held, carried=carried, turned=turned)

@@ -129,7 +129,9 @@ class Friction:
             return
         self._lower, status = dpotrf(self._block[np.ix_(stuck, stuck)], lower=1)
         if status != 0:
-            raise ConvergenceError("the compliance along a groove is not positive definite: its mesh is too coarse or distorted")
+            raise ConvergenceError(
+                "the compliance along a groove is not positive definite: its mesh is too coarse or distorted"
+            )
         self._stuck = stuck.copy()
 
     def _solve(self, right: np.ndarray) -> np.ndarray:

@@ -133,7 +133,9 @@ class PatchSystem(System):
             row = self.pool.row(self.table, self.rubbing)
             _, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
             assert row.last is not None
-            return self._stiffness(row.balls, row.balls.without_ripple(row.last, row.centre, row.where), jacobian, self._turning(0.0))
+            return self._stiffness(
+                row.balls, row.balls.without_ripple(row.last, row.centre, row.where), jacobian, self._turning(0.0)
+            )
 
         return self.pool.widened(found)
 
@@ -181,7 +183,8 @@ class PatchSystem(System):
 
     def friction_lost(self, record: Record) -> float:
         """Energy that friction has taken at the end of a record that began without history [J]."""
-        return float(History.of(record.final.memory, self.ball_count).lost.sum())
+        memory = self.law_state if record.final.memory is None else record.final.memory
+        return float(History.of(memory, self.ball_count).lost.sum())
 
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
@@ -295,7 +298,10 @@ class PatchSystem(System):
         work = np.zeros((3, 2 * self.ball_count))
         place(float(t), np.zeros(5), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
         out = np.zeros((self.ball_count, 5))
-        out[:, 3], out[:, 4] = self.table[:, SIDE] * work[0, self.ball_count :], -self.table[:, SIDE] * work[0, : self.ball_count]
+        out[:, 3], out[:, 4] = (
+            self.table[:, SIDE] * work[0, self.ball_count :],
+            -self.table[:, SIDE] * work[0, : self.ball_count],
+        )
         return out
 
     def _groove(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
