@@ -228,7 +228,8 @@ def _inertia(inertia: Mapping[str, Any]) -> list[Row]:
         return []
     slowest = min(known, key=lambda word: inertia[f"{known[word]}_hz"])
     error = inertia[f"{known[slowest]}_error"]
-    costs = "" if error is None else f" follows at once, which is off by (w / w1)^2 = {error:.1e}"
+    moves = " is part of the motion" if slowest.startswith("ball") and inertia.get("ball_along_grooves_in_motion") else ""
+    costs = moves if error is None else f" follows at once, which is off by (w / w1)^2 = {error:.1e}"
     rings = min(inertia[f"{known[word]}_hz"] for word in known if word != "ball along its grooves")
     remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
     return [("slowest own motion", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
