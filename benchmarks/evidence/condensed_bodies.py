@@ -62,7 +62,7 @@ def _full() -> list[Row]:
 
     for inner in (True, False):
         profile, word = _small(inner), "inner" if inner else "outer"
-        for formulation in ("incompatible", "one_point"):
+        for formulation in ("incompatible", "full", "one_point"):
             swept = Swept(profile, 36, formulation)
             found = worst(Revolution(profile, 36, *STEEL, formulation), swept.clamped, swept)
             what = f"{word} ring clamped, {formulation}: difference from the full solve, loads along r, theta and x"

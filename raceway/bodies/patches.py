@@ -141,7 +141,8 @@ def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Pat
 
     def make(reach: Reach) -> tuple[Patch, Patch]:
         grid = spacing.holding(reach.widest)
-        slide = 0.5 * grid.along / min(ring_shape(b, inner).groove for inner in (True, False))  # for mean stiffnesses
+        # Half a row for mean stiffnesses, which slide so far, and half a row since the last one must carry nothing.
+        slide = grid.along / min(ring_shape(b, inner).groove for inner in (True, False))
         bodies = [
             RingBody(ring_shape(b, inner), rings, seat, (window[0] - slide, window[1] + slide))
             for inner, seat, window in zip((True, False), seats, (reach.inner, reach.outer), strict=True)
