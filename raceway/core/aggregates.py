@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 #: Neighbours up to this many times the distance of the nearest one are strong: all corners of a cube (1.73) and somewhat more,
 #: for every direction that is left out makes the next level larger.
 REACH = 2.2
+#: Nodes that an aggregate holds on average at least: as pairs or triples of nodes have six unknowns in the place of six or
+#: nine, a level of them would be dearer than the finer one.  Aggregates of aggregates are taken there: measured on cells of
+#: 9:1, 1.3 times the iterations, each at a quarter of the cost.
+FEWEST = 6
 #: Coarse nodes, of six unknowns each, at which a factorisation is cheap.
 COARSEST = 80
 
@@ -51,15 +55,25 @@ def aggregated(graph: csr_matrix, points: np.ndarray) -> Levels:
     from pyamg.aggregation.aggregate import standard_aggregation
 
     levels = Levels([], [])
+    strong, whole = graph, None  # of the last level kept: its strong pairs, and what its nodes belong to
     while graph.shape[0] > COARSEST:
-        strong = _strong(graph, points)
-        found = standard_aggregation(strong)[0].tocsr().astype(float)
+        near = _strong(graph, points)
+        found = standard_aggregation(near)[0].tocsr().astype(float)
         if found.shape[1] > 0.9 * found.shape[0]:  # nothing left to put together
             break
-        levels.strong.append(strong)
-        levels.aggregates.append(found)
+        if whole is None:
+            strong, whole = near, found
+        else:
+            whole = (whole @ found).tocsr()
         points = (found.T @ points) / np.maximum(np.asarray(found.sum(axis=0)).reshape(-1, 1), 1.0)
         graph = (found.T @ graph @ found).tocsr()
+        if whole.shape[0] >= FEWEST * whole.shape[1]:
+            levels.strong.append(strong)
+            levels.aggregates.append(whole)
+            whole = None
+    if whole is not None:
+        levels.strong.append(strong)
+        levels.aggregates.append(whole)
     return levels
 
 
