@@ -18,10 +18,6 @@ if TYPE_CHECKING:
 #: Neighbours up to this many times the distance of the nearest one are strong: all corners of a cube (1.73) and somewhat more,
 #: for every direction that is left out makes the next level larger.
 REACH = 2.2
-#: Nodes that an aggregate holds on average at least: as pairs or triples of nodes have six unknowns in the place of six or
-#: nine, a level of them would be dearer than the finer one.  Aggregates of aggregates are taken there: measured on cells of
-#: 9:1, 1.3 times the iterations, each at a quarter of the cost.
-FEWEST = 6
 #: Coarse nodes, of six unknowns each, at which a factorisation is cheap.
 COARSEST = 80
 
@@ -40,13 +36,14 @@ class Levels:
     aggregates: list[csr_matrix]
 
 
-def aggregated(graph: csr_matrix, points: np.ndarray) -> Levels:
+def aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> Levels:
     """Aggregates of nodes, of these aggregates, and so on.
 
     Parameters
     ----------
     graph : (n, n) CSR, not zero where two nodes share a cell
     points : (n, 3) float [m]
+    fewest : nodes that an aggregate holds on average at least; aggregates of aggregates are taken until they do
 
     Notes
     -----
@@ -67,7 +64,7 @@ def aggregated(graph: csr_matrix, points: np.ndarray) -> Levels:
             whole = (whole @ found).tocsr()
         points = (found.T @ points) / np.maximum(np.asarray(found.sum(axis=0)).reshape(-1, 1), 1.0)
         graph = (found.T @ graph @ found).tocsr()
-        if whole.shape[0] >= FEWEST * whole.shape[1]:
+        if whole.shape[0] >= fewest * whole.shape[1]:
             levels.strong.append(strong)
             levels.aggregates.append(whole)
             whole = None
