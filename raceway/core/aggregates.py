@@ -36,13 +36,14 @@ class Levels:
     aggregates: list[csr_matrix]
 
 
-def aggregated(graph: csr_matrix, points: np.ndarray) -> Levels:
+def aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> Levels:
     """Aggregates of nodes, of these aggregates, and so on.
 
     Parameters
     ----------
     graph : (n, n) CSR, not zero where two nodes share a cell
     points : (n, 3) float [m]
+    fewest : nodes that an aggregate holds on average at least; aggregates of aggregates are taken until they do
 
     Notes
     -----
@@ -51,15 +52,25 @@ def aggregated(graph: csr_matrix, points: np.ndarray) -> Levels:
     from pyamg.aggregation.aggregate import standard_aggregation
 
     levels = Levels([], [])
+    strong, whole = graph, None  # of the last level kept: its strong pairs, and what its nodes belong to
     while graph.shape[0] > COARSEST:
-        strong = _strong(graph, points)
-        found = standard_aggregation(strong)[0].tocsr().astype(float)
+        near = _strong(graph, points)
+        found = standard_aggregation(near)[0].tocsr().astype(float)
         if found.shape[1] > 0.9 * found.shape[0]:  # nothing left to put together
             break
-        levels.strong.append(strong)
-        levels.aggregates.append(found)
+        if whole is None:
+            strong, whole = near, found
+        else:
+            whole = (whole @ found).tocsr()
         points = (found.T @ points) / np.maximum(np.asarray(found.sum(axis=0)).reshape(-1, 1), 1.0)
         graph = (found.T @ graph @ found).tocsr()
+        if whole.shape[0] >= fewest * whole.shape[1]:
+            levels.strong.append(strong)
+            levels.aggregates.append(whole)
+            whole = None
+    if whole is not None:
+        levels.strong.append(strong)
+        levels.aggregates.append(whole)
     return levels
 
 

@@ -104,13 +104,14 @@ class Preconditioner:
     matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
     points : (n, 3) float [m]
     held : (3 n,) bool
+    fewest : nodes of an aggregate, see ``aggregated``
 
     References
     ----------
     P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996) 179-196: algebraic multigrid by smoothed aggregation.
     """
 
-    def __init__(self, matrix: csr_matrix, points: np.ndarray, held: np.ndarray) -> None:
+    def __init__(self, matrix: csr_matrix, points: np.ndarray, held: np.ndarray, fewest: float = 1.0) -> None:
         import scipy.sparse as sp
 
         pyamg = _pyamg()
@@ -127,7 +128,7 @@ class Preconditioner:
         self._size = len(loose)
         blocks = scaled.tobsr((3, 3))
         graph = sp.csr_matrix((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr), (len(loose) // 3,) * 2)
-        nodes = aggregated(graph, points[kept[::3]])
+        nodes = aggregated(graph, points[kept[::3]], fewest)
         state = np.random.get_state()  # pyamg starts its spectral estimates at random: the same start, the same answer
         np.random.seed(0)
         try:
