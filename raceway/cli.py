@@ -21,8 +21,8 @@ from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 from raceway.rig_commands import identify
-from raceway.studies_group import study
 from raceway.store_commands import export, plot
+from raceway.studies_group import study
 from raceway.study_commands import precision, stability
 from raceway.sweep_command import sweep
 from raceway.view_commands import view
