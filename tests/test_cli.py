@@ -18,16 +18,19 @@ import pytest
 
 from raceway.cli import main
 from raceway.command_inputs import slug
+from raceway.studies_group import STUDIES
 from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, python, raceway
 
 COMMANDS = sorted(main.commands)
+#: Those and the sub-commands of `study`.
+LINES = [(name,) for name in COMMANDS if name != "study"] + [("study", name) for name in STUDIES]
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_help_teaches_with_an_example(command):
-    found = invoke(command, "--help")
+@pytest.mark.parametrize("line", LINES, ids=" ".join)
+def test_help_teaches_with_an_example(line):
+    found = invoke(*line, "--help")
     assert found.exit_code == 0
-    assert f"raceway {command}" in found.stdout.split("Example:")[1]
+    assert f"raceway {' '.join(line)}" in found.stdout.split("Example:")[1]
     assert "--json" in found.stdout
     assert "--debug" in found.stdout
 
