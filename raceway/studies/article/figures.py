@@ -16,6 +16,7 @@ from raceway.plugins.reports.pictures import new_figure
 from raceway.studies.article import causes
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILT_WORDS, TILTS, Setting
+from raceway.studies.article.rules import LEVEL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -275,19 +276,28 @@ def _surfaces(curves: Curves) -> list[Picture]:
 def _map(curves: Curves, setting: Setting) -> Panel:
     w, loads = np.array(curves.design.relative_speeds), np.array(curves.design.loads)
     star = _surface(curves, setting, True)
+    known = np.isfinite(star)
 
     def draw(axes: Any) -> None:
-        size = float(np.nanmax(np.abs(star - 1.0)))
-        levels = np.linspace(1.0 - size, 1.0 + size, 41)
-        axes.contourf(w, loads, star, levels=levels, cmap="RdBu_r", alpha=0.9)
-        lines = axes.contour(w, loads, star, levels=6, colors="#1b2733", linewidths=0.7)
-        axes.clabel(lines, fontsize=8.5, fmt=lambda value: f"{value:.4g}")
         _finish(axes, TILT_WORDS[setting.tilt], _SPEED, _LOAD)
         axes.grid(False)
+        if not known.any():
+            axes.text(0.5, 0.5, "no number", transform=axes.transAxes, ha="center")
+            return
+        size = max(float(np.abs(star[known] - 1.0).max()), 1e-6)
+        shown = np.ma.masked_invalid(star)
+        axes.contourf(w, loads, shown, levels=np.linspace(1.0 - size, 1.0 + size, 41), cmap="RdBu_r", alpha=0.9)
+        if size > LEVEL:
+            lines = axes.contour(w, loads, shown, levels=6, colors="#1b2733", linewidths=0.7)
+            axes.clabel(lines, fontsize=8.5, fmt=lambda value: f"{value:.4g}")
 
-    low, high = np.nanmin(star), np.nanmax(star)
-    words = f"Map of k* over w* and axial load, {TILT_WORDS[setting.tilt]}: {low:.4g} to {high:.4g}; red rises, blue falls"
-    return Panel(draw, words, f"k* from {low:.3g} to {high:.3g}. Red: stiffer than at w* = 0; blue: softer.")
+    words = f"Map of k* over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(star)}; red rises, blue falls"
+    return Panel(draw, words, f"k*: {_range(star)}. Red: stiffer than at w* = 0; blue: softer.")
+
+
+def _range(values: np.ndarray) -> str:
+    known = values[np.isfinite(values)]
+    return f"{known.min():.3f} to {known.max():.3f}" if known.size else "no number"
 
 
 def _solid(curves: Curves, setting: Setting) -> Panel:
@@ -295,7 +305,10 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
     k = _surface(curves, setting, False)
 
     def draw(axes: Any) -> None:
-        axes.plot_surface(w, loads, k, cmap="viridis", edgecolor="#1b273355", linewidth=0.4, antialiased=True)
+        if np.isfinite(k).all():
+            axes.plot_surface(w, loads, k, cmap="viridis", edgecolor="#1b273355", linewidth=0.4, antialiased=True)
+        else:
+            axes.scatter(*(part[np.isfinite(k)] for part in (w, loads, k)), color="#0b5fa5", s=8)
         axes.set_title(TILT_WORDS[setting.tilt], fontsize=11)
         axes.set_xlabel(_SPEED, fontsize=9)
         axes.set_ylabel(_LOAD, fontsize=9)
@@ -307,9 +320,7 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
         axes.view_init(24, -128)
         axes.set_box_aspect(None, zoom=0.92)
 
-    words = (
-        f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {np.nanmin(k):.4g} to {np.nanmax(k):.4g} 10⁶ N/m"
-    )
+    words = f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(k)} 10⁶ N/m"
     return Panel(draw, words, "", solid=True)
 
 
