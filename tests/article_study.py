@@ -68,4 +68,4 @@ def study(found: Curves) -> Article:
         {"tilt": tilt, "bodies": "rigid", **row(speed, load, 2e8)}
         for tilt in ("locked", "shaft", "free") for load in RIG_LOADS for speed in RIG_SPEEDS
     )  # fmt: skip
-    return Article("invented", found, rig, tuple(static(0.01)), trends, scan, 1.0, 1.0, 10, 0)
+    return Article("invented", found, rig, tuple(static(0.01)), trends, scan, 1.0, 1.0, 0.5, 10, 0)

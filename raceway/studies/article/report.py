@@ -122,7 +122,7 @@ def _setting(out: Page, study: Article) -> None:
         "Rotating: a force that turns with the rotor (the article’s bidirectional model). One-way: a force along one fixed line "
         "(unidirectional). Its amplitude is m e w², or constant: that at "
         f"{tables['excitation'].get('reference_speed_rpm', made.speeds[0]):g} r/min. The article changes both at once; here "
-        "each is varied alone, too.",
+        f"each is varied alone, too ({made.bodies[0]} bodies).",
         f"Tilt of the inner ring: locked, free, or against the shaft with {_round(made.shaft)} N m/rad (2 E I / L of a shaft of "
         "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
         "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
