@@ -349,21 +349,25 @@ def _tilt_stiffness(study: Article) -> Picture:
 
 
 def _bodies(curves: Curves) -> Picture:
-    """Rigid and condensed bodies."""
-    w, panels = np.array(curves.design.relative_speeds), []
-    places = _some(curves.design.loads, 3)
-    colours = _colours(len(places))
-    for tilt in TILTS:
-        both = {kind: _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), True)
-                for kind in curves.design.bodies}  # fmt: skip
+    """Rigid and condensed bodies: the trend, and how much stiffer the one is than the other."""
+    panels = [_both_bodies(curves, tilt, star) for star in (True, False) for tilt in TILTS]
+    return Picture("bodies", "Rigid and condensed bodies, rotating force m e w², ball inertia", tuple(panels))
 
-        def draw(axes: Any, both: dict[str, np.ndarray] = both, tilt: str = tilt) -> None:
-            for kind, style in zip(both, ("--", "-"), strict=True):
-                for k, colour in zip(places, colours, strict=True):
-                    label = f"{curves.design.loads[k]:g} N, {kind}"
-                    axes.plot(w, both[kind][k], style, color=colour, linewidth=1.7, label=label)
-            _finish(axes, TILT_WORDS[tilt], _SPEED, _STAR, legend=2)
 
-        words = "; ".join(f"{kind}, {curves.design.loads[k]:g} N: {_ends(both[kind][k])}" for kind in both for k in places)
-        panels.append(Panel(draw, f"k* over w* with rigid and condensed bodies, {TILT_WORDS[tilt]}: {words}", ""))
-    return Picture("bodies", "Rigid and condensed bodies: k*, rotating force m e w², ball inertia", tuple(panels))
+def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
+    w, places = np.array(curves.design.relative_speeds), _some(curves.design.loads, 3)
+    first, second = (
+        _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), star) for kind in curves.design.bodies
+    )
+    names = curves.design.bodies
+    lines = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
+    label = _STAR if star else f"K {names[1]} / K {names[0]} [-]"
+
+    def draw(axes: Any) -> None:
+        for (name, values), style in zip(lines.items(), ("--" if star else "-", "-"), strict=False):
+            for k, colour in zip(places, _colours(len(places)), strict=True):
+                axes.plot(w, values[k], style, color=colour, linewidth=1.7, label=f"{curves.design.loads[k]:g} N{name}")
+        _finish(axes, TILT_WORDS[tilt], _SPEED, label, legend=2 if star else 3)
+
+    words = "; ".join(f"{curves.design.loads[k]:g} N{name}: {_ends(v[k])}" for name, v in lines.items() for k in places)
+    return Panel(draw, f"{label} over w*, {TILT_WORDS[tilt]}: {words}", "")

@@ -56,16 +56,14 @@ def _opening(out: Page, study: Article) -> None:
         kind="lead",
     )
     out.listing(in_short(study))
+    _swaps(out, study, shown_load(study.curves))
 
 
 def in_short(study: Article) -> list[str]:
-    """What the numbers say, in a few sentences."""
+    """What the numbers say, in two sentences."""
     load = shown_load(study.curves)
-    swaps = dict(causes.one_at_a_time(study.curves, load))
-    first, *others = swaps
-    out = [
-        f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {_each(swaps[first])}."
-    ]
+    row = causes.one_at_a_time(study.curves, load)[0][1]
+    out = [f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {_each(row)}."]
     turns = {load: causes.turning_point(causes.hardening(rows)) for load, rows in study.scan.items()}
     known = [f"{_round(value)} N m/rad at {load:g} N" for load, value in turns.items() if value is not None]
     if known:
@@ -73,12 +71,13 @@ def in_short(study: Article) -> list[str]:
             f"What turns hardening into softening is the tilt stiffness of the shaft: K stops rising with speed above "
             f"{', '.join(known)}. The shaft is taken with {_round(study.curves.design.shaft)} N m/rad."
         )
-    return out + [f"The same with {_lower(name)}: {_each(swaps[name])}." for name in others]
+    return out
 
 
-def _lower(name: str) -> str:
-    head, colon, rest = name.partition(": ")
-    return f"the {head} ({rest})" if colon and head != "both swapped" else f"{head} ({rest})" if colon else name
+def _swaps(out: Page, study: Article, load: float) -> None:
+    columns = ["one choice swapped at a time", *(TILT_WORDS[tilt] for tilt in TILTS)]
+    rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in causes.one_at_a_time(study.curves, load)]
+    out.table(columns, rows, f"Change of K from the lowest to the highest speed, k*(1) − 1, at {load:g} N")
 
 
 def _each(row: dict[str, float | str]) -> str:
@@ -91,7 +90,7 @@ def _round(value: float) -> str:
 
 
 def _percent(change: float | str) -> str:
-    return change if isinstance(change, str) else f"{100.0 * change:+.2f} %".replace("-", "−")
+    return change if isinstance(change, str) else f"{100.0 * change:+.2f}\u202f%".replace("-", "−")
 
 
 def _verdicts(out: Page, study: Article) -> None:
@@ -147,12 +146,10 @@ def _figures(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
         for name in names:
             _picture(out, pictures[name])
     out.section("What causes the trend")
-    out.text("One choice is swapped at a time; everything else stays. Change of K from the lowest to the highest speed.")
+    out.text("One choice is swapped at a time; everything else stays.")
     curves = study.curves
-    columns = ["", *(TILT_WORDS[tilt] for tilt in TILTS)]
     for load in dict.fromkeys((curves.design.loads[0], shown_load(curves), curves.design.loads[-1])):
-        rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in causes.one_at_a_time(curves, load)]
-        out.table(columns, rows, f"k*(1) − 1 at {load:g} N")
+        _swaps(out, study, load)
     _picture(out, pictures["tilt-stiffness"])
     if "bodies" in pictures:
         out.section("Rigid and condensed bodies")
@@ -205,12 +202,13 @@ def _rig(out: Page, study: Article) -> None:
         "What claim 2 would be held against the rig with: K under the rotating force m e w² with ball inertia. The article’s "
         "measured values are lost, so nothing is compared."
     )
-    rows = [
-        [f"{row['axial_n']:g}", f"{row['speed_rpm']:g}", f"{TILT_WORDS[row['tilt']]}, {row['bodies']}",
-         *((f"{row[key] / 1e6:.4g}" for key in ("k", "abs_z")) if "k" in row else (row["status"], row["reason"]))]
-        for row in study.rig
-    ]  # fmt: skip
-    out.table(["axial load N", "speed r/min", "", "K N/µm", "|Z| N/µm"], rows)
+    speeds = list(dict.fromkeys(row["speed_rpm"] for row in study.rig))
+    table: dict[tuple[Any, ...], list[str]] = {}
+    for row in study.rig:
+        text = f"{row['k'] / 1e6:.4g}" if row["status"] == "completed" else row["status"]
+        table.setdefault((row["axial_n"], row["tilt"], row["bodies"]), []).append(text)
+    rows = [[f"{load:g} N, {TILT_WORDS[tilt]}, {bodies}", *found] for (load, tilt, bodies), found in table.items()]
+    out.table(["", *(f"{speed:g} r/min" for speed in speeds)], rows, "K [N/µm]")
 
 
 def _faults(out: Page, study: Article) -> None:

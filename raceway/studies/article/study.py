@@ -85,6 +85,7 @@ class Article:
                 "quasi_static": [one.as_dict() for one in self.trends],
                 "static": self.static,
                 "rig": self.rig,
+                "causes": {f"{load:g}": dict(causes.one_at_a_time(self.curves, load)) for load in made.loads},
                 "tilt_stiffness": [
                     {"axial_n": load, "stiffness": causes.STIFFNESSES, "ratio": causes.hardening(rows).tolist(),
                      "turning_point": causes.turning_point(causes.hardening(rows))}
