@@ -28,9 +28,9 @@ _GRID = "#d8dee4"
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
 _PAIRS = {
     (DIRECTIONS[1], AMPLITUDES[1]): ("#c8501e", "-", 2.4, "rotating, m e w²"),
-    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "one-way, constant"),
+    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "unidirectional, constant"),
     (DIRECTIONS[1], AMPLITUDES[0]): ("#c8501e", ":", 1.6, "rotating, constant"),
-    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "one-way, m e w²"),
+    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "unidirectional, m e w²"),
 }
 
 

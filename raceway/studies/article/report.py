@@ -112,16 +112,17 @@ def _setting(out: Page, study: Article) -> None:
     made = study.curves.design
     tables: Any = made.tables
     mass = tables.get("rotor", {}).get("mass", 0.0)
+    given = tables["excitation"]
+    constant = f"{given['force']:g} N" if "force" in given else f"that at {given['reference_speed_rpm']:g} r/min"
     out.section("What is computed")
     out.text(
         f"The steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(made.speeds)} speeds from "
         f"{made.speeds[0]:g} to {made.speeds[-1]:g} r/min and {len(made.loads)} axial loads from {made.loads[0]:g} to "
         f"{made.loads[-1]:g} N. Its 1x line gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
         f"said; the mass m is the ring’s and {mass:g} kg of the rotor. w* = (w − w_min) / (w_max − w_min), k* = k / k(w_min).",
-        "Rotating: a force that turns with the rotor (the article’s bidirectional model). One-way: a force along one fixed line "
-        "(unidirectional). Its amplitude is m e w², or constant: that at "
-        f"{tables['excitation'].get('reference_speed_rpm', made.speeds[0]):g} r/min. The article changes both at once; here "
-        f"each is varied alone, too ({made.bodies[0]} bodies).",
+        "Rotating: a force that turns with the rotor (the article’s bidirectional model). Unidirectional: a force along one fixed "
+        f"line. Its amplitude is m e w², or constant: {constant}. The article changes both at once; here each is varied alone, "
+        f"too ({made.bodies[0]} bodies).",
         f"Tilt of the inner ring: locked, free, or against the shaft with {_round(made.shaft)} N m/rad (2 E I / L of a shaft of "
         "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
         "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
@@ -166,7 +167,7 @@ def _static(out: Page, study: Article) -> None:
     out.text(
         "Section 3.2 of the article: peak pressures of its finite-element model against exact Hertz in the rigid equilibrium. "
         "Here: nodal contact on condensed bodies, the pressure at surface points, no penalty. The article’s load cases are lost; "
-        "these four span its range."
+        "these four span its range. The bearing is the article’s, whatever scene the study is given."
     )
     rows = [
         [one["quantity"], _digits(one["reference"]), _digits(one["computed"]), _share(one["error"]), _share(one["tolerance"]),
@@ -218,7 +219,7 @@ def _faults(out: Page, study: Article) -> None:
     unstable = sum(row["status"] == "unstable" for row in study.curves.faults())
     out.text(
         f"{len(study.failed)} of {total} runs failed. {unstable} steady motions are unstable: they satisfy the equations, but a "
-        "ring does not stay on them; they are crosses in the figures and count for no verdict. One-way forces meet resonances "
+        "ring does not stay on them; they are crosses in the figures and count for no verdict. Unidirectional forces meet resonances "
         "of the contacts’ higher harmonics with the ring’s vibrations (docs/periodic.md)."
     )
     if bad:
