@@ -16,9 +16,9 @@ from raceway.studies.article.runs import Row, Task, curve
 #: Swaps of one choice against the article's bidirectional model with ball inertia; the first changes nothing.
 SWAPS: dict[str, dict[str, Any]] = {
     "rotating force m e w², ball inertia": {},
-    "direction swapped: one-way force m e w²": {"direction": DIRECTIONS[0]},
+    "direction swapped: unidirectional force m e w²": {"direction": DIRECTIONS[0]},
     "amplitude law swapped: rotating force, constant": {"amplitude": AMPLITUDES[0]},
-    "both swapped: one-way force, constant": {"direction": DIRECTIONS[0], "amplitude": AMPLITUDES[0]},
+    "both swapped: unidirectional force, constant": {"direction": DIRECTIONS[0], "amplitude": AMPLITUDES[0]},
     "weightless balls": {"inertia": False},
     "condensed bodies": {"bodies": "condensed"},
 }

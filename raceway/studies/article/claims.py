@@ -153,7 +153,7 @@ def _course(
 
 def _one_way(curves: Curves) -> list[Verdict]:
     rule = (
-        f"one direction, constant amplitude: falls at every step of the speed, and by at least {LEVEL:.1%} over the range; "
+        f"unidirectional force, constant amplitude: falls at every step of the speed, and by at least {LEVEL:.1%} over the range; "
         "unstable motions between the ends are left out"
     )
 

@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.studies.article.design import AMPLITUDES, BODIES, DIRECTIONS, TILTS, Design, Setting
+from raceway.studies.article.design import BODIES, CLAIMED, TILTS, Design, Setting
 
 #: What may be called k: name -> key of a row.
 MEASURES = {"K": "k", "|Z|": "abs_z"}
@@ -83,6 +83,5 @@ def modelled(bodies: tuple[str, ...]) -> Iterator[dict[str, Any]]:
                 yield {"tilt": tilt, "inertia": inertia, "bodies": kind}
 
 
-#: The two pairs that the article compares.
-ONE_WAY: dict[str, Any] = {"direction": DIRECTIONS[0], "amplitude": AMPLITUDES[0]}
-ROTATING: dict[str, Any] = {"direction": DIRECTIONS[1], "amplitude": AMPLITUDES[1]}
+_PAIRS: list[dict[str, Any]] = [{"direction": direction, "amplitude": amplitude} for direction, amplitude in CLAIMED]
+ONE_WAY, ROTATING = _PAIRS

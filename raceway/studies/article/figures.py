@@ -16,6 +16,7 @@ from raceway.plugins.reports.pictures import new_figure
 from raceway.studies.article import causes
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILT_WORDS, TILTS, Setting
+from raceway.studies.article.rules import LEVEL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,9 +28,9 @@ _GRID = "#d8dee4"
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
 _PAIRS = {
     (DIRECTIONS[1], AMPLITUDES[1]): ("#c8501e", "-", 2.4, "rotating, m e w²"),
-    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "one-way, constant"),
+    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "unidirectional, constant"),
     (DIRECTIONS[1], AMPLITUDES[0]): ("#c8501e", ":", 1.6, "rotating, constant"),
-    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "one-way, m e w²"),
+    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "unidirectional, m e w²"),
 }
 
 
@@ -275,19 +276,28 @@ def _surfaces(curves: Curves) -> list[Picture]:
 def _map(curves: Curves, setting: Setting) -> Panel:
     w, loads = np.array(curves.design.relative_speeds), np.array(curves.design.loads)
     star = _surface(curves, setting, True)
+    known = np.isfinite(star)
 
     def draw(axes: Any) -> None:
-        size = float(np.nanmax(np.abs(star - 1.0)))
-        levels = np.linspace(1.0 - size, 1.0 + size, 41)
-        axes.contourf(w, loads, star, levels=levels, cmap="RdBu_r", alpha=0.9)
-        lines = axes.contour(w, loads, star, levels=6, colors="#1b2733", linewidths=0.7)
-        axes.clabel(lines, fontsize=8.5, fmt=lambda value: f"{value:.4g}")
         _finish(axes, TILT_WORDS[setting.tilt], _SPEED, _LOAD)
         axes.grid(False)
+        if not known.any():
+            axes.text(0.5, 0.5, "no number", transform=axes.transAxes, ha="center")
+            return
+        size = max(float(np.abs(star[known] - 1.0).max()), 1e-6)
+        shown = np.ma.masked_invalid(star)
+        axes.contourf(w, loads, shown, levels=np.linspace(1.0 - size, 1.0 + size, 41), cmap="RdBu_r", alpha=0.9)
+        if size > LEVEL:
+            lines = axes.contour(w, loads, shown, levels=6, colors="#1b2733", linewidths=0.7)
+            axes.clabel(lines, fontsize=8.5, fmt=lambda value: f"{value:.4g}")
 
-    low, high = np.nanmin(star), np.nanmax(star)
-    words = f"Map of k* over w* and axial load, {TILT_WORDS[setting.tilt]}: {low:.4g} to {high:.4g}; red rises, blue falls"
-    return Panel(draw, words, f"k* from {low:.3g} to {high:.3g}. Red: stiffer than at w* = 0; blue: softer.")
+    words = f"Map of k* over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(star)}; red rises, blue falls"
+    return Panel(draw, words, f"k*: {_range(star)}. Red: stiffer than at w* = 0; blue: softer.")
+
+
+def _range(values: np.ndarray) -> str:
+    known = values[np.isfinite(values)]
+    return f"{known.min():.3f} to {known.max():.3f}" if known.size else "no number"
 
 
 def _solid(curves: Curves, setting: Setting) -> Panel:
@@ -295,7 +305,10 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
     k = _surface(curves, setting, False)
 
     def draw(axes: Any) -> None:
-        axes.plot_surface(w, loads, k, cmap="viridis", edgecolor="#1b273355", linewidth=0.4, antialiased=True)
+        if np.isfinite(k).all():
+            axes.plot_surface(w, loads, k, cmap="viridis", edgecolor="#1b273355", linewidth=0.4, antialiased=True)
+        else:
+            axes.scatter(*(part[np.isfinite(k)] for part in (w, loads, k)), color="#0b5fa5", s=8)
         axes.set_title(TILT_WORDS[setting.tilt], fontsize=11)
         axes.set_xlabel(_SPEED, fontsize=9)
         axes.set_ylabel(_LOAD, fontsize=9)
@@ -307,9 +320,7 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
         axes.view_init(24, -128)
         axes.set_box_aspect(None, zoom=0.92)
 
-    words = (
-        f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {np.nanmin(k):.4g} to {np.nanmax(k):.4g} 10⁶ N/m"
-    )
+    words = f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(k)} 10⁶ N/m"
     return Panel(draw, words, "", solid=True)
 
 
@@ -338,21 +349,25 @@ def _tilt_stiffness(study: Article) -> Picture:
 
 
 def _bodies(curves: Curves) -> Picture:
-    """Rigid and condensed bodies."""
-    w, panels = np.array(curves.design.relative_speeds), []
-    places = _some(curves.design.loads, 3)
-    colours = _colours(len(places))
-    for tilt in TILTS:
-        both = {kind: _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), True)
-                for kind in curves.design.bodies}  # fmt: skip
+    """Rigid and condensed bodies: the trend, and how much stiffer the one is than the other."""
+    panels = [_both_bodies(curves, tilt, star) for star in (True, False) for tilt in TILTS]
+    return Picture("bodies", "Rigid and condensed bodies, rotating force m e w², ball inertia", tuple(panels))
 
-        def draw(axes: Any, both: dict[str, np.ndarray] = both, tilt: str = tilt) -> None:
-            for kind, style in zip(both, ("--", "-"), strict=True):
-                for k, colour in zip(places, colours, strict=True):
-                    label = f"{curves.design.loads[k]:g} N, {kind}"
-                    axes.plot(w, both[kind][k], style, color=colour, linewidth=1.7, label=label)
-            _finish(axes, TILT_WORDS[tilt], _SPEED, _STAR, legend=2)
 
-        words = "; ".join(f"{kind}, {curves.design.loads[k]:g} N: {_ends(both[kind][k])}" for kind in both for k in places)
-        panels.append(Panel(draw, f"k* over w* with rigid and condensed bodies, {TILT_WORDS[tilt]}: {words}", ""))
-    return Picture("bodies", "Rigid and condensed bodies: k*, rotating force m e w², ball inertia", tuple(panels))
+def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
+    w, places = np.array(curves.design.relative_speeds), _some(curves.design.loads, 3)
+    first, second = (
+        _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), star) for kind in curves.design.bodies
+    )
+    names = curves.design.bodies
+    lines = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
+    label = _STAR if star else f"K {names[1]} / K {names[0]} [-]"
+
+    def draw(axes: Any) -> None:
+        for (name, values), style in zip(lines.items(), ("--" if star else "-", "-"), strict=False):
+            for k, colour in zip(places, _colours(len(places)), strict=True):
+                axes.plot(w, values[k], style, color=colour, linewidth=1.7, label=f"{curves.design.loads[k]:g} N{name}")
+        _finish(axes, TILT_WORDS[tilt], _SPEED, label, legend=2 if star else 3)
+
+    words = "; ".join(f"{curves.design.loads[k]:g} N{name}: {_ends(v[k])}" for name, v in lines.items() for k in places)
+    return Panel(draw, f"{label} over w*, {TILT_WORDS[tilt]}: {words}", "")

@@ -56,16 +56,14 @@ def _opening(out: Page, study: Article) -> None:
         kind="lead",
     )
     out.listing(in_short(study))
+    _swaps(out, study, shown_load(study.curves))
 
 
 def in_short(study: Article) -> list[str]:
-    """What the numbers say, in a few sentences."""
+    """What the numbers say, in two sentences."""
     load = shown_load(study.curves)
-    swaps = dict(causes.one_at_a_time(study.curves, load))
-    first, *others = swaps
-    out = [
-        f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {_each(swaps[first])}."
-    ]
+    row = causes.one_at_a_time(study.curves, load)[0][1]
+    out = [f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {_each(row)}."]
     turns = {load: causes.turning_point(causes.hardening(rows)) for load, rows in study.scan.items()}
     known = [f"{_round(value)} N m/rad at {load:g} N" for load, value in turns.items() if value is not None]
     if known:
@@ -73,12 +71,13 @@ def in_short(study: Article) -> list[str]:
             f"What turns hardening into softening is the tilt stiffness of the shaft: K stops rising with speed above "
             f"{', '.join(known)}. The shaft is taken with {_round(study.curves.design.shaft)} N m/rad."
         )
-    return out + [f"The same with {_lower(name)}: {_each(swaps[name])}." for name in others]
+    return out
 
 
-def _lower(name: str) -> str:
-    head, colon, rest = name.partition(": ")
-    return f"the {head} ({rest})" if colon and head != "both swapped" else f"{head} ({rest})" if colon else name
+def _swaps(out: Page, study: Article, load: float) -> None:
+    columns = ["one choice swapped at a time", *(TILT_WORDS[tilt] for tilt in TILTS)]
+    rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in causes.one_at_a_time(study.curves, load)]
+    out.table(columns, rows, f"Change of K from the lowest to the highest speed, k*(1) − 1, at {load:g} N")
 
 
 def _each(row: dict[str, float | str]) -> str:
@@ -91,7 +90,7 @@ def _round(value: float) -> str:
 
 
 def _percent(change: float | str) -> str:
-    return change if isinstance(change, str) else f"{100.0 * change:+.2f} %".replace("-", "−")
+    return change if isinstance(change, str) else f"{100.0 * change:+.2f}\u202f%".replace("-", "−")
 
 
 def _verdicts(out: Page, study: Article) -> None:
@@ -113,16 +112,17 @@ def _setting(out: Page, study: Article) -> None:
     made = study.curves.design
     tables: Any = made.tables
     mass = tables.get("rotor", {}).get("mass", 0.0)
+    given = tables["excitation"]
+    constant = f"{given['force']:g} N" if "force" in given else f"that at {given['reference_speed_rpm']:g} r/min"
     out.section("What is computed")
     out.text(
         f"The steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(made.speeds)} speeds from "
         f"{made.speeds[0]:g} to {made.speeds[-1]:g} r/min and {len(made.loads)} axial loads from {made.loads[0]:g} to "
         f"{made.loads[-1]:g} N. Its 1x line gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
         f"said; the mass m is the ring’s and {mass:g} kg of the rotor. w* = (w − w_min) / (w_max − w_min), k* = k / k(w_min).",
-        "Rotating: a force that turns with the rotor (the article’s bidirectional model). One-way: a force along one fixed line "
-        "(unidirectional). Its amplitude is m e w², or constant: that at "
-        f"{tables['excitation'].get('reference_speed_rpm', made.speeds[0]):g} r/min. The article changes both at once; here "
-        "each is varied alone, too.",
+        "Rotating: a force that turns with the rotor (the article’s bidirectional model). Unidirectional: a force along one fixed "
+        f"line. Its amplitude is m e w², or constant: {constant}. The article changes both at once; here each is varied alone, "
+        f"too ({made.bodies[0]} bodies).",
         f"Tilt of the inner ring: locked, free, or against the shaft with {_round(made.shaft)} N m/rad (2 E I / L of a shaft of "
         "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
         "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
@@ -147,12 +147,10 @@ def _figures(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
         for name in names:
             _picture(out, pictures[name])
     out.section("What causes the trend")
-    out.text("One choice is swapped at a time; everything else stays. Change of K from the lowest to the highest speed.")
+    out.text("One choice is swapped at a time; everything else stays.")
     curves = study.curves
-    columns = ["", *(TILT_WORDS[tilt] for tilt in TILTS)]
     for load in dict.fromkeys((curves.design.loads[0], shown_load(curves), curves.design.loads[-1])):
-        rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in causes.one_at_a_time(curves, load)]
-        out.table(columns, rows, f"k*(1) − 1 at {load:g} N")
+        _swaps(out, study, load)
     _picture(out, pictures["tilt-stiffness"])
     if "bodies" in pictures:
         out.section("Rigid and condensed bodies")
@@ -169,7 +167,7 @@ def _static(out: Page, study: Article) -> None:
     out.text(
         "Section 3.2 of the article: peak pressures of its finite-element model against exact Hertz in the rigid equilibrium. "
         "Here: nodal contact on condensed bodies, the pressure at surface points, no penalty. The article’s load cases are lost; "
-        "these four span its range."
+        "these four span its range. The bearing is the article’s, whatever scene the study is given."
     )
     rows = [
         [one["quantity"], _digits(one["reference"]), _digits(one["computed"]), _share(one["error"]), _share(one["tolerance"]),
@@ -205,12 +203,13 @@ def _rig(out: Page, study: Article) -> None:
         "What claim 2 would be held against the rig with: K under the rotating force m e w² with ball inertia. The article’s "
         "measured values are lost, so nothing is compared."
     )
-    rows = [
-        [f"{row['axial_n']:g}", f"{row['speed_rpm']:g}", f"{TILT_WORDS[row['tilt']]}, {row['bodies']}",
-         *((f"{row[key] / 1e6:.4g}" for key in ("k", "abs_z")) if "k" in row else (row["status"], row["reason"]))]
-        for row in study.rig
-    ]  # fmt: skip
-    out.table(["axial load N", "speed r/min", "", "K N/µm", "|Z| N/µm"], rows)
+    speeds = list(dict.fromkeys(row["speed_rpm"] for row in study.rig))
+    table: dict[tuple[Any, ...], list[str]] = {}
+    for row in study.rig:
+        text = f"{row['k'] / 1e6:.4g}" if row["status"] == "completed" else row["status"]
+        table.setdefault((row["axial_n"], row["tilt"], row["bodies"]), []).append(text)
+    rows = [[f"{load:g} N, {TILT_WORDS[tilt]}, {bodies}", *found] for (load, tilt, bodies), found in table.items()]
+    out.table(["", *(f"{speed:g} r/min" for speed in speeds)], rows, "K [N/µm]")
 
 
 def _faults(out: Page, study: Article) -> None:
@@ -220,7 +219,7 @@ def _faults(out: Page, study: Article) -> None:
     unstable = sum(row["status"] == "unstable" for row in study.curves.faults())
     out.text(
         f"{len(study.failed)} of {total} runs failed. {unstable} steady motions are unstable: they satisfy the equations, but a "
-        "ring does not stay on them; they are crosses in the figures and count for no verdict. One-way forces meet resonances "
+        "ring does not stay on them; they are crosses in the figures and count for no verdict. Unidirectional forces meet resonances "
         "of the contacts’ higher harmonics with the ring’s vibrations (docs/periodic.md)."
     )
     if bad:

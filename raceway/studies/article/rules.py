@@ -87,16 +87,24 @@ def change_within(relative_speed: np.ndarray, values: np.ndarray, first: float, 
 
 
 def spread(relative_speed: np.ndarray, surface: np.ndarray, first: float, last: float) -> float | None:
-    """Largest of max/min - 1 over the loads at the speeds of a zone; None where a number is missing.
+    """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it.
+
+    Between neighbours by straight lines; None where numbers around the zone's ends are missing.
 
     Parameters
     ----------
     surface : (loads, speeds), positive
     """
-    zone = surface[:, (relative_speed >= first - 1e-9) & (relative_speed <= last + 1e-9)]
-    if zone.size == 0 or not np.isfinite(zone).all():
-        return None
-    return float((zone.max(axis=0) / zone.min(axis=0) - 1.0).max())
+    inside = (relative_speed > first) & (relative_speed < last)
+    places = np.array([first, *relative_speed[inside], last])
+    zone = []
+    for values in surface:
+        known = np.isfinite(values)
+        w = relative_speed[known]
+        if len(w) < 2 or first < w[0] or last > w[-1]:
+            return None
+        zone.append(np.interp(places, w, values[known]))
+    return float((np.max(zone, axis=0) / np.min(zone, axis=0) - 1.0).max())
 
 
 def rises_with_load(surface: np.ndarray, errors: np.ndarray) -> list[bool | None]:

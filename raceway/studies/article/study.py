@@ -40,7 +40,7 @@ class Article:
     curves : K and |Z| of every setting;  rig : rows at the rig's speeds and loads, with their tilt boundary
     static : rows of the static verification;  trends : quasi-static trends against an independent solver
     scan : axial load -> rows over the shaft's tilt stiffness at the lowest and highest speed
-    seconds, cpu_s : wall and processor time;  reused : tasks that were taken from the folder, of ``tasks``
+    seconds, cpu_s : wall and processor time, of which ``own_cpu_s`` in this process;  reused : tasks that were taken from the folder, of ``tasks``
     """
 
     title: str
@@ -51,6 +51,7 @@ class Article:
     scan: dict[float, list[Row]]
     seconds: float
     cpu_s: float
+    own_cpu_s: float
     tasks: int
     reused: int
     fault: RacewayError | None = None
@@ -84,6 +85,7 @@ class Article:
                 "quasi_static": [one.as_dict() for one in self.trends],
                 "static": self.static,
                 "rig": self.rig,
+                "causes": {f"{load:g}": dict(causes.one_at_a_time(self.curves, load)) for load in made.loads},
                 "tilt_stiffness": [
                     {"axial_n": load, "stiffness": causes.STIFFNESSES, "ratio": causes.hardening(rows).tolist(),
                      "turning_point": causes.turning_point(causes.hardening(rows))}
@@ -91,7 +93,7 @@ class Article:
                 ],
                 "rows": rows,
                 "failed": len(self.failed),
-                "cost": {"wall_s": self.seconds, "cpu_s": self.cpu_s, "tasks": self.tasks, "reused": self.reused},
+                "cost": {"wall_s": self.seconds, "cpu_s": self.cpu_s, "own_cpu_s": self.own_cpu_s, "tasks": self.tasks, "reused": self.reused},
             }
         )  # fmt: skip
         return content
@@ -140,7 +142,7 @@ def article(
     KeyboardInterrupt
         Finished curves are in ``store``.
     """
-    begun, cpu = time.monotonic(), _processor_time()
+    begun, cpu, own = time.monotonic(), _processor_time(), time.process_time()
     registry = registry or default_registry()
     made = design(tables if tables is not None else article_tables(), speeds, loads, shaft, bodies)
     settings = [(setting, load) for setting in made.settings() for load in made.loads]
@@ -154,7 +156,7 @@ def article(
     scan = {load: next(results) for load in causes.scan_loads(made)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(made) for row in next(results)]
     curves = Curves(made, dict(zip(settings, results, strict=True)))
-    taken = time.monotonic() - begun, _processor_time() - cpu
+    taken = time.monotonic() - begun, _processor_time() - cpu, time.process_time() - own
     return Article(title, curves, tuple(rig), tuple(static), tuple(trends), scan, *taken, len(tasks), reused, kept.fault)
 
 
