@@ -171,6 +171,7 @@ SCENES = {
     "side": (["rig.sensor_side=insde"], "rig.sensor_side", "did you mean 'inside'?"),
     "span": (["rig.span=0.5"], "rig", "must be less than `shaft_length`"),
     "thick shaft": (["rig.shaft_diameter=0.2"], "rig", "must be less than the disc's"),
+    "thin hub": (["rig.hub_diameter=0.02"], "rig", "must lie between the shaft's, 0.03 m, and the disc's"),
     "thick disc": (["rig.disc_thickness=0.2"], "rig", "must be less than `span`"),
     "unbalance beyond the disc": (["rig.unbalance_radius=0.1"], "rig", "lies beyond the disc"),
     "no diameter": (["rig.shaft_diameter=0"], "rig.shaft_diameter", "must be greater than 0"),

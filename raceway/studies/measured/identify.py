@@ -199,6 +199,9 @@ def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
         "Young's modulus of the shaft +1 %": attrs.evolve(rig, young=1.01 * rig.young),
         "density of shaft and disc +1 %": attrs.evolve(rig, density=1.01 * rig.density),
     }
+    hub = 2.0 * (rig.hub_diameter or rig.shaft_diameter)
+    if hub <= 2.0 * rig.disc_radius:
+        rigs["disc stiffens the shaft (hub twice as thick)"] = attrs.evolve(rig, hub_diameter=hub)
     try:
         rigs["sensor 0.5 mm farther from the bearing"] = attrs.evolve(rig, sensor_distance=farther)
     except ValueError:  # it sits at the end already
