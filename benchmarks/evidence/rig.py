@@ -61,6 +61,7 @@ def rows() -> list[Row]:
         *_files(scene, rig, found, points),
         *_speed(rig, points),
         *_unlike(scene, rig),
+        _weight(rig, points),
         *_damping(scene, rig),
         *_cost(found, spent),
     ]
@@ -232,6 +233,17 @@ def _unlike(scene: Scene, rig: Rig) -> Iterator[Row]:
         note = f"the scene's own K is off by {100 * min(shifts):.2g} to {100 * max(shifts):.2g} %"
         text = f"clean signals of another bearing than the scene's, {words}: largest error of K of 6"
         yield Row(text, max(errors), "reported", True, COMMAND, note)
+
+
+def _weight(rig: Rig, points: Points) -> Row:
+    changes = []
+    for _, state, held in points:
+        load = attrs.evolve(held.scene.load, radial=(0.0, -0.5 * 9.81 * rig.mass))
+        heavy = attrs.evolve(held, scene=attrs.evolve(held.scene, load=load))
+        changes.append(balance(rotor(rig, state.speed), heavy).stiffness / state.stiffness - 1.0)
+    note = f"{100 * min(changes):.2g} to {100 * max(changes):.2g} %; forward line only"
+    return Row("weight of the rotor, which the rig leaves out: largest change of K of 6", max(changes, key=abs), "reported",
+               True, COMMAND, note)  # fmt: skip
 
 
 def _damping(scene: Scene, rig: Rig) -> Iterator[Row]:

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway.errors import RacewayError
 from raceway.registry import default_registry
 from raceway.rig import Signals
 from raceway.scene_file import load_scene
@@ -218,6 +219,13 @@ def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
     found = invoke("identify", path, "--scene", SCENE, "--set", "load.axial=2000", "--out", tmp_path)
     assert found.exit_code == 1
     assert "Are unbalance, sensor's place and run-out right?" in found.stderr
+
+
+def test_columns_that_turn_the_wrong_way(rig, held, state):
+    quiet = attrs.evolve(silent(Signals()), duration=0.1)
+    own = record(rig, response(rig, held, state, quiet), quiet, 1)
+    with pytest.raises(RacewayError, match="swap y and z"):
+        identify(attrs.evolve(own, y=own.z, z=own.y), rig, held)
 
 
 def test_a_run_takes_no_notice_of_the_rig(scene):

@@ -157,6 +157,11 @@ def identify(
     """
     turned = turning(recording)
     found = order(turned)
+    if found.backward > abs(found.line):
+        raise RacewayError(
+            f"the orbit turns from z towards y, against the shaft ({1e6 * found.backward:.3g} um backward, "
+            f"{1e6 * abs(found.line):.3g} um forward): change the sign of one column, or swap y and z"
+        )
     angle = radians(rig.unbalance_angle_deg)
     run_out = run_out or RunOut()
     if slow is not None:
