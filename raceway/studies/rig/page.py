@@ -55,6 +55,8 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     out.figures(
         [(drawn["procedures"], "K over speed for each axial load, true and by each procedure", "K by each procedure")]
     )
+    for one in study.failed:
+        out.text(f"Failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", kind="note")
     out.section("The article's procedure")
     out.text(
         "Detrend, denoise, whole-turn Fourier transform, F = m e w²/2, less the shaft's deflection as printed, "
