@@ -6,7 +6,7 @@ from math import pi
 
 import attrs
 
-from raceway.options import at_least, between, finite, inside, one_of, option, positive
+from raceway.options import at_least, between, finite, inside, one_of, option, optional, positive
 
 
 def _each(low: float, words: str) -> object:
@@ -51,6 +51,12 @@ class Rig:
     span: float = option(0.175, unit="m", help="distance of the bearings' centres", rule=positive())
     disc_radius: float = option(0.090, unit="m", help="radius of the disc", rule=positive())
     disc_thickness: float = option(0.020, unit="m", help="width of the disc", rule=positive())
+    hub_diameter: float | None = option(
+        None,
+        unit="m",
+        help="diameter that bends within the disc, where the disc stiffens the shaft; default: the shaft's",
+        rule=optional(positive()),
+    )
     young: float = option(212e9, unit="Pa", help="Young's modulus of the shaft", rule=positive())
     poisson: float = option(0.29, help="Poisson's ratio of the shaft", rule=inside(-1.0, 0.5))
     density: float = option(7810.0, unit="kg/m3", help="of shaft and disc", rule=positive())
@@ -84,6 +90,11 @@ class Rig:
         if self.shaft_diameter >= 2.0 * self.disc_radius:
             raise ValueError(
                 f"`shaft_diameter` = {self.shaft_diameter:g} m must be less than the disc's, {2.0 * self.disc_radius:g} m"
+            )
+        if self.hub_diameter is not None and not self.shaft_diameter <= self.hub_diameter <= 2.0 * self.disc_radius:
+            raise ValueError(
+                f"`hub_diameter` = {self.hub_diameter:g} m must lie between the shaft's, {self.shaft_diameter:g} m, and the disc's, "
+                f"{2.0 * self.disc_radius:g} m"
             )
         if self.disc_thickness >= self.span:
             raise ValueError(f"`disc_thickness` = {self.disc_thickness:g} m must be less than `span` = {self.span:g} m")

@@ -32,7 +32,7 @@ def rig(
     """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
 
     The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
-    Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads.
+    Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads. Exit code 1 when a point has no motion.
 
     \b
     Example:
@@ -64,7 +64,7 @@ def rig(
     from raceway.rig_screen import rig_screen
 
     show(content, as_json, failed, lambda _: rig_screen(content, files))
-    return 0
+    return 1 if found.failed else 0
 
 
 @click.command(short_help="K and C of a bearing from measured signals.")

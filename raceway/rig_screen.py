@@ -31,6 +31,10 @@ def rig_screen(study: Mapping[str, Any], files: Sequence[str]) -> RenderableType
         ),
         rows_table(_causes(study["rows"]), "Largest error of K by one cause at a time"),
     ]
+    parts += [
+        Text(f"failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", style="red")
+        for one in study["failed"]
+    ]
     return Group(*parts, *written(files))
 
 
@@ -86,6 +90,9 @@ def identify_screen(found: Mapping[str, Any], files: Sequence[str]) -> Renderabl
         rows.append(
             ("C", value, f"+- {wide:.2g} N s/m at 95 %" if resolved else f"below its uncertainty of {wide:.2g} N s/m")
         )
+    rows.append(
+        ("K of the scene's bearing", number(1e-6 * known["scene_stiffness"], "N/µm"), "under the same force and moment")
+    )
     locked = known["tilt_locked"]
     wide = f"+- {number(1e-6 * locked['equivalent_stiffness_error'], 'N/µm', 2)} at 95 %"
     rows.append(("K, tilt locked", number(1e-6 * locked["equivalent_stiffness"], "N/µm"), f"{wide}; {locked['definition']}"))

@@ -14,23 +14,28 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import attrs
+import click
 import pytest
 
 from raceway.cli import main
 from raceway.command_inputs import slug
-from raceway.studies_group import STUDIES
 from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, python, raceway
 
 COMMANDS = sorted(main.commands)
-#: Those and the sub-commands of `study`.
-LINES = [(name,) for name in COMMANDS if name != "study"] + [("study", name) for name in STUDIES]
+GROUPS = {
+    name: list(one.list_commands(click.Context(one))) for name, one in main.commands.items() if isinstance(one, click.Group)
+}
+#: What a person can run: the sub-commands of a group, not the group.
+RUNNABLE = [name for name in COMMANDS if name not in GROUPS] + [
+    f"{name} {sub}" for name, subs in GROUPS.items() for sub in subs
+]
 
 
-@pytest.mark.parametrize("line", LINES, ids=" ".join)
-def test_help_teaches_with_an_example(line):
-    found = invoke(*line, "--help")
+@pytest.mark.parametrize("command", RUNNABLE)
+def test_help_teaches_with_an_example(command):
+    found = invoke(*command.split(), "--help")
     assert found.exit_code == 0
-    assert f"raceway {' '.join(line)}" in found.stdout.split("Example:")[1]
+    assert f"raceway {command}" in found.stdout.split("Example:")[1]
     assert "--json" in found.stdout
     assert "--debug" in found.stdout
 

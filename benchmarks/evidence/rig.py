@@ -61,6 +61,8 @@ def rows() -> list[Row]:
         *_files(scene, rig, found, points),
         *_speed(rig, points),
         *_unlike(scene, rig),
+        _weight(rig, points),
+        *_mirrored(rig, points),
         *_damping(scene, rig),
         *_cost(found, spent),
     ]
@@ -232,6 +234,29 @@ def _unlike(scene: Scene, rig: Rig) -> Iterator[Row]:
         note = f"the scene's own K is off by {100 * min(shifts):.2g} to {100 * max(shifts):.2g} %"
         text = f"clean signals of another bearing than the scene's, {words}: largest error of K of 6"
         yield Row(text, max(errors), "reported", True, COMMAND, note)
+
+
+def _mirrored(rig: Rig, points: Points) -> Iterator[Row]:
+    """What the rig's tilt does to F / x when the bearings are mounted the other way round."""
+    turned = attrs.evolve(rig, arrangement="DF")
+    for axial, state, held in points:
+        other, quiet = balance(rotor(turned, state.speed), held), silent(rig.signals)
+        found = identify(record(turned, response(turned, held, other, quiet), quiet, 1), turned, held)
+        note = f"K = {1e-6 * other.stiffness:.1f} N/um, mounted DB {1e-6 * state.stiffness:.1f}; with the tilt locked "
+        note += f"{1e-6 * other.locked[0]:.1f} and {1e-6 * state.locked[0]:.1f}"
+        text = f"(b) bearings mounted DF, {_name(axial, state)}: error of K without noise"
+        yield below(text, _off(found, other), 0.01, COMMAND, note)
+
+
+def _weight(rig: Rig, points: Points) -> Row:
+    changes = []
+    for _, state, held in points:
+        load = attrs.evolve(held.scene.load, radial=(0.0, -0.5 * 9.81 * rig.mass))
+        heavy = attrs.evolve(held, scene=attrs.evolve(held.scene, load=load))
+        changes.append(balance(rotor(rig, state.speed), heavy).stiffness / state.stiffness - 1.0)
+    note = f"{100 * min(changes):.2g} to {100 * max(changes):.2g} %; forward line only"
+    return Row("weight of the rotor, which the rig leaves out: largest change of K of 6", max(changes, key=abs), "reported",
+               True, COMMAND, note)  # fmt: skip
 
 
 def _damping(scene: Scene, rig: Rig) -> Iterator[Row]:

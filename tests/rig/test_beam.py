@@ -83,6 +83,16 @@ def test_gyroscopic_moments_of_an_overhung_disc():
     assert np.sum(flat.critical_speeds() < 1e6) == 1
 
 
+def test_a_stiff_hub_bends_less():
+    span, hub = 0.175, 0.02
+    places = np.array([0.0, 0.5 * (span - hub), 0.5 * span, 0.5 * (span + hub), span])
+    stiff = np.array([D, 100.0 * D, 100.0 * D, D])
+    line = beam(places, D, E, NU, RHO, False, stiff).with_spring(0.0, HELD).with_spring(span, HELD)
+    # Castigliano: the square of the bending moment over the part that bends, P^2 x^2 / 4 up to the hub on both sides.
+    exact = (0.5 * (span - hub)) ** 3 / (6.0 * E * I)
+    assert static(line, 0.5 * span)[4] == pytest.approx(exact, rel=1e-6)
+
+
 def test_mass_and_symmetry():
     rig = Rig()
     line = shaft(rig)

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway.errors import ConvergenceError, RacewayError
 from raceway.registry import default_registry
 from raceway.rig import Signals
 from raceway.scene_file import load_scene
@@ -115,6 +116,7 @@ def test_a_bearing_unlike_the_scene_s_is_identified_with_the_scene_s_tilt(rig, s
     found = identify(record(rig, response(rig, held, true, quiet), quiet, 1), rig, held)
     own = balance(rotor(rig, SPEED), held)
     assert abs(true.stiffness / own.stiffness - 1.0) > 0.05
+    assert found.scene == pytest.approx(own.stiffness, rel=0.1)
     # Measured: 4 %, through the tilt stiffness; the report has more of them.
     assert found.state.stiffness == pytest.approx(true.stiffness, rel=0.06)
 
@@ -171,6 +173,7 @@ SCENES = {
     "side": (["rig.sensor_side=insde"], "rig.sensor_side", "did you mean 'inside'?"),
     "span": (["rig.span=0.5"], "rig", "must be less than `shaft_length`"),
     "thick shaft": (["rig.shaft_diameter=0.2"], "rig", "must be less than the disc's"),
+    "thin hub": (["rig.hub_diameter=0.02"], "rig", "must lie between the shaft's, 0.03 m, and the disc's"),
     "thick disc": (["rig.disc_thickness=0.2"], "rig", "must be less than `span`"),
     "unbalance beyond the disc": (["rig.unbalance_radius=0.1"], "rig", "lies beyond the disc"),
     "no diameter": (["rig.shaft_diameter=0"], "rig.shaft_diameter", "must be greater than 0"),
@@ -217,6 +220,37 @@ def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
     found = invoke("identify", path, "--scene", SCENE, "--set", "load.axial=2000", "--out", tmp_path)
     assert found.exit_code == 1
     assert "Are unbalance, sensor's place and run-out right?" in found.stderr
+
+
+def test_a_point_without_a_motion_is_shown_as_failed(tmp_path, monkeypatch):
+    from raceway.studies.rig import study as module
+
+    def fails(line, held):
+        if line.speed > 1500.0:
+            raise ConvergenceError("no motion, for the test")
+        return balance(line, held)
+
+    monkeypatch.setattr(module, "balance", fails)
+    changed = ["rig.speeds_rpm=[13000.0, 15000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.1"]
+    words = ["study", "rig", SCENE, *(w for change in changed for w in ("--set", change)), "--out", tmp_path, "--no-signals"]
+    found = invoke(*words)
+    assert found.exit_code == 1
+    assert "failed: 15000 r/min, 2000 N: no motion, for the test" in found.stdout.replace("\n", " ")
+    assert "no motion, for the test" in (tmp_path / "rig.html").read_text(encoding="utf-8")
+
+
+def test_marks_and_a_speed_that_disagree(rig, held, state):
+    quiet = attrs.evolve(silent(Signals()), duration=0.1)
+    own = record(rig, response(rig, held, state, quiet), quiet, 1)
+    with pytest.raises(RacewayError, match="Sample faster, or leave one of the columns out"):
+        identify(attrs.evolve(own, speed=0.5 * own.speed), rig, held)
+
+
+def test_columns_that_turn_the_wrong_way(rig, held, state):
+    quiet = attrs.evolve(silent(Signals()), duration=0.1)
+    own = record(rig, response(rig, held, state, quiet), quiet, 1)
+    with pytest.raises(RacewayError, match="swap y and z"):
+        identify(attrs.evolve(own, y=own.z, z=own.y), rig, held)
 
 
 def test_a_run_takes_no_notice_of_the_rig(scene):

@@ -19,6 +19,8 @@ LEAST_PER_TURN = 8
 _LOW, _HIGH = 0.4, 0.6
 #: Turns between two knots of the angle's spline: a mark is known to a sample only.
 _TURNS_PER_KNOT = 12
+#: Largest relative difference of the marks' speed and that of a column.
+_AGREE = 0.05
 #: The speed of a column is taken as the mean over this many turns.
 _SMOOTH_TURNS = 1.0
 
@@ -71,6 +73,13 @@ def _by_marks(recording: Recording) -> Turning:
         raise RacewayError(
             f"a mark of `key` is {what} at {marks[place]:.6g} s: that turn takes {ratio[place]:.2f} of the usual time. "
             "Cut the record there"
+        )
+    mean = 2.0 * pi * (len(marks) - 1) / float(marks[-1] - marks[0])
+    if recording.speed is not None and abs(mean / float(recording.speed.mean()) - 1.0) > _AGREE:
+        raise RacewayError(
+            f"the marks of `key` come at {mean * 30.0 / pi:.6g} r/min, the speed column says "
+            f"{recording.speed.mean() * 30.0 / pi:.6g}: marks between samples are missed, or there are several a turn. "
+            "Sample faster, or leave one of the columns out"
         )
     inside = (recording.time >= marks[0]) & (recording.time < marks[-1])
     spline = _smooth_angle(marks)

@@ -25,6 +25,8 @@ from raceway.studies.shaft.rotor import Rotor, rotor
 _COVERAGE = 1.96
 #: Deflection of the bearing below this part of the sensor's line is a small difference of large numbers.
 _SMALL = 0.1
+#: K off the scene's by more than this is told.
+_UNLIKE = 0.3
 
 
 @attrs.frozen(eq=False)
@@ -34,6 +36,7 @@ class Found:
     Attributes
     ----------
     turning, order : of the record;  run_out : that was subtracted;  state : of the bearing
+    scene : K of the scene's bearing under the same force and moment [N/m]
     parts : half-widths at 95 % by cause, (4,) like ``inversion.values``
     changes : ``sensitivities``
     """
@@ -42,6 +45,7 @@ class Found:
     order: Order
     run_out: RunOut
     state: State
+    scene: float
     parts: dict[str, np.ndarray]
     changes: list[dict[str, float | str]]
 
@@ -95,6 +99,7 @@ class Found:
                     "equivalent_damping": state.damping if marked else None,
                     "equivalent_damping_error": rest[1] if marked else None,
                     "mass_used_kg": state.mass,
+                    "scene_stiffness": self.scene,
                     "tilt_locked": {
                         "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
                         "equivalent_stiffness": locked[0],
@@ -123,6 +128,11 @@ class Found:
             out.append("no mark (`key`): the phase is taken as zero, so that C is not identified")
         if not self.run_out.vector:
             out.append("no run-out was subtracted: give --slow-roll or --run-out")
+        if abs(state.stiffness / self.scene - 1.0) > _UNLIKE:
+            out.append(
+                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene:.4g} N/um: is it the bearing "
+                "of the rig, in the rig's arrangement? Its tilt enters the result"
+            )
         if abs(state.deflection) < _SMALL * abs(state.sensor):
             part = 100.0 * abs(state.deflection) / abs(state.sensor)
             out.append(f"the bearing moves by {part:.2g} % of what the sensor sees; the rest is the shaft's bow")
@@ -157,6 +167,11 @@ def identify(
     """
     turned = turning(recording)
     found = order(turned)
+    if found.backward > abs(found.line):
+        raise RacewayError(
+            f"the orbit turns from z towards y, against the shaft ({1e6 * found.backward:.3g} um backward, "
+            f"{1e6 * abs(found.line):.3g} um forward): change the sign of one column, or swap y and z"
+        )
     angle = radians(rig.unbalance_angle_deg)
     run_out = run_out or RunOut()
     if slow is not None:
@@ -182,7 +197,11 @@ def identify(
         "marks": _turned(line, state, found.line * exp(-1j * angle), found.doubt),
         "window": np.abs(values(other) - values(state)),
     }
-    return Found(turned, found, run_out, state, parts, sensitivities(changed_rotors(rig, found.speed), line, state))
+    x = held.answer(state.speed, state.force, state.moment)[0]
+    scene = (state.force / x).real + state.mass * state.speed**2
+    return Found(
+        turned, found, run_out, state, float(scene), parts, sensitivities(changed_rotors(rig, found.speed), line, state)
+    )
 
 
 def _turned(line: Rotor, state: State, seen: complex, angle: float) -> np.ndarray:
@@ -199,6 +218,9 @@ def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
         "Young's modulus of the shaft +1 %": attrs.evolve(rig, young=1.01 * rig.young),
         "density of shaft and disc +1 %": attrs.evolve(rig, density=1.01 * rig.density),
     }
+    hub = 2.0 * (rig.hub_diameter or rig.shaft_diameter)
+    if hub <= 2.0 * rig.disc_radius:
+        rigs["disc stiffens the shaft (hub twice as thick)"] = attrs.evolve(rig, hub_diameter=hub)
     try:
         rigs["sensor 0.5 mm farther from the bearing"] = attrs.evolve(rig, sensor_distance=farther)
     except ValueError:  # it sits at the end already

@@ -37,6 +37,7 @@ def procedures(study: RigStudy) -> Figure:
             panel.plot(speeds, values, color=_COLOURS[1], linestyle=style, marker=".", label=label)
         panel.set_title(f"{axial:g} N axial", fontsize=11)
         panel.set_xlabel("speed [r/min]")
+        panel.set_xticks(speeds)
         panel.set_ylim(bottom=0.0)
         panel.grid(color="#d8dee4", linewidth=0.7)
     figure.axes[0].set_ylabel("K [N/µm]")

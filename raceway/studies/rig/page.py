@@ -55,6 +55,8 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     out.figures(
         [(drawn["procedures"], "K over speed for each axial load, true and by each procedure", "K by each procedure")]
     )
+    for one in study.failed:
+        out.text(f"Failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", kind="note")
     out.section("The article's procedure")
     out.text(
         "Detrend, denoise, whole-turn Fourier transform, F = m e w²/2, less the shaft's deflection as printed, "
@@ -90,7 +92,7 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     out.listing(
         [
             "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are left out.",
-            "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it.",
+            "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
             "The bearing is the scene's, nonlinear: force and moment of the shaft act on it in a run of its own, until shaft and "
             "bearing move alike. Motion at other orders than 1x is left out of the signals.",
             "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",

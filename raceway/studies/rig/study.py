@@ -10,6 +10,7 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import ConvergenceError
 from raceway.registry import Registry
 from raceway.result import without_nan
 from raceway.rig import Rig
@@ -22,7 +23,7 @@ from raceway.studies.rig.as_printed import Reading, amplitude, critical_speed, r
 from raceway.studies.rig.error_split import Cause, split
 from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
 from raceway.studies.shaft.balance import State, balance
-from raceway.studies.shaft.bearing import bearing
+from raceway.studies.shaft.bearing import Bearing, bearing
 from raceway.studies.shaft.rotor import rotor
 
 OnProgress = Callable[[str, int, int], None]
@@ -86,13 +87,14 @@ class Point:
 
 @attrs.frozen(eq=False)
 class RigStudy:
-    """All points, with the rig and its critical speeds [r/min] by axial load."""
+    """All points, with the rig and its critical speeds [r/min] by axial load; ``failed``: points without a motion, and why."""
 
     title: str
     scene: Scene
     rig: Rig
     critical: dict[str, float]
     points: list[Point]
+    failed: list[dict[str, Any]]
 
     def as_dict(self) -> dict[str, Any]:
         """Everything but the signals, as plain tables for JSON."""
@@ -103,6 +105,7 @@ class RigStudy:
                 "rig": {**attrs.asdict(self.rig), "mass_kg": self.rig.mass, "disc_mass_kg": self.rig.disc_mass},
                 "critical_speed_rpm": self.critical,
                 "rows": [point.as_dict() for point in self.points],
+                "failed": self.failed,
                 "worst": self.worst,
             }
         )
@@ -137,28 +140,39 @@ def study(scene: Scene, rig: Rig, registry: Registry, on_progress: OnProgress | 
     SceneError
         A scene that is no bearing of such a rig.
     ConvergenceError
-        Shaft and bearing find no common motion.
+        No point at which shaft and bearing find a common motion.
     """
     grid = [(axial, speed) for axial in rig.axial_loads for speed in rig.speeds_rpm]
-    critical, points = {"rigid supports": critical_speed(rig, None) * 30.0 / pi}, []
+    critical = {"rigid supports": critical_speed(rig, None) * 30.0 / pi}
+    points: list[Point] = []
+    failed: list[dict[str, Any]] = []
     held = None
-    for done, (axial, speed) in enumerate(grid):
+    for done, (axial, rpm) in enumerate(grid):
         if on_progress is not None:
-            on_progress(f"{speed:.0f} r/min, {axial:.0f} N", done, len(grid))
+            on_progress(f"{rpm:.0f} r/min, {axial:.0f} N", done, len(grid))
         if held is None or held.scene.load.axial != axial:
             held = bearing(scene, axial, registry)
             critical[f"bearings under {axial:g} N"] = critical_speed(rig, held) * 30.0 / pi
-        line = rotor(rig, speed * pi / 30.0)
-        state = balance(line, held)
-        answer = response(rig, held, state, rig.signals)
-        noise, seed = white_noise(answer, rig.signals), rig.signals.seed + 2 * done
-        signals = record(rig, answer, rig.signals, seed)
-        slow = slow_roll_record(rig, held, rig.signals, seed + 1, noise)
-        found = identify(signals, rig, held, slow=slow_roll(slow))
-        seen = amplitude(turning(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
-        by_article = readings(rig, held, line.speed, seen)
-        causes = split(rig, held, state)
-        points.append(Point(axial, state, line.unbalance_force, signals, slow, found, by_article, causes))
+        try:
+            points.append(_point(rig, held, rpm * pi / 30.0, rig.signals.seed + 2 * done))
+        except ConvergenceError as why:
+            if len(failed) + 1 == len(grid):
+                raise
+            failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": str(why)})
     if on_progress is not None:
         on_progress("done", len(grid), len(grid))
-    return RigStudy(scene.title, scene, rig, critical, points)
+    return RigStudy(scene.title, scene, rig, critical, points, failed)
+
+
+def _point(rig: Rig, held: Bearing, speed: float, seed: int) -> Point:
+    """One speed [rad/s]: the true motion, its signals, and what is read from them."""
+    line = rotor(rig, speed)
+    state = balance(line, held)
+    answer = response(rig, held, state, rig.signals)
+    signals = record(rig, answer, rig.signals, seed)
+    slow = slow_roll_record(rig, held, rig.signals, seed + 1, white_noise(answer, rig.signals))
+    found = identify(signals, rig, held, slow=slow_roll(slow))
+    seen = amplitude(turning(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
+    by_article = readings(rig, held, speed, seen)
+    causes = split(rig, held, state)
+    return Point(held.scene.load.axial, state, line.unbalance_force, signals, slow, found, by_article, causes)

@@ -77,28 +77,39 @@ class Beam:
         return np.sort(1.0 / np.sqrt(real))
 
 
-def beam(nodes: np.ndarray, diameter: float, young: float, poisson: float, density: float, shear: bool = True) -> Beam:
+def beam(
+    nodes: np.ndarray,
+    diameter: float,
+    young: float,
+    poisson: float,
+    density: float,
+    shear: bool = True,
+    stiff: np.ndarray | None = None,
+) -> Beam:
     """A round shaft of one diameter.
 
     Parameters
     ----------
     nodes : (n,) ascending [m]
     shear : False gives an Euler-Bernoulli beam
+    stiff : (n - 1,) diameters that bend, where something stiffens the shaft [m]; its mass is not added
 
     Notes
     -----
     Shear coefficient of a solid round section: 6 (1 + nu) / (7 + 6 nu) (Cowper 1966).
     """
     area, inertia = pi / 4.0 * diameter**2, pi / 64.0 * diameter**4
-    shear_stiffness = 6.0 * (1.0 + poisson) / (7.0 + 6.0 * poisson) * young / (2.0 * (1.0 + poisson)) * area
+    bending = np.full(len(nodes) - 1, diameter) if stiff is None else stiff
+    modulus = 6.0 * (1.0 + poisson) / (7.0 + 6.0 * poisson) * young / (2.0 * (1.0 + poisson))
     size = 2 * len(nodes)
     k, m, r = (np.zeros((size, size)) for _ in range(3))
     for i, length in enumerate(np.diff(nodes)):
         part = slice(2 * i, 2 * i + 4)
-        phi = 12.0 * young * inertia / (shear_stiffness * length**2) if shear else 0.0
+        bend_stiffness, shear_stiffness = young * pi / 64.0 * bending[i] ** 4, modulus * pi / 4.0 * bending[i] ** 2
+        phi = 12.0 * bend_stiffness / (shear_stiffness * length**2) if shear else 0.0
         for x, weight in zip(_POINTS, _WEIGHTS * length, strict=True):
             w, slope, turn, bend = _shapes(x, length, phi)
-            k[part, part] += weight * young * inertia * np.outer(bend, bend)
+            k[part, part] += weight * bend_stiffness * np.outer(bend, bend)
             if shear:
                 k[part, part] += weight * shear_stiffness * np.outer(slope - turn, slope - turn)
             m[part, part] += weight * density * area * np.outer(w, w)

@@ -52,19 +52,22 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     shear : False leaves shear and rotary inertia out of the shaft
     finer : divides the length of the elements
     """
-    places = sorted({0.0, *rig.bearings, rig.sensor, 0.5 * rig.shaft_length, rig.shaft_length})
+    middle, half = 0.5 * rig.shaft_length, 0.5 * rig.disc_thickness
+    places = sorted({0.0, *rig.bearings, rig.sensor, middle - half, middle, middle + half, rig.shaft_length})
     nodes = [places[0]]
     for before, after in zip(places, places[1:], strict=False):
         if after - before > 1e-6:  # nearer ones share a node
             parts = finer * ceil((after - before) / (_ELEMENT * rig.shaft_diameter))
             nodes += np.linspace(before, after, parts + 1)[1:].tolist()
-    bare = beam(np.array(nodes), rig.shaft_diameter, rig.young, rig.poisson, rig.density, shear)
+    centres = 0.5 * (np.array(nodes[1:]) + np.array(nodes[:-1]))
+    stiff = np.where(np.abs(centres - middle) < half, rig.hub_diameter or rig.shaft_diameter, rig.shaft_diameter)
+    bare = beam(np.array(nodes), rig.shaft_diameter, rig.young, rig.poisson, rig.density, shear, stiff)
     if not shear:
         bare = attrs.evolve(bare, rotary=0.0 * bare.rotary, polar=0.0 * bare.polar)
     inner, outer, width = 0.5 * rig.shaft_diameter, rig.disc_radius, rig.disc_thickness
     mass = rig.density * pi * (outer**2 - inner**2) * width
     polar = 0.5 * mass * (outer**2 + inner**2)
-    return bare.with_disc(0.5 * rig.shaft_length, mass, 0.5 * polar + mass * width**2 / 12.0, polar)
+    return bare.with_disc(middle, mass, 0.5 * polar + mass * width**2 / 12.0, polar)
 
 
 def rotor(rig: Rig, speed: float, line: Beam | None = None) -> Rotor:
