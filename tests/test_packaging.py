@@ -50,7 +50,9 @@ def wheel(tmp_path_factory):
 
 def test_the_wheel_holds_code_data_and_licence(wheel):
     here = {
-        str(path.relative_to(ROOT)) for path in (ROOT / "raceway").rglob("*") if path.suffix in (".py", ".toml", ".json", ".css", ".js", ".html")
+        str(path.relative_to(ROOT))
+        for path in (ROOT / "raceway").rglob("*")
+        if path.suffix in (".py", ".toml", ".json", ".css", ".js", ".html")
     }
     assert here <= set(wheel)
     assert any(name.endswith("licenses/LICENSE") for name in wheel)
