@@ -88,7 +88,9 @@ def colour_bar(pyvista: Any, plotter: Any, title: str, colours: str, top: float,
     hidden = pyvista.PolyData(np.zeros((1, 3)))
     hidden.point_data["bar"] = np.zeros(1)
     actor = plotter.add_mesh(hidden, scalars="bar", cmap=table, show_scalar_bar=False, opacity=0.0, reset_camera=False)
-    bar = {**_BAR, "position_x": place[0], "position_y": place[1], "height": 0.34, "width": 0.05}
+    small = plotter.window_size[0] / 1600.0  # letters are given in pixels
+    sizes = {name: max(int(_BAR[name] * small), 12) for name in ("title_font_size", "label_font_size")}
+    bar = {**_BAR, **sizes, "position_x": place[0], "position_y": place[1], "height": 0.34, "width": 0.05}
     plotter.add_scalar_bar(title=title, mapper=actor.mapper, **bar)
 
 
@@ -110,7 +112,7 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         )  # fmt: skip
         colour_bar(pyvista, plotter, "ball load [N]", LOADS, top, (0.045, 0.54))
         colour_bar(pyvista, plotter, "pressure [MPa]", PRESSURES, peak, (0.045, 0.06))
-        plotter.add_text(heading, position="upper_edge", font_size=15, color=_INK)
+        plotter.add_text(heading, position="upper_edge", font_size=13, color=_INK)
         plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=_INK, viewport=(0.85, 0.0, 1.0, 0.2))
         plotter.enable_anti_aliasing("ssaa")
         plotter.camera_position = [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
