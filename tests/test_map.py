@@ -69,15 +69,15 @@ def test_signs_failures_and_boundaries():
 
 def test_the_trend_of_an_independent_solver():
     # physics: fixed balls with centrifugal force, half the rig's unbalance towards ball 0, no ring growth; the printed
-    # ratios have three digits, the printed stiffness four.  Means over azimuths differ from the load on ball 0 by up to 1 %.
+    # ratios have three digits, the printed stiffness three or four: half a digit is 0.3 % of the smallest.
     tables = {**TABLES, "kinematics": {"ball_inertia": True}}
     found = study_map(design(tables, TINY, "quasi_static", REGISTRY), registry=REGISTRY)
     end = {(curve["tilt"], curve["axial"]): curve for curve in found.curves}
     for key, first, last in (
         (("locked", 400), 163.0e6, 0.668), (("locked", 2000), 285.8e6, 0.993), (("free", 400), 24.32e6, 1.356), (("free", 2000), 48.37e6, 1.063),
     ):  # fmt: skip
-        assert end[key]["first_stiffness"] == pytest.approx(first, rel=0.01)
-        assert 1.0 + end[key]["last_change"] == pytest.approx(last, rel=0.015)
+        assert end[key]["first_stiffness"] == pytest.approx(first, rel=3e-3)
+        assert 1.0 + end[key]["last_change"] == pytest.approx(last, abs=1e-3)
     assert end["locked", 400]["trend"] == "softens" and end["free", 400]["trend"] == "hardens"
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.core.meshing.ring_shape import ring_shape
+from raceway.plugins.reports.pictures import ball_loads
 from raceway.plugins.reports.view import surfaces
 from raceway.plugins.reports.view.bearing import Bearing
 from raceway.run import run
@@ -107,6 +108,8 @@ def test_a_pair_has_four_rings_and_loads_that_point_apart():
     assert len(drawn.rings(cut=None)) == 4
     towards = drawn.towards(at_rest(found))[24:]
     assert (towards[:12, 0] > 0.2).all() and (towards[12:, 0] < -0.2).all()
+    labels = [text.get_text() for text in ball_loads(found).legends[0].get_texts()]
+    assert labels == ["static, row 1", "static, row 2"]
 
 
 def test_rings_without_dimensions_are_drawn_and_told(result):

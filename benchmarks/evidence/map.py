@@ -71,9 +71,9 @@ def _against_the_solver(tables: dict[str, Any]) -> list[Row]:
     for curve in found.curves:
         first, last = SOLVER[curve["tilt"], float(curve["axial"])]
         name = f"tilt {curve['tilt']}, {curve['axial']:g} N"
-        note = "the solver loads towards ball 0, the map turns the force over all azimuths"
-        out.append(near(f"{name}: k at 10 980 r/min, N/um", 1e-6 * curve["first_stiffness"], first, 0.01, command, note))
-        out.append(near(f"{name}: k(15 000) / k(10 980)", 1.0 + curve["last_change"], last, 0.015, command))
+        note = "the solver loads towards ball 0 and prints three or four digits; the map turns the force over all azimuths"
+        out.append(near(f"{name}: k at 10 980 r/min, N/um", 1e-6 * curve["first_stiffness"], first, 0.003, command, note))
+        out.append(near(f"{name}: k(15 000) / k(10 980)", 1.0 + curve["last_change"], last, 0.0015, command))
     return out
 
 

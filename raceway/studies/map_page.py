@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from raceway.files import write_whole
-from raceway.plugins.reports.map_picture import can_map, change_map, curves_figure, exponent_map
+from raceway.plugins.reports.map_picture import at_angle, can_map, change_map, curves_figure, exponent_map
 from raceway.plugins.reports.pictures import save_figure
 from raceway.result import without_nan, write_json
 from raceway.studies.map import Map
@@ -34,11 +34,20 @@ def write_data(found: Map, folder: Path) -> list[Path]:
 def write_pictures(found: Map, folder: Path) -> list[Path]:
     """Write map.html, and its figures as PNG files."""
     content = without_nan(found.as_dict())
-    figures = {"map-curves.png": curves_figure(content)}
-    if can_map(content):
-        figures = {"map-change.png": change_map(content), "map-exponent.png": exponent_map(content), **figures}
-    paths = [save_figure(figure, folder / name, 110) for name, figure in figures.items()]
-    return [*paths, _page(content, {path.name: path.read_bytes() for path in paths}).write(folder / "map.html")]
+    paths = [save_figure(draw(content), folder / name, 110) for name, (draw, _) in _drawn(content).items()]
+    return [*paths, _page(content).write(folder / "map.html")]
+
+
+def _drawn(content: dict[str, Any]) -> dict[str, tuple[Any, str]]:
+    """File -> what draws it, and what is seen on it."""
+    curves = {"map-curves.png": (curves_figure, "k over speed for each axial load")}
+    if not can_map(content):
+        return curves
+    return {
+        "map-change.png": (change_map, "k over its value at the lowest speed, by speed and axial load"),
+        "map-exponent.png": (exponent_map, "local exponent of k over speed, by speed and axial load"),
+        **curves,
+    }
 
 
 def _csv(content: dict[str, Any]) -> str:
@@ -51,14 +60,7 @@ def _csv(content: dict[str, Any]) -> str:
     return memory.getvalue()
 
 
-_SEEN = {
-    "map-change.png": "k over its value at the lowest speed, by speed and axial load",
-    "map-exponent.png": "the local exponent of k over speed, by speed and axial load",
-    "map-curves.png": "k over speed for each axial load",
-}
-
-
-def _page(content: dict[str, Any], pictures: dict[str, bytes]) -> Page:
+def _page(content: dict[str, Any]) -> Page:
     page = Page(
         f"Hardening or softening: {content['title']}",
         f"k(speed) over axial load, tilt and contact angle; {content['amplitude']}",
@@ -67,7 +69,10 @@ def _page(content: dict[str, Any], pictures: dict[str, bytes]) -> Page:
     page.section("In words")
     page.listing(content["words"])
     page.section("Maps")
-    page.figures([(image, _SEEN[name], "") for name, image in pictures.items()], wide=True)
+    for draw, seen in _drawn(content).values():
+        page.heading(seen)
+        angles = content["axes"]["bearing.contact_angle_deg"]
+        page.figures([(draw(at_angle(content, angle)), f"{seen}, {angle:g} deg", f"{angle:g} deg") for angle in angles])
     page.section("What the numbers are")
     page.listing(f"{name.replace('_', ' ')}: {text}" for name, text in content["definitions"].items())
     page.section("Every curve")

@@ -19,10 +19,12 @@ import numpy as np
 from raceway.plugins.reports.view.bearing import Bearing, Part, State
 from raceway.plugins.reports.view.scene import LOADS, PRESSURES
 from raceway.plugins.reports.view.surfaces import Surface, ball, joined
-from raceway.studies.page import Page
+from raceway.studies.page import Page, data_uri
 
 #: Points of a shape: WebGL 1 counts them in 16 bits.  Contact ellipses that go into one.
 _MOST, _TOGETHER = 65535, 100
+#: Pictures with more columns than this are never shown narrower than the text on them can be read [px].
+_WIDE = 1000
 
 
 _COLUMNS = [
@@ -54,8 +56,20 @@ def view_page(bearing: Bearing, state: State, words: dict[str, Any], pictures: S
             caption=f"Contacts with the {race} race {words['when']}; a and b are the semi-axes",
         )
     page.section("Pictures")
-    page.figures(pictures, wide=True)
+    for content, seen, caption in pictures:
+        page.markup(_picture(content, seen, caption))
     return page
+
+
+def _picture(content: bytes, seen: str, caption: str) -> str:
+    """A picture that a narrow screen shows large enough to be read, and swipes over."""
+    image = f'<img alt="{escape(seen, quote=True)}" src="{data_uri(content)}">'
+    wide = " wide" if content.startswith(b"\x89PNG") and int.from_bytes(content[16:20], "big") > _WIDE else ""
+    words = escape(caption, quote=False)
+    return (
+        f'<figure class="picture"><div class="scroll swipe{wide}" tabindex="0" role="region" aria-label="{escape(seen, quote=True)}">'
+        f"{image}</div><figcaption>{words}</figcaption></figure>"
+    )
 
 
 def _stage(bearing: Bearing, state: State) -> str:

@@ -30,18 +30,36 @@ def can_map(content: dict[str, Any]) -> bool:
     return all(len(content["axes"][key]) > 1 for key in (AXIAL, SPEED))
 
 
+def at_angle(content: dict[str, Any], angle: float) -> dict[str, Any]:
+    """The same map with one contact angle, whose pictures are narrow enough for a telephone."""
+    return {**content, "axes": {**content["axes"], ANGLE: [angle]}}
+
+
+def _panels(axes: dict[str, Any], **shared: Any) -> tuple[Figure, Any, bool]:
+    """A figure with a panel for each tilt and contact angle, and whether it is narrow."""
+    tilts, angles = len(axes[TILT]), len(axes[ANGLE])
+    narrow = angles == 1
+    figure = new_figure(4.8, 2.1 + 2.7 * tilts) if narrow else new_figure(2.0 + 3.9 * angles, 1.6 + 3.2 * tilts)
+    return figure, figure.subplots(tilts, angles, squeeze=False, sharex=True, **shared), narrow
+
+
+def _bar(figure: Figure, shown: Any, panels: Any, label: str, narrow: bool) -> Any:
+    place = {"location": "bottom", "shrink": 0.95, "aspect": 35} if narrow else {"shrink": 0.85}
+    return figure.colorbar(shown, ax=panels, extend="both", label=label, **place)
+
+
 def change_map(content: dict[str, Any]) -> Figure:
     """k(w) / k(w0), blue softer, red stiffer; a panel for each tilt and contact angle."""
     from matplotlib.colors import LogNorm
 
     look = {"cmap": "RdBu_r", "norm": LogNorm(1.0 / _MOST, _MOST)}
-    figure, shown, panels = _maps(content, "change", lambda change: 1.0 + change, look, _RATIOS)
-    bar = figure.colorbar(shown, ax=panels, extend="both", label="k(w) / k(w0)", shrink=0.85)
+    figure, shown, panels, narrow = _maps(content, "change", lambda change: 1.0 + change, look, _RATIOS)
+    bar = _bar(figure, shown, panels, "k(w) / k(w0)", narrow)
     ticks = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
     bar.set_ticks(list(ticks), labels=[f"{tick:g}" for tick in ticks])
     bar.minorticks_off()
     first = f"{min(content['axes'][SPEED]):,.0f}".replace(",", " ")
-    figure.suptitle(f"k(w) over its value at {first} r/min: red hardens, blue softens", fontsize=13)
+    figure.suptitle(f"k(w) over its value at {first} r/min: red hardens, blue softens", fontsize=11 if narrow else 13)
     return figure
 
 
@@ -50,18 +68,19 @@ def exponent_map(content: dict[str, Any]) -> Figure:
     from matplotlib.colors import Normalize
 
     look = {"cmap": "RdBu_r", "norm": Normalize(-2.0, 2.0)}
-    figure, shown, panels = _maps(content, "exponent", lambda value: value, look, (-1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5))
-    figure.colorbar(shown, ax=panels, extend="both", label="exponent d ln k / d ln w", shrink=0.85)
-    figure.suptitle("local exponent of k(w): red hardens, blue softens", fontsize=13)
+    figure, shown, panels, narrow = _maps(
+        content, "exponent", lambda value: value, look, (-1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5)
+    )
+    _bar(figure, shown, panels, "exponent d ln k / d ln w", narrow)
+    figure.suptitle("local exponent of k(w): red hardens, blue softens", fontsize=11 if narrow else 13)
     return figure
 
 
 def _maps(content: dict[str, Any], quantity: str, change: Any, look: dict[str, Any], levels: tuple[float, ...]) -> Any:
-    """The figure, what its colours belong to, and its panels."""
+    """The figure, what its colours belong to, its panels, and whether it is narrow."""
     axes = content["axes"]
     tilts, angles = axes[TILT], axes[ANGLE]
-    figure = new_figure(2.0 + 3.9 * len(angles), 1.6 + 3.2 * len(tilts))
-    panels = figure.subplots(len(tilts), len(angles), sharex=True, sharey=True, squeeze=False)
+    figure, panels, narrow = _panels(axes, sharey=True)
     shown: Any = None
     for (row, tilt), (column, angle) in [(t, a) for t in enumerate(tilts) for a in enumerate(angles)]:
         panel, values = panels[row, column], np.full((len(axes[AXIAL]), len(axes[SPEED])), np.nan)
@@ -77,7 +96,12 @@ def _maps(content: dict[str, Any], quantity: str, change: Any, look: dict[str, A
                 failed.append((1e-3 * point[SPEED], point[AXIAL]))
         speed, axial = 1e-3 * np.array(axes[SPEED]), np.array(axes[AXIAL])
         shown = panel.pcolormesh(
-            speed, axial, np.ma.masked_invalid(values), shading="gouraud" if np.isfinite(values).all() else "nearest", **look
+            speed,
+            axial,
+            np.ma.masked_invalid(values),
+            rasterized=True,
+            shading="gouraud" if np.isfinite(values).all() else "nearest",
+            **look,
         )
         _contours(panel, speed, axial, values, levels)
         _boundaries(panel, [c for c in content["curves"] if c["tilt"] == tilt and c["contact_angle_deg"] == angle], quantity)
@@ -89,8 +113,8 @@ def _maps(content: dict[str, Any], quantity: str, change: Any, look: dict[str, A
             panel.set_xlabel("speed [1000 r/min]")
         if column == 0:
             panel.set_ylabel("axial load [N]")
-    _legend(figure, quantity, any(one["status"] != "completed" for one in content["rows"]))
-    return figure, shown, panels
+    _legend(figure, quantity, any(one["status"] != "completed" for one in content["rows"]), narrow)
+    return figure, shown, panels, narrow
 
 
 def _contours(panel: Axes, speed: np.ndarray, axial: np.ndarray, values: np.ndarray, levels: tuple[float, ...]) -> None:
@@ -117,7 +141,7 @@ def _boundaries(panel: Axes, curves: list[dict[str, Any]], quantity: str) -> Non
                 panel.plot(*np.array(at).T, mark, color="#0b6b3a", markerfacecolor="white", markersize=5.5, linestyle="")
 
 
-def _legend(figure: Figure, quantity: str, failed: bool) -> None:
+def _legend(figure: Figure, quantity: str, failed: bool, narrow: bool) -> None:
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], linewidth=1.8, label=words, **look) for _, look, words in _LINES]
@@ -127,7 +151,7 @@ def _legend(figure: Figure, quantity: str, failed: bool) -> None:
         handles.append(Line2D([], [], marker="s", label="saturated", **mark))
     if failed:
         handles.append(Line2D([], [], marker="x", color="#b3261e", linestyle="", label="no number"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=10)
+    figure.legend(handles=handles, loc="outside lower center", ncols=1 if narrow else 3, frameon=False, fontsize=10)
 
 
 def curves_figure(content: dict[str, Any]) -> Figure:
@@ -135,8 +159,7 @@ def curves_figure(content: dict[str, Any]) -> Figure:
     import matplotlib
 
     axes = content["axes"]
-    figure = new_figure(2.0 + 3.9 * len(axes[ANGLE]), 1.6 + 3.2 * len(axes[TILT]))
-    panels = figure.subplots(len(axes[TILT]), len(axes[ANGLE]), sharex=True, sharey="row", squeeze=False)
+    figure, panels, narrow = _panels(axes, sharey="row")
     tones = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.92, len(axes[AXIAL])))
     for row, tilt in enumerate(axes[TILT]):
         for column, angle in enumerate(axes[ANGLE]):
@@ -162,8 +185,10 @@ def curves_figure(content: dict[str, Any]) -> Figure:
                 panel.set_xlabel("speed [1000 r/min]")
             if column == 0:
                 panel.set_ylabel("k [N/um]")
-    figure.legend(loc="outside right center", frameon=False, fontsize=10, title="axial load")
-    figure.suptitle("k(w): lines; small signals at rest: dashed; open marks: balls lose contact", fontsize=13)
+    place: dict[str, Any] = {"loc": "outside lower center", "ncols": 4} if narrow else {"loc": "outside right center"}
+    figure.legend(frameon=False, fontsize=10, title="axial load", **place)
+    words = "small signals at rest: dashed; open marks: balls lose contact"
+    figure.suptitle(words if narrow else f"k(w): lines; {words}", fontsize=10.5 if narrow else 13)
     return figure
 
 

@@ -152,20 +152,23 @@ def ball_loads(result: Any) -> Figure:
 
     figure = new_figure(7.0, 6.4)
     axes: Any = figure.add_subplot(projection="polar")
-    z = result.model.geometry.ball_count
-    azimuth = result.model.azimuth
-    closed = np.append(np.arange(z), 0)
+    azimuth, count = result.model.azimuth, result.model.geometry.ball_count
+    z = len(azimuth)
     static = result.equilibrium.contact_force[:z]
+    top = max(static.max(), 1e-12) * 1.2
     if result.simulation is not None:
         loads = result.simulation.record.contact_force[:, :z]
         low, high = loads.min(axis=0), loads.max(axis=0)
         axes.vlines(azimuth, low, high, color=_USED, linewidth=6.0, alpha=0.45, label="range over the orbit")
-    axes.plot(azimuth[closed], static[closed], "o-", color=_STATIC, linewidth=1.6, markersize=5, label="static")
-    top = max(static.max(), high.max() if result.simulation is not None else 0.0, 1e-12) * 1.2
-    for k in range(z):
+        top = max(top, high.max() * 1.2)
+    for row, mark in zip(range(z // count), ("o-", "s--"), strict=False):
+        closed = row * count + np.append(np.arange(count), 0)
+        words = "static" if z == count else f"static, row {row + 1}"
+        axes.plot(azimuth[closed], static[closed], mark, color=_STATIC, linewidth=1.6, markersize=5, label=words)
+    for k in range(count):
         axes.text(azimuth[k], top * 0.94, str(k), ha="center", va="center", fontsize=9, color="#5a6570")
     axes.set_ylim(0.0, top)
-    axes.set_rlabel_position(90.0 + 180.0 / max(z, 1))
+    axes.set_rlabel_position(90.0 + 180.0 / max(count, 1))
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.set_xticklabels(["0° (+y)", "30°", "60°", "90° (+z)", *(f"{a}°" for a in range(120, 360, 30))])
     axes.tick_params(labelsize=10, pad=6)

@@ -14,8 +14,8 @@ LOADS, PRESSURES = "viridis", "inferno"
 _INK = "#20262c"
 _BAR: dict[str, Any] = {
     "color": _INK,
-    "title_font_size": 24,
-    "label_font_size": 22,
+    "title_font_size": 28,
+    "label_font_size": 26,
     "n_labels": 5,
     "fmt": "%.0f",
     "vertical": True,
@@ -88,7 +88,9 @@ def colour_bar(pyvista: Any, plotter: Any, title: str, colours: str, top: float,
     hidden = pyvista.PolyData(np.zeros((1, 3)))
     hidden.point_data["bar"] = np.zeros(1)
     actor = plotter.add_mesh(hidden, scalars="bar", cmap=table, show_scalar_bar=False, opacity=0.0, reset_camera=False)
-    bar = {**_BAR, "position_x": place[0], "position_y": place[1], "height": 0.34, "width": 0.05}
+    small = plotter.window_size[0] / 1600.0  # letters are given in pixels
+    sizes = {name: max(int(_BAR[name] * small), 12) for name in ("title_font_size", "label_font_size")}
+    bar = {**_BAR, **sizes, "position_x": place[0], "position_y": place[1], "height": 0.34, "width": 0.05}
     plotter.add_scalar_bar(title=title, mapper=actor.mapper, **bar)
 
 
@@ -105,17 +107,17 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         parts = [*bearing.rings(), *bearing.balls(state), *bearing.arrows(state, top), *patches]
         add_parts(pyvista, plotter, parts, top, peak)
         plotter.add_point_labels(
-            bearing.tips(state, top), [f"{k}: {state.load[k]:.3g} N" for k in range(z)], font_size=20, text_color=_INK, shape=None, show_points=False,
+            bearing.tips(state, top), [f"{k}: {state.load[k]:.3g} N" for k in range(z)], font_size=26, text_color=_INK, shape=None, show_points=False,
             always_visible=True, justification_horizontal="center", justification_vertical="center",
         )  # fmt: skip
-        colour_bar(pyvista, plotter, "ball load [N]", LOADS, top, (0.03, 0.54))
-        colour_bar(pyvista, plotter, "pressure [MPa]", PRESSURES, peak, (0.03, 0.06))
+        colour_bar(pyvista, plotter, "ball load [N]", LOADS, top, (0.045, 0.54))
+        colour_bar(pyvista, plotter, "pressure [MPa]", PRESSURES, peak, (0.045, 0.06))
         plotter.add_text(heading, position="upper_edge", font_size=13, color=_INK)
         plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=_INK, viewport=(0.85, 0.0, 1.0, 0.2))
         plotter.enable_anti_aliasing("ssaa")
         plotter.camera_position = [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
         plotter.reset_camera()
-        plotter.camera.zoom(1.2)
+        plotter.camera.zoom(1.08)
         image = np.asarray(plotter.screenshot(return_img=True))
         plotter.close()
         return image
