@@ -21,7 +21,7 @@ from raceway.studies.sweep import grid, prepare, sweep, work
 from tests.command_line import install, invoke
 from tests.conftest import b7206c
 
-#: Of the steady orbit at 24 speeds: some tens of milliseconds a point, long enough to be killed among them.
+#: Of the steady orbit: some ten milliseconds a point here; on the workers it sleeps, so that they are killed at work.
 POINTS = 24
 SCENE = b7206c(
     title="on a cluster",
@@ -32,6 +32,9 @@ SCENE = b7206c(
 )
 #: An installed plug-in, which not every machine has.
 LAW = """
+import os
+import time
+
 import attrs
 from raceway import hookimpl
 from raceway.contact_laws.hertz import Hertz
@@ -39,6 +42,10 @@ from raceway.contact_laws.hertz import Hertz
 @attrs.frozen
 class Elsewhere(Hertz):
     name = "elsewhere"
+
+    def build(self, pairs):
+        time.sleep(float(os.environ.get("LAW_TAKES", "0")))
+        return super().build(pairs)
 
 @hookimpl
 def raceway_contact_laws():
@@ -117,8 +124,8 @@ def cluster(tmp_path_factory, plugin):
     found = Cluster(tmp_path_factory.mktemp("cluster"))
     path = os.pathsep.join([str(plugin), os.environ.get("PYTHONPATH", "")])
     try:
-        found.worker("first", PYTHONPATH=path)
-        found.worker("second", PYTHONPATH=path)
+        for name in ("first", "second"):
+            found.worker(name, PYTHONPATH=path, LAW_TAKES="0.25")
         found.worker("without")
         found.wait_for_workers(3)
         yield found
