@@ -237,7 +237,7 @@ def test_killed_while_it_computes(tmp_path):
     found = invoke("sweep", *words[3:], "--resume", "--json")
     assert found.exit_code == 0, found.output
     content = json.loads(found.stdout)
-    assert content["states"]["done"] == 64
+    assert content["states"]["done"] == 96
     again = invoke("sweep", *words[3:-1], str(tmp_path / "whole"), "--json")
     assert json.loads(again.stdout)["rows"] == content["rows"]
 
