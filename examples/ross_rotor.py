@@ -87,6 +87,17 @@ def swept(folder: Path) -> Coefficients:
         return coefficients(select(store.to_xarray(), {}))
 
 
+def grid_at_points(ross: Any, folder: Path) -> float:
+    """A table over speed and frequency, which ROSS 3 takes: largest relative difference of kxx at its points."""
+    axes = ["kinematics.spin_speed_rpm=4000:24000:5", "excitation.speed_rpm=4000:24000:6"]
+    with sweep(prepare(bearing(), grid(axes), folder / "both"), Serial()) as store:
+        table = coefficients(select(store.to_xarray(), {}))
+    element = ross.BearingElement.load(ross_file(table, 3, "both", 0, ()).write(folder / "both.json"))
+    assert table.speed is not None and table.frequency is not None
+    read = [[element.K(frequency=f, speed=w)[0, 0] for f in table.frequency] for w in table.speed]
+    return float(np.max(np.abs(np.array(read) / table.stiffness[..., 0, 0] - 1.0)))
+
+
 def loaded(ross: Any, file: RossFile, path: Path) -> Any:
     """The file, read by ROSS, passing through its points."""
     return through_points(ross.BearingElement.load(file.write(path)))
@@ -228,6 +239,7 @@ def study(ross: Any, folder: Path) -> dict[str, Any]:
         "notes": list(file.notes),
         "at_points": at_points(element, table),
         "at_points_by_itself": at_points(by_itself, table),
+        "grid_at_points": grid_at_points(ross, folder) if generation == 3 else None,
         "critical": critical,
         "critical_closed": closed,
         "response": compared(ross, element, table.speed[1:8]),
@@ -287,6 +299,8 @@ def main(words: list[str]) -> int:
         worst = max(found[name].items(), key=lambda item: item[1])
         told = "read by ROSS and made to pass through its points" if name == "at_points" else "read by ROSS alone"
         screen.print(f"  {told}: within {worst[1]:.1e} ({worst[0]})")
+    if found["grid_at_points"] is not None:
+        screen.print(f"  a table over speed and frequency: within {found['grid_at_points']:.1e}")
     error = found["critical"] / found["critical_closed"] - 1.0
     screen.print(
         f"rigid rotor: critical speed {found['critical']:.3f} rad/s, closed form {found['critical_closed']:.3f} ({error:+.1e})"

@@ -63,6 +63,8 @@ def _rows(interpreter: str) -> list[Row]:
     ]  # fmt: skip
     if by_itself:
         out.append(below(f"{name}: the same, the file read by ROSS alone", alone, 1e-12, COMMAND))
+        words = f"{name}: kxx of a table over speed and frequency at its 30 points, largest relative difference"
+        out.append(below(words, found["grid_at_points"], 1e-12, COMMAND))
     else:
         stiff, damp = (max(v for k, v in found["at_points_by_itself"].items() if k[0] == letter) for letter in "kc")
         out.append(
