@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
-import resource
 import signal
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -206,9 +204,14 @@ def _python(*given: str) -> list[str]:
 
 
 def _finish(given: list[str]) -> None:
-    done = subprocess.run(_python(*given), capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr)
+    """A command in this process, to its end."""
+    from click.testing import CliRunner
+
+    from raceway.cli import main as command
+
+    done = CliRunner().invoke(command, given)
+    if done.exit_code:
+        raise RuntimeError(done.output)
 
 
 @contextmanager
