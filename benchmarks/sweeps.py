@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
-import resource
 import signal
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -95,12 +93,12 @@ def rows_of(store: Path) -> list[Any]:
         return [(row["point"], row["status"], row["reason"], row["values"]) for row in there.rows()]
 
 
-def killed(times: int = 20, count: int = 200, seed: int = 8) -> dict[str, int]:
+def killed(times: int = 20, count: int = 120, seed: int = 8) -> dict[str, int]:
     """Sweeps that are killed (SIGKILL) at random moments and then gone on with: how many equal the undisturbed one.
 
     Notes
     -----
-    The moment is drawn between the first finished chain and about the last; every second sweep uses two processes.
+    The moment is drawn between the first finished chain and about the last; every fourth sweep uses two processes.
     """
     draw = random.Random(seed)
     found = {"killed": 0, "equal": 0, "unreadable": 0, "lost": 0, "orphans": 0}
@@ -110,7 +108,7 @@ def killed(times: int = 20, count: int = 200, seed: int = 8) -> dict[str, int]:
         wanted = rows_of(whole)
         for number in range(times):
             store = Path(folder) / f"s{number}"
-            more = ("--executor", "joblib") if number % 2 else ()
+            more = ("--executor", "joblib") if number % 4 == 3 else ()
             with _running(words(count, store, *more)) as process:
                 seen = _until(store, process, draw.randint(1, count - 1))
                 process.kill()
@@ -206,9 +204,14 @@ def _python(*given: str) -> list[str]:
 
 
 def _finish(given: list[str]) -> None:
-    done = subprocess.run(_python(*given), capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr)
+    """A command in this process, to its end."""
+    from click.testing import CliRunner
+
+    from raceway.cli import main as command
+
+    done = CliRunner().invoke(command, given)
+    if done.exit_code:
+        raise RuntimeError(done.output)
 
 
 @contextmanager
@@ -257,7 +260,7 @@ def main(names: list[str]) -> None:
     every = {
         "rigid": lambda: timed(1000, "--executor", "joblib", "--workers", "2"),
         "condensed": lambda: timed(1000, "--executor", "joblib", "--workers", "2", bodies="condensed"),
-        "memory": lambda: {str(n): timed(n)["peak_bytes"] for n in (400, 4000)},
+        "memory": lambda: {str(n): timed(n)["peak_bytes"] for n in (200, 2000)},
         "overhead": overhead,
         "continuation": continuation,
         "killed": killed,

@@ -26,7 +26,9 @@ _TIMEOUT_S = 1800.0
 def interpreters() -> list[str]:
     """Those that have ROSS."""
     named = os.environ.get("RACEWAY_ROSS_PYTHON", "")
-    return [os.path.abspath(path) for path in named.split(os.pathsep) if path] or ([sys.executable] if find_spec("ross") else [])
+    return [os.path.abspath(path) for path in named.split(os.pathsep) if path] or (
+        [sys.executable] if find_spec("ross") else []
+    )
 
 
 def rows() -> list[Row]:

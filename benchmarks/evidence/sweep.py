@@ -65,9 +65,9 @@ def _two_workers() -> list[Row]:
 
 
 def _memory() -> list[Row]:
-    few, many = (sweeps.timed(count)["peak_bytes"] for count in (400, 4000))
+    few, many = (sweeps.timed(count)["peak_bytes"] for count in (200, 2000))
     note = f"{few / 2**20:.0f} MiB and {many / 2**20:.0f} MiB, one process"
-    return [below("peak memory of 4000 points over that of 400", many / few, _FLAT, f"{_COMMAND} memory", note)]
+    return [below("peak memory of 2000 points over that of 200", many / few, _FLAT, f"{_COMMAND} memory", note)]
 
 
 def _continuation() -> list[Row]:
@@ -86,7 +86,7 @@ def _survives() -> list[Row]:
     out = []
     found, command = sweeps.killed(), f"{_COMMAND} killed"
     times = found["killed"]
-    note = "200 points; every second sweep with two processes"
+    note = "120 points; every fourth sweep with two processes"
     good = times == 20 and found["equal"] == times
     out.append(
         Row(
