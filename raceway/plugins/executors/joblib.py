@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import threading
+import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -14,6 +18,9 @@ from raceway.options import between, option
 
 if TYPE_CHECKING:
     from raceway.contracts import Batch
+
+#: How often a worker looks whether the process that it works for is alive [s].
+_WATCH_S = 1.0
 
 
 @attrs.frozen
@@ -79,4 +86,18 @@ class Joblib:
 
 
 def _answer(work: Callable[[list[Any]], Any], number: int, points: list[Any]) -> tuple[int, Any]:
+    _end_with_parent()
     return number, work(points)
+
+
+@cache
+def _end_with_parent() -> None:
+    """In a worker: end when the process that it works for is killed; joblib's would wait for more to do for minutes."""
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_WATCH_S)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()

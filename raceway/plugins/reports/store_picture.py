@@ -79,10 +79,10 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
     if kind == "curves" and y is not None:
         handles, labels = grid.flat[0].get_legend_handles_labels()
         figure.legend(
-            handles, labels, loc="outside right upper", frameon=False, fontsize=10, title=_axis(data, y), title_fontsize=10
+            handles, labels, loc="outside right center", frameon=False, fontsize=10, title=_axis(data, y), title_fontsize=10
         )
-    heading = f"{name}: {title}" if words in ("", name) else f"{name} ({words}): {title}"
-    figure.suptitle("\n".join([*wrap(heading, 84), *wrap(remark, 100)]), fontsize=12)
+    heading = name if words in ("", name) else f"{name}: {words}"
+    figure.suptitle("\n".join(line for text in (heading, title, remark) for line in wrap(text, 84)), fontsize=11.5)
     return figure
 
 

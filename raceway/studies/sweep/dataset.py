@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.errors import RacewayError
+from raceway.files import write_whole
 from raceway.registry import Registry, default_registry
 from raceway.scene import Scene
 from raceway.scene_file import scene_from_dict
@@ -105,23 +106,14 @@ def write_netcdf(store: Store) -> Path:
         xarray or h5netcdf is missing, or a disk that takes no more.
     """
     data = store.to_xarray()
-    path = store.path / RESULTS
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        data.to_netcdf(scratch, engine="h5netcdf")
-        scratch.replace(path)
+        # In memory first: the HDF5 library takes the whole process down where a disk is full.
+        content = bytes(data.to_netcdf(engine="h5netcdf"))
     except (ImportError, ValueError) as why:
         if isinstance(why, ValueError) and "h5netcdf" not in str(why):
             raise
-        raise RacewayError(f"NetCDF needs h5netcdf: pip install 'raceway[results]' ({why})") from None
-    except OSError as why:
-        raise RacewayError(
-            f"`{path}` cannot be written: {why.strerror or why}. {store.path / 'points.sqlite'} holds all results."
-        ) from None
-    finally:
-        with suppress(OSError):
-            scratch.unlink(missing_ok=True)
-    return path
+        raise RacewayError(f"NetCDF needs h5netcdf and h5py: pip install 'raceway[sweep]' ({why})") from None
+    return write_whole(content, store.path / RESULTS)
 
 
 def write_csv(store: Store, path: Path) -> Path:

@@ -12,6 +12,7 @@ import attrs
 from raceway.contracts import Lost, Refused
 from raceway.errors import PluginError, RacewayError
 from raceway.plan import make_plan
+from raceway.section_plan import section_cost
 from raceway.simulate import OnProgress
 from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.identity import differences, identity
@@ -88,11 +89,14 @@ def prepare(
 
 def _chain_length(found: Survey, design: Design) -> int:
     """From the design and the predicted time of a point alone, so that a sweep that is resumed computes the same chains."""
+    scene = found.scene
     try:
-        seconds = make_plan(found.scene).predicted_wall_s
+        seconds = make_plan(scene).predicted_wall_s - START_S
     except RacewayError:
         return 1
-    by_time = int(_CHAIN_S / max(seconds - START_S, 1e-3))
+    if scene.bodies.kind == "condensed" and scene.contact.discretisation == "resultant":
+        seconds -= section_cost(scene).seconds  # its sections are meshed once
+    by_time = int(_CHAIN_S / max(seconds, 1e-3))
     return max(1, min(_LONGEST, by_time, design.size // _CHAINS))
 
 

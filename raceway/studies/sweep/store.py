@@ -10,6 +10,7 @@ import fcntl
 import json
 import sqlite3
 import threading
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 SCHEMA = 1
 STATES = ("waiting", "running", "done", "failed")
+#: A commit waits for the disk, twice: states of what is running are not worth more than a few of them a second.
+_MOMENT_S = 0.2
 POINTS, LOCK = "points.sqlite", ".lock"
 _TABLES = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
@@ -46,6 +49,7 @@ class Store:
         self.path = path
         self._connection = connection
         self._lock = threading.RLock()
+        self._committed = -_MOMENT_S
         with self._told():
             found = connection.execute("SELECT name, value FROM facts").fetchall()
         self.facts: dict[str, Any] = {name: json.loads(value) for name, value in found}
@@ -116,9 +120,15 @@ class Store:
         return dataset(self)
 
     def mark(self, numbers: Iterable[int], state: str) -> None:
-        """Put points into a state, in one transaction."""
-        with self._told(), self._lock, self._connection:
+        """Put points into a state: at once, or with the next rows where the last transaction was a moment ago."""
+        with self._told(), self._lock:
             self._connection.executemany("UPDATE points SET state = ? WHERE number = ?", [(state, n) for n in numbers])
+            if time.monotonic() - self._committed > _MOMENT_S:
+                self._commit()
+
+    def _commit(self) -> None:
+        self._connection.commit()
+        self._committed = time.monotonic()
 
     def put(self, rows: Iterable[Mapping[str, Any]]) -> None:
         """Keep finished rows, all in one transaction.
@@ -133,14 +143,20 @@ class Store:
             for row in rows
         ]
         asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, cost = ? WHERE number = ?"
-        with self._told(), self._lock, self._connection:
-            self._connection.executemany(asked, lines)
+        with self._told(), self._lock:
+            try:
+                self._connection.executemany(asked, lines)
+                self._commit()
+            except sqlite3.Error:
+                self._connection.rollback()
+                raise
 
     def wait_again(self, states: Iterable[str]) -> None:
         """Points in these states wait again: those that a killed sweep left running, or failed ones to be tried again."""
-        with self._told(), self._lock, self._connection:
+        with self._told(), self._lock:
             for state in states:
                 self._connection.execute("UPDATE points SET state = 'waiting', reason = NULL WHERE state = ?", (state,))
+            self._commit()
 
     @contextmanager
     def _told(self) -> Iterator[None]:
