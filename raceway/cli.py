@@ -21,6 +21,7 @@ from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
 from raceway.study_commands import precision, stability
+from raceway.sweep_command import sweep
 
 if TYPE_CHECKING:
     from raceway.scene import Scene
@@ -238,5 +239,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability):
+for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, sweep):
     main.add_command(_command)

@@ -54,13 +54,13 @@ def common(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
 
 
-def show_progress() -> Any:
+def show_progress(remaining: bool = False) -> Any:
     from raceway.cache_folder import current_folder
     from raceway.progress import ProgressBar
 
     folder = current_folder()
     warm = folder.is_dir() and any(folder.iterdir())
-    return ProgressBar("starting" if warm else "compiling kernels (first run only)")
+    return ProgressBar("starting" if warm else "compiling kernels (first run only)", remaining=remaining)
 
 
 def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:

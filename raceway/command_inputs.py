@@ -106,6 +106,14 @@ def require_matplotlib(otherwise: str) -> None:
         raise RacewayError(f'pictures need matplotlib: pip install "raceway[pictures]", or {otherwise}.')
 
 
+def has_netcdf() -> bool:
+    """Whether labelled results can be written; says what is missing."""
+    missing = [name for name in ("xarray", "h5netcdf", "h5py") if find_spec(name) is None]
+    if missing:
+        warn(f'no results.nc: it needs {", ".join(missing)}, pip install "raceway[sweep]"; points.sqlite holds everything')
+    return not missing
+
+
 def has_matplotlib() -> bool:
     """Whether pictures can be drawn; says what is missing where they are no more than the default."""
     there = find_spec("matplotlib") is not None

@@ -7,7 +7,7 @@ compiled.  These protocols are one level deep: nothing has to inherit from them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import attrs
@@ -105,6 +105,8 @@ class Integrator(Protocol):
     4. ``advance(system, start, schedule, on_chunk)``: take the steps of the schedule and return a ``Record``; call
        ``on_chunk(done, total)`` now and then, whose exceptions pass through; on failure raise ``ConvergenceError`` or
        ``StabilityError`` with the last good state.
+    5. ``start.near``, if it is not None, is the ``solution`` that the same integrator left in the record of a similar motion:
+       it may be started from, and must not change the answer beyond the method's tolerance.
     """
 
     name: ClassVar[str]
@@ -179,6 +181,45 @@ class Report(Protocol):
     def write(self, result: Any, folder: Any) -> list[Any]: ...
 
 
+#: A batch of a sweep: its number, and the points in it as plain values.
+Batch = tuple[int, list[Any]]
+
+
+@attrs.frozen
+class Refused:
+    """Answer of a worker that is not fit for the work: another version, a plug-in that it lacks."""
+
+    worker: str
+    reason: str
+
+
+@attrs.frozen
+class Lost:
+    """Answer for a batch that was given up: its workers died."""
+
+    reason: str
+
+
+class Executor(Protocol):
+    """Where the points of a sweep are computed: in this process, in others, on other machines.
+
+    1. ``compute(work, batches)`` yields ``(number, answer)`` for every ``(number, points)`` of ``batches``, each as soon as
+       it is there, in any order; ``answer`` is what ``work(points)`` returned.
+    2. ``work`` can be pickled and called anywhere; it answers for numerical failures itself, and what else it raises passes
+       through.  ``work.fault()`` says in words why the process that it is called in is not fit for it, or None; such a
+       process answers ``Refused``, which an executor with other workers may give to those and else passes on.
+    3. ``batches`` is an iterable that is taken from as workers get free, a few for each of them: sweeps are long.
+    4. A batch whose worker died is computed again; one that is given up is answered with ``Lost``.
+    5. Closing the iterator (Ctrl-C, an error) stops what is in flight and leaves no process behind.
+    6. Options ``workers`` and ``scheduler``, if there are any, are what ``raceway sweep --workers --scheduler`` give.
+       A package that is missing, or a scheduler that does not answer, is a ``PluginError`` before a batch is taken.
+    """
+
+    name: ClassVar[str]
+
+    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]: ...
+
+
 #: kind -> (registration hook, what a class of that kind must have)
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "contact_law": (
@@ -194,6 +235,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "mesher": ("raceway_meshers", ("mesh",)),
     "format": ("raceway_formats", ("suffixes", "read", "write")),
     "report": ("raceway_reports", ("write",)),
+    "executor": ("raceway_executors", ("compute",)),
 }
 
 

@@ -46,6 +46,11 @@ def raceway_reports() -> list[type]:  # type: ignore[empty-body]
 
 
 @hookspec
+def raceway_executors() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.contracts.Executor``."""
+
+
+@hookspec
 def raceway_plan_made(plan: Any) -> None:
     """A plan is ready; nothing has been built yet."""
 

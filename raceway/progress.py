@@ -20,13 +20,16 @@ class ProgressBar:
     ----------
     console : where to draw; standard error when None
     patience : seconds before anything is drawn
+    remaining : show how many are done and the time left, too: for parts that take about the same time each
     """
 
-    def __init__(self, what: str, console: Console | None = None, patience: float = _PATIENCE_S) -> None:
+    def __init__(
+        self, what: str, console: Console | None = None, patience: float = _PATIENCE_S, remaining: bool = False
+    ) -> None:
         from rich.console import Console
 
         self.console = console or Console(stderr=True)
-        self._what = what
+        self._what, self._remaining = what, remaining
         self._bar: Any = None
         self._over = threading.Event()
         self._lock = threading.Lock()
@@ -35,9 +38,25 @@ class ProgressBar:
 
     def __enter__(self) -> Self:
         if self.console.is_terminal:
-            from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+            from rich.progress import (
+                BarColumn,
+                MofNCompleteColumn,
+                Progress,
+                ProgressColumn,
+                SpinnerColumn,
+                TextColumn,
+                TimeElapsedColumn,
+                TimeRemainingColumn,
+            )
 
-            columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+            columns: list[ProgressColumn] = [
+                SpinnerColumn(),
+                TextColumn("{task.description}"),
+                BarColumn(),
+                TimeElapsedColumn(),
+            ]
+            if self._remaining:
+                columns += [MofNCompleteColumn(), TextColumn("left"), TimeRemainingColumn()]
             self._bar = Progress(*columns, console=self.console, transient=True)
             self._task = self._bar.add_task(self._what, total=None)
             self._timer.start()

@@ -29,12 +29,16 @@ from raceway.statics import Equilibrium, settle
 from raceway.unused import unused
 
 
-def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress | None = None) -> Result:
+def run(
+    scene: Scene, registry: Registry | None = None, on_progress: OnProgress | None = None, near: Result | None = None
+) -> Result:
     """Compute one scene.
 
     Parameters
     ----------
     on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
+    near : of a similar scene: what is dear to search for (equilibria of contacts at surface points, steady motions that are
+        nearly linear) is searched for from its own, which changes the result within the tolerances of the search only
 
     Raises
     ------
@@ -47,7 +51,7 @@ def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress 
     wall = working_clock()
     try:
         try:
-            return _run(scene, registry, on_progress, wall)
+            return _run(scene, registry, on_progress, wall, near)
         except (ArithmeticError, np.linalg.LinAlgError) as why:
             raise ConvergenceError(
                 f"the numbers of this scene leave what can be computed with ({why}): check its units"
@@ -60,7 +64,7 @@ def run(scene: Scene, registry: Registry | None = None, on_progress: OnProgress 
         raise
 
 
-def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall: float) -> Result:
+def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall: float, near: Result | None) -> Result:
     plan = make_plan(scene)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
@@ -71,7 +75,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         if on_progress is not None:
             on_progress(what, done, total)
 
-    equilibrium = settle(model, progress)
+    equilibrium = settle(model, progress, None if near is None else near.equilibrium.displacement)
     simulation: Simulation | None = None
     identification: Identification | None = None
     motions: list[tuple[Model, Simulation]] = []
@@ -85,7 +89,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
             motions = simulate_speeds(model, progress)
             simulation, records = motions[-1][1], [one.record for _, one in motions]
         elif "record" in method.needs:
-            simulation = simulate(model, equilibrium, progress)
+            simulation = simulate(model, equilibrium, progress, near=_followed(scene, near))
             motions, records = [(model, simulation)], [simulation.record]
         for one, motion in motions:
             refuse_impossible(one, equilibrium, motion.whole)
@@ -115,6 +119,12 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     )
     registry.notify("raceway_run_finished", result=result)
     return result
+
+
+def _followed(scene: Scene, near: Result | None) -> Simulation | None:
+    """The motion of a similar scene, where it is one by the same integrator."""
+    same = near is not None and near.model.scene.integrator.kind == scene.integrator.kind
+    return near.simulation if same and near is not None else None
 
 
 def _lines(model: Model, simulation: Simulation | None) -> list[Line]:

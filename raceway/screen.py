@@ -409,6 +409,47 @@ def compare_screen(
     return Group(*parts)
 
 
+#: Points of a sweep that a screen shows one by one.
+_MOST_ROWS, _MOST_REASONS = 30, 5
+
+
+def sweep_screen(content: Mapping[str, Any], rows: Iterable[Mapping[str, Any]], files: Sequence[str]) -> RenderableType:
+    """How many points are in each state, the first of them with their stiffness, and why points failed."""
+    shown: list[dict[str, str]] = []
+    reasons: list[str] = []
+    for row in rows:
+        if len(shown) < _MOST_ROWS:
+            shown.append(_sweep_row(row))
+        if row["status"] == "failed" and len(reasons) < _MOST_REASONS:
+            point = ", ".join(f"{key} = {value}" for key, value in row["point"].items())
+            reasons.append(f"{point}: {row['reason'].splitlines()[0]}")
+    states, total = content["states"], content["states"]["total"]
+    counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "running", "waiting") if states[name])
+    parts: list[RenderableType] = [Text(content["title"], style="bold"), rows_table(shown)]
+    if total > len(shown):
+        parts.append(Text(f"and {total - len(shown)} more points in {content['store']}", style="dim"))
+    parts.append(Text(f"{total} points: {counted}"))
+    parts += [Text(f"failed: {reason}") for reason in reasons]
+    return Group(*parts, *written(files))
+
+
+def _sweep_row(row: Mapping[str, Any]) -> dict[str, str]:
+    from raceway.studies.axes import shown
+
+    values = row["values"]
+    last = [key.rpartition(".")[2] for key in row["point"]]
+    short = {key: name if last.count(name) == 1 else key for key, name in zip(row["point"], last, strict=True)}
+    text = {short[key]: shown(value) for key, value in row["point"].items()}
+    k, z, kyy = values.get("equivalent_stiffness"), values.get("z_real"), values.get("stiffness")
+    if k is not None and z is not None:
+        text |= {"K N/um": f"{k / 1e6:.3f}", "Re Z N/um": f"{z / 1e6:.3f}"}
+    else:
+        text |= {"K N/um": "", "Re Z N/um": ""}
+    text["kyy N/um"] = "" if kyy is None else f"{kyy[1][1] / 1e6:.3f}"
+    error = values.get("error_total")
+    return {**text, "error %": "" if error is None else f"{100.0 * error:.2g}", "status": row["status"]}
+
+
 def precision_screen(
     title: str, rows: Sequence[Mapping[str, Any]], words: Sequence[str], files: Sequence[str]
 ) -> RenderableType:

@@ -48,6 +48,7 @@ def simulate(
     on_progress: OnProgress | None = None,
     steps_per_turn: int | None = None,
     orbit: Orbit | None = None,
+    near: Simulation | None = None,
 ) -> Simulation:
     """Integrate the plan's turns.
 
@@ -55,6 +56,7 @@ def simulate(
     ----------
     steps_per_turn : instead of the scene's
     orbit : the steady orbit, where it is known already
+    near : of a similar scene by the same integrator, for integrators that can start from it
 
     Raises
     ------
@@ -84,6 +86,8 @@ def simulate(
         ramp_turns * period,
     )
     motion = _motion(model, equilibrium, start, orbit, dt)
+    if near is not None:
+        motion = attrs.evolve(motion, near=near.whole.solution)
     label = f"{scene.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
     whole = method.advance(system, motion, schedule, progress)

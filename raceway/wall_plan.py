@@ -8,12 +8,13 @@ from raceway.patch_plan import PatchCost
 from raceway.scene import Scene
 from raceway.section_plan import section_cost
 
-#: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches.
+#: Seconds, measured on one core of a small server: a whole step for 12 balls.
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
 #: The same for condensed bodies, and what the matrices between balls add.
 _CONDENSED_STEP_S = {"weightless": 10.5e-6, "inertial": 13.5e-6, "tangential": 22.0e-6}
 _BETWEEN_S = 23.0e-6
-_START_S = 0.6
+#: Start-up with warm caches.
+START_S = 0.6
 
 
 def predicted_wall(
@@ -24,7 +25,7 @@ def predicted_wall(
     steps = motion.turns * motion.steps_per_turn
     if elastic is not None:
         before = elastic.equilibrium_s + (elastic.start_s if motion.recorded else 0.0)
-        return _START_S + before + steps * elastic.step_s
+        return START_S + before + steps * elastic.step_s
     each = _STEP_S[balls.kind]
     if scene.bodies.kind == "condensed":
         between = _BETWEEN_S * (scene.bearing.ball_count / 12.0) ** 2 if coupled else 0.0
@@ -33,7 +34,7 @@ def predicted_wall(
         each = 12.0 / count * patches.step_s
     each *= count / 12.0 * (0.5 if not scene.integrator.method.implicit else 1.0)
     # Half as much again for what compiled loops share out differently.
-    return _START_S + _before(scene, patches) + 1.5 * steps * each
+    return START_S + _before(scene, patches) + 1.5 * steps * each
 
 
 def _before(scene: Scene, patches: PatchCost | None) -> float:

@@ -31,6 +31,9 @@ _PRESSURE = 1.5e9
 _COARSER = 2.0
 #: Entries of the stiffness below this part of sqrt(K_ii K_jj) are coupling that cancels out: no relative difference.
 _NOTHING = 1e-6
+#: Compliances of the last scenes: a run asks for them up to four times, a study for the same bodies again and again.
+_KEPT = 8
+_BODIES: dict[Any, ElasticBodies] = {}
 
 
 def build(scene: Scene, plan: Plan) -> Built:
@@ -47,12 +50,22 @@ def build(scene: Scene, plan: Plan) -> Built:
 
 
 def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
-    """Structural compliances of a scene's rings and balls.
+    """Structural compliances of a scene's rings and balls; those of the last few scenes are kept.
 
     Parameters
     ----------
     coarser : factor on all sizes of elements
     """
+    seats = scene.supports.inner_seat, scene.supports.outer_seat
+    key = (scene.bearing, seats, scene.mesh, basis.ball_load, coarser)
+    found = _BODIES.pop(key, None) or _elastic_bodies(scene, basis, coarser)
+    _BODIES[key] = found  # the last in, and the last to go
+    if len(_BODIES) > _KEPT:
+        del _BODIES[next(iter(_BODIES))]
+    return found
+
+
+def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies:
     b = scene.bearing
     # p0 grows with the cube root of the load.
     typical = float((_PRESSURE / basis.inner.peak_pressure(1.0)) ** 3)

@@ -24,6 +24,7 @@ class Motion:
     rest : (5,) internal less outer forces [N, N m]; None where it is -M a: of generalised-alpha it is not, and a run that
         goes on from another's final motion needs it
     whole : arrays by name, all unknowns and all memory of a system of more than the ring's five coordinates; None for others
+    near : the ``solution`` in the record of a similar motion by the same method, for methods that can start from one
     """
 
     q: np.ndarray
@@ -34,6 +35,7 @@ class Motion:
     rest: np.ndarray | None = None
     memory: np.ndarray | None = None
     whole: Mapping[str, np.ndarray] | None = None
+    near: Any = None
 
 
 @attrs.frozen(eq=False)
@@ -72,6 +74,7 @@ class Record:
     final : Motion
     counts : dict with steps, evaluations, max_penetration_m, peak_contact_force_n
     energies : name -> (n,) [J], of systems that tell them
+    solution : what a similar motion by the same method may start from
     """
 
     time: np.ndarray
@@ -85,6 +88,7 @@ class Record:
     schedule: Schedule
     counts: dict[str, Any]
     energies: dict[str, np.ndarray] = attrs.field(factory=dict)
+    solution: Any = None
 
     def last(self, turns: int) -> Record:
         """The part that belongs to the last turns."""

@@ -1,4 +1,4 @@
-"""Built-in excitations, identifiers, meshers, formats and reports, one a file in a folder for each kind."""
+"""Built-in excitations, identifiers, meshers, formats, reports and executors, one a file in a folder for each kind."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.measured import Measured
 from raceway.plugins.excitations.run_up import RunUp
 from raceway.plugins.excitations.unidirectional import Unidirectional
+from raceway.plugins.executors.dask import Dask
+from raceway.plugins.executors.joblib import Joblib
+from raceway.plugins.executors.serial import Serial
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.formats.msh import Msh
 from raceway.plugins.formats.vtu import Vtu
@@ -44,3 +47,8 @@ def raceway_formats() -> list[type]:
 @hookimpl
 def raceway_reports() -> list[type]:
     return [Pictures]
+
+
+@hookimpl
+def raceway_executors() -> list[type]:
+    return [Serial, Joblib, Dask]

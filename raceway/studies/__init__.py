@@ -4,4 +4,5 @@ reference          the published cases in ``raceway/data/cases.json``
 verify             every case against this program's own numbers; verify_bearings, verify_impacts: how each is computed
 compare            one scene varied along axes: the table and what causes what; axes, effects, findings, explain, causes,
                    inertia, phrases, comparison: its parts, from the numbers to words and picture
+sweep              one scene at thousands of points: a package, with its store, what executors compute, and data sets
 """

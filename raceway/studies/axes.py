@@ -46,8 +46,12 @@ def shown(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def parse_axes(texts: Iterable[str]) -> tuple[Axis, ...]:
-    """The axes of ``--vary`` texts.
+def parse_axes(texts: Iterable[str], option: str = "--vary", most: int = MOST_POINTS) -> tuple[Axis, ...]:
+    """The axes of the texts of an option.
+
+    Parameters
+    ----------
+    most : points of all axes together
 
     Raises
     ------
@@ -58,7 +62,7 @@ def parse_axes(texts: Iterable[str]) -> tuple[Axis, ...]:
     mistakes: list[Mistake] = []
     for text in texts:
         try:
-            axis = parse_axis(text)
+            axis = parse_axis(text, option, most)
         except SceneError as error:
             mistakes += error.mistakes
             continue
@@ -69,18 +73,18 @@ def parse_axes(texts: Iterable[str]) -> tuple[Axis, ...]:
                 mistakes.append(Mistake(axis.key, None, f"overlaps with the axis `{other.key}`: vary one of them"))
         axes.append(axis)
     if not axes and not mistakes:
-        raise SceneError.at("--vary", None, f"nothing is varied; an axis {_FORM}")
+        raise SceneError.at(option, None, f"nothing is varied; an axis {_FORM}")
     total = math.prod(len(axis.values) for axis in axes)
-    if total > MOST_POINTS:
+    if total > most:
         sizes = " x ".join(str(len(axis.values)) for axis in axes)
         where = max(axes, key=lambda axis: len(axis.values)).key
-        mistakes.append(Mistake(where, None, f"{sizes} = {total} runs are more than {MOST_POINTS}: give fewer values"))
+        mistakes.append(Mistake(where, None, f"{sizes} = {total} runs are more than {most}: give fewer values"))
     if mistakes:
         raise SceneError(mistakes)
     return tuple(axes)
 
 
-def parse_axis(text: str) -> Axis:
+def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
     """One axis.
 
     Raises
@@ -91,7 +95,7 @@ def parse_axis(text: str) -> Axis:
     key, sign, values = text.partition("=")
     key = key.strip()
     if not sign or not key or not all(part.strip() for part in key.split(".")):
-        raise SceneError.at(key or "--vary", text, f"{_FORM}, for instance load.axial=400,1000")
+        raise SceneError.at(key or option, text, f"{_FORM}, for instance load.axial=400,1000")
     items = _split(values)
     if items == [""]:
         raise SceneError.at(key, None, f"has no values: it {_FORM}")
@@ -100,7 +104,7 @@ def parse_axis(text: str) -> Axis:
     ranges = [item for item in items if ":" in item and isinstance(parse_value(item), str) and item[0] not in "\"'"]
     if ranges and len(items) > 1:
         raise SceneError.at(key, values, "mixes a list and a range: give one of them")
-    found = _range(key, items[0]) if ranges else [parse_value(item) for item in items]
+    found = _range(key, items[0], most) if ranges else [parse_value(item) for item in items]
     names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in found]
     for place, name in enumerate(names):
         if name in names[:place]:
@@ -124,7 +128,7 @@ def _split(text: str) -> list[str]:
     return [part.strip() for part in parts]
 
 
-def _range(key: str, text: str) -> list[Any]:
+def _range(key: str, text: str, most: int) -> list[Any]:
     """Equidistant values, both ends included; whole numbers stay whole, because some keys take nothing else."""
     parts = [part.strip() for part in text.split(":")]
     if len(parts) != 3:
@@ -137,8 +141,8 @@ def _range(key: str, text: str) -> list[Any]:
             )
     if not is_number(count) or not isinstance(count, int) or count < 1:
         raise SceneError.at(key, text, f"the count of a range must be a whole number of at least 1, not {shown(count)!r}")
-    if count > MOST_POINTS:
-        raise SceneError.at(key, text, f"the count of a range must be at most {MOST_POINTS}")
+    if count > most:
+        raise SceneError.at(key, text, f"the count of a range must be at most {most}")
     if count == 1:
         return [start]
     values = [start + (stop - start) * k / (count - 1) for k in range(count)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Collection
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -72,22 +73,27 @@ class RowStore:
             )
 
 
-def row_key(scene: Scene, registry: Registry, extra: Any = None) -> str:
-    """Hash of all that decides the numbers of one scene's run."""
+def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | None = None) -> str:
+    """Hash of all that decides the numbers of one scene's run.
+
+    Parameters
+    ----------
+    program : instead of ``program_key(registry)``
+    """
     digest = hashlib.sha256()
     digest.update(json.dumps([scene.as_dict(), extra], sort_keys=True, default=str).encode())
-    digest.update(program_key(registry).encode())
-    for name in _files(scene):
+    digest.update((program or program_key(registry)).encode())
+    for name in files_of(scene):
         path = Path(name)
         digest.update(path.read_bytes() if path.is_file() else b"missing")
     return digest.hexdigest()[:24]
 
 
-def program_key(registry: Registry) -> str:
-    """Hash of the program's own sources and of those of third parties' plug-ins."""
+def program_key(registry: Registry, used: Collection[tuple[str, str]] | None = None) -> str:
+    """Hash of the program's own sources and of those of third parties' plug-ins: all, or the (kind, name) in ``used``."""
     digest = hashlib.sha256(_own_sources().encode())
     for entry in registry.all():
-        if entry.distribution != "raceway":
+        if entry.distribution != "raceway" and (used is None or (entry.kind, entry.name) in used):
             digest.update(f"{entry.kind}:{entry.name}:{entry.version}".encode())
             digest.update(_sources_of(entry.plugin).encode())
     return digest.hexdigest()
@@ -120,7 +126,7 @@ def _hash(paths: tuple[Path, ...]) -> str:
     return digest.hexdigest()
 
 
-def _files(scene: Scene) -> list[str]:
+def files_of(scene: Scene) -> list[str]:
     """Files that the plug-ins of a scene read."""
     parts = (scene.excitation, scene.mesh, scene.contact.law, scene.integrator.method, scene.identifier.method)
     return [

@@ -1,7 +1,7 @@
 """Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
 
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
-contact_law, excitation, integrator, identifier, mesher, format, report   one suite a file
+contact_law, excitation, integrator, identifier, mesher, format, report, executor   one suite a file
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
 
@@ -33,6 +33,7 @@ SUITES: dict[str, tuple[str, str]] = {
     "mesher": ("raceway.testing.mesher", "MesherSuite"),
     "format": ("raceway.testing.format", "FormatSuite"),
     "report": ("raceway.testing.report", "ReportSuite"),
+    "executor": ("raceway.testing.executor", "ExecutorSuite"),
 }
 _PUBLIC = {
     **{name: module for module, name in SUITES.values()},
@@ -47,6 +48,7 @@ __all__ = [
     "Conformity",
     "ContactLawSuite",
     "ExcitationSuite",
+    "ExecutorSuite",
     "FormatSuite",
     "IdentifierSuite",
     "IntegratorSuite",

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError
-from raceway.testing import FormatSuite, MesherSuite, ReportSuite
+from raceway.plugins.executors.serial import Serial
+from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, ReportSuite
 
 BOX = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
 
@@ -87,11 +88,31 @@ class Forgetful(Text):
         return []
 
 
+class Greedy(Serial):
+    name = "greedy"
+
+    def compute(self, work, batches):
+        yield from super().compute(work, list(batches))
+
+
+class Swallowing(Serial):
+    name = "swallowing"
+
+    def compute(self, work, batches):
+        for number, points in batches:
+            try:
+                yield number, work(points)
+            except ArithmeticError:
+                continue
+
+
 def failed(suite, plugin):
     return {row.name for row in suite.conformity(plugin).rows if not row.good}
 
 
-@pytest.mark.parametrize(("suite", "plugin"), [(MesherSuite, Box()), (FormatSuite, Json()), (ReportSuite, Text())])
+@pytest.mark.parametrize(
+    ("suite", "plugin"), [(MesherSuite, Box()), (FormatSuite, Json()), (ReportSuite, Text()), (ExecutorSuite, Serial())]
+)
 def test_sound_ones_conform(suite, plugin):
     assert suite.conformity(plugin).conforms
 
@@ -103,6 +124,8 @@ def test_sound_ones_conform(suite, plugin):
         (MesherSuite, Dangling(), {"meshes"}),
         (FormatSuite, Careless(), {"declaration", "bad_files"}),
         (ReportSuite, Forgetful(), {"writes"}),
+        (ExecutorSuite, Greedy(), {"answers", "ends"}),
+        (ExecutorSuite, Swallowing(), {"ends"}),
     ],
 )
 def test_broken_ones_do_not(suite, plugin, checks):

@@ -11,6 +11,7 @@ from raceway.core.bodies.ring import CAGE
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Path, Problem, Solved, solve
 from raceway.core.periodic.first_guess import guess, response, standing
+from raceway.core.periodic.neighbour import Neighbour
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.symmetry import one_pitch, one_turn
@@ -69,8 +70,12 @@ def mesh_of(problem: Problem, highest: float, factor: int = 1) -> np.ndarray:
     return np.linspace(0.0, problem.symmetry.span, count + 1)
 
 
-def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Found:
+def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, near: Neighbour | None = None) -> Found:
     """The periodic motion that grows out of the equilibrium q (5,), to a relative tolerance.
+
+    Parameters
+    ----------
+    near : motion of a similar problem to start from
 
     Notes
     -----
@@ -85,15 +90,17 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
         No periodic motion found, with what was tried.
     """
     highest = highest_order(problem, tangent)
-    try:
-        return Found(_direct(problem, q, tangent, tolerance, highest), highest, "directly")
-    except ConvergenceError:
-        pass
+    nodes = mesh_of(problem, highest)
+    followed = None if near is None else near.first_guess(problem, q, tangent, nodes)
+    for first in ([] if followed is None else [followed]) + [None]:
+        try:
+            return Found(_direct(problem, q, tangent, tolerance, highest, first), highest, "directly")
+        except ConvergenceError:
+            pass
     try:
         return Found(_grown(problem, q, tangent, tolerance), highest, "from rest")
     except ConvergenceError:
         pass
-    nodes = mesh_of(problem, highest)
     if len(nodes) > _MOST or stiff(problem, standing(problem, q, nodes)):
         # Each point would take seconds.
         raise ConvergenceError(
@@ -123,8 +130,11 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float)
     )
 
 
-def _direct(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float) -> Refined:
-    first = guess(problem, q, tangent, mesh_of(problem, highest))
+def _direct(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, first: Path | None = None
+) -> Refined:
+    if first is None:
+        first = guess(problem, q, tangent, mesh_of(problem, highest))
     return refine(solve(problem, first, 1e-2 * tolerance, 0, _DIRECT_LIMIT), tolerance)
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import attrs
 import numpy as np
 
 from raceway.core.address import by_address
 from raceway.core.bodies.ring import CAGE, FRICTION
 from raceway.core.periodic.floquet import Floquet, floquet
+from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.sampling import record
 from raceway.core.periodic.search import Found, find, problem_of
 from raceway.core.record import Motion, Record, Schedule
@@ -31,7 +33,7 @@ def steady(
 
     Parameters
     ----------
-    start : near a static equilibrium, from which the motion is searched for
+    start : near a static equilibrium, from which the motion is searched for; its ``near`` is the solution of a similar problem
 
     Raises
     ------
@@ -51,7 +53,7 @@ def steady(
             "force that turns over equal balls without a radial load has one (integrator.symmetry = 'auto'). Use 'newmark'"
         )
         raise SceneError.at("integrator.kind", "periodic", why)
-    found = find(problem, q, tangent, tolerance)
+    found = find(problem, q, tangent, tolerance, start.near)
     fate = floquet(found.refined.solved, found.highest)
     refined = found.refined
     counts = {
@@ -61,7 +63,7 @@ def steady(
         "floquet": {**fate.as_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": found.how},
         "warnings": warnings(found, fate, tolerance),
     }
-    out = record(refined.solved, schedule, counts)
+    out = attrs.evolve(record(refined.solved, schedule, counts), solution=neighbour_of(refined.solved, q, tangent))
     if on_chunk is not None:
         on_chunk(schedule.steps, schedule.steps)
     return out

@@ -1,0 +1,276 @@
+"""Sweeps as a user runs them: how long, how much memory, what they survive.  ``python -m benchmarks.sweeps [NAME ...]``."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from raceway.errors import RacewayError
+from raceway.plugins.executors.serial import Serial
+from raceway.registry import default_registry
+from raceway.run import run
+from raceway.scene_file import load_scene, read_toml, scene_from_dict, with_value
+from raceway.studies.points import tables_at
+from raceway.studies.sweep import grid, open_store, prepare
+from raceway.studies.sweep import sweep as study
+
+SCENE = Path(__file__).parents[1] / "examples" / "b7206.toml"
+_BUSY = 0.5
+
+
+def words(count: int, store: Path, *more: str, bodies: str = "rigid") -> list[str]:
+    """The command line of a sweep of ``count`` points: speeds times 20 loads."""
+    axes = [f"excitation.speed_rpm=10980:15000:{count // 20}", "load.axial=400:2000:20"]
+    settings = ["integrator.kind=periodic", f"bodies.kind={bodies}"]
+    return [
+        *("sweep", str(SCENE)),
+        *(word for setting in settings for word in ("--set", setting)),
+        *(word for axis in axes for word in ("--grid", axis)),
+        *("--out", str(store), *more),
+    ]
+
+
+def timed(count: int, *more: str, bodies: str = "rigid") -> dict[str, float]:
+    """Wall time, processor time of all processes, and peak memory of the main one, of a whole sweep as a process."""
+    with tempfile.TemporaryDirectory() as folder:
+        store = Path(folder) / "s"
+        begin = time.perf_counter()
+        process = subprocess.Popen(_python(*words(count, store, *more, bodies=bodies)), stdout=subprocess.DEVNULL)
+        _, status, used = os.wait4(process.pid, 0)
+        wall = time.perf_counter() - begin
+        process.returncode = os.waitstatus_to_exitcode(status)
+        with open_store(store) as there:
+            states = there.status()
+            points = sum(row["cost"]["cpu_s"] for row in there.rows())
+    if process.returncode or states["done"] != count:
+        raise RuntimeError(f"a sweep of {count} points ended with code {process.returncode}, {states}")
+    return {
+        "wall_s": wall,
+        "cpu_s": used.ru_utime + used.ru_stime,
+        "points_cpu_s": points,
+        "peak_bytes": used.ru_maxrss * 1024.0,
+    }
+
+
+def overhead(count: int = 400) -> dict[str, float]:
+    """Time a point [s] of the sweep beyond that of the same runs, each begun from its neighbour, in this process."""
+    registry, tables = default_registry(), with_value(read_toml(SCENE), "integrator.kind", "periodic")
+    design = grid([f"excitation.speed_rpm=10980:15000:{count // 4}", "load.axial=400,800,1200,2000"])
+    with tempfile.TemporaryDirectory() as folder:
+        prepared = prepare(tables, design, Path(folder) / "s")
+        run(scene_from_dict(tables_at(tables, design.point(0), registry), registry), registry)
+        cpu = time.process_time()
+        for chain in design.chains(prepared.length):
+            before = None
+            for number in chain:
+                scene = scene_from_dict(tables_at(tables, design.point(number), registry), registry)
+                before = run(scene, registry, near=before)
+        bare = time.process_time() - cpu
+        cpu = time.process_time()
+        study(prepared, Serial()).close()
+        swept = time.process_time() - cpu
+    return {"bare_s": bare / count, "swept_s": swept / count, "overhead_s": (swept - bare) / count}
+
+
+def quiet() -> bool:
+    """Whether nobody else works on this machine."""
+    return os.getloadavg()[0] < _BUSY
+
+
+def rows_of(store: Path) -> list[Any]:
+    """Everything but costs."""
+    with open_store(store) as there:
+        return [(row["point"], row["status"], row["reason"], row["values"]) for row in there.rows()]
+
+
+def killed(times: int = 20, count: int = 120, seed: int = 8) -> dict[str, int]:
+    """Sweeps that are killed (SIGKILL) at random moments and then gone on with: how many equal the undisturbed one.
+
+    Notes
+    -----
+    The moment is drawn between the first finished chain and about the last; every fourth sweep uses two processes.
+    """
+    draw = random.Random(seed)
+    found = {"killed": 0, "equal": 0, "unreadable": 0, "lost": 0, "orphans": 0}
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder) / "whole"
+        _finish(words(count, whole))
+        wanted = rows_of(whole)
+        for number in range(times):
+            store = Path(folder) / f"s{number}"
+            more = ("--executor", "joblib") if number % 4 == 3 else ()
+            with _running(words(count, store, *more)) as process:
+                seen = _until(store, process, draw.randint(1, count - 1))
+                process.kill()
+            found["killed"] += process.returncode == -signal.SIGKILL
+            found["orphans"] += _left(process.pid)
+            try:
+                with open_store(store) as there:
+                    found["lost"] += there.status()["done"] < seen
+            except RacewayError:
+                found["unreadable"] += 1
+            _finish([*words(count, store), "--resume"])
+            found["equal"] += rows_of(store) == wanted
+    return found
+
+
+def worker_killed(count: int = 200) -> dict[str, Any]:
+    """One of two processes killed half-way: the sweep ends by itself, with the same rows."""
+    with tempfile.TemporaryDirectory() as folder:
+        whole, store = Path(folder) / "whole", Path(folder) / "s"
+        _finish(words(count, whole))
+        with _running(words(count, store, "--executor", "joblib")) as process:
+            _until(store, process, count // 3)
+            with open_store(store) as there:
+                worker = int(next(row["cost"]["worker"] for row in there.rows() if row["cost"]).rpartition(":")[2])
+            os.kill(worker, signal.SIGKILL)
+            code = process.wait(300)
+        return {"code": code, "equal": rows_of(store) == rows_of(whole)}
+
+
+def full_disk(limits: tuple[int, ...] = (20_000, 40_000, 80_000, 120_000), count: int = 200) -> dict[str, int]:
+    """Files that cannot grow beyond a limit: a message and code 2, and the same rows once there is space."""
+    found = {"tried": 0, "told": 0, "equal": 0}
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder) / "whole"
+        _finish(words(count, whole))
+        for limit in limits:
+            store = Path(folder) / f"s{limit}"
+            code = (
+                "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+                f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}));"
+                "from raceway.cli import main; main(sys.argv[1:])"
+            )
+            done = subprocess.run(
+                [sys.executable, "-c", code, *words(count, store)], capture_output=True, text=True, check=False
+            )
+            found["tried"] += 1
+            found["told"] += done.returncode == 2 and "ree some space" in done.stderr and "Traceback" not in done.stderr
+            _finish([*words(count, store), "--resume"])
+            found["equal"] += rows_of(store) == rows_of(whole)
+    return found
+
+
+def interrupted(count: int = 200) -> dict[str, Any]:
+    """Ctrl-C half-way: exit code 130, results.nc is there, and it goes on to the same rows."""
+    with tempfile.TemporaryDirectory() as folder:
+        whole, store = Path(folder) / "whole", Path(folder) / "s"
+        _finish(words(count, whole))
+        with _running(words(count, store, "--executor", "joblib")) as process:
+            _until(store, process, count // 3)
+            os.killpg(process.pid, signal.SIGINT)
+            code = process.wait(120)
+        there = (store / "results.nc").is_file()
+        _finish([*words(count, store), "--resume"])
+        return {"code": code, "results": there, "equal": rows_of(store) == rows_of(whole), "orphans": _left(process.pid)}
+
+
+def continuation(count: int = 100) -> dict[str, dict[str, float]]:
+    """Largest relative change of Z by starting from a neighbour, and the evaluations that it takes, cold and warm."""
+    found = {}
+    cases = {
+        "the article's speeds": ((10980.0, 15000.0), ()),
+        "through the ring's resonance, constant force of 20 N": (
+            (60000.0, 120000.0),
+            ("kinematics.ball_inertia=false", "excitation.amplitude=constant", "excitation.force=20.0"),
+        ),
+    }
+    for name, ((first, last), changes) in cases.items():
+        largest, work, before = 0.0, [0, 0], None
+        for k in range(count):
+            speed = first + (last - first) * k / (count - 1)
+            scene = load_scene(SCENE, ["integrator.kind=periodic", *changes, f"excitation.speed_rpm={speed!r}"])
+            cold, warm = run(scene), run(scene, near=before)
+            z, other = cold.identification.dynamic_stiffness, warm.identification.dynamic_stiffness
+            largest = max(largest, abs(other / z - 1.0))
+            work = [work[0] + cold.cost["newton_iterations"], work[1] + warm.cost["newton_iterations"]]
+            before = warm
+        found[name] = {"change": largest, "cold": work[0] / count, "warm": work[1] / count}
+    return found
+
+
+def _python(*given: str) -> list[str]:
+    return [sys.executable, "-m", "raceway", *given]
+
+
+def _finish(given: list[str]) -> None:
+    """A command in this process, to its end."""
+    from click.testing import CliRunner
+
+    from raceway.cli import main as command
+
+    done = CliRunner().invoke(command, given)
+    if done.exit_code:
+        raise RuntimeError(done.output)
+
+
+@contextmanager
+def _running(given: list[str]) -> Iterator[subprocess.Popen[bytes]]:
+    process = subprocess.Popen(_python(*given), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def _until(store: Path, process: subprocess.Popen[bytes], wanted: int) -> int:
+    """Wait until so many points are done, or the process ends; how many were seen."""
+    done = 0
+    while done < wanted and process.poll() is None:
+        time.sleep(0.005)
+        if (store / "points.sqlite").is_file():
+            try:
+                with open_store(store) as there:
+                    done = there.status()["done"]
+            except RacewayError:
+                continue  # it is being made
+    return done
+
+
+def _left(group: int, patience: float = 5.0) -> int:
+    """Processes of a group that are alive after some time."""
+    end = time.monotonic() + patience
+    while True:
+        living = [p for p in Path("/proc").glob("[0-9]*") if _group_of(p) == group]
+        if not living or time.monotonic() > end:
+            return len(living)
+        time.sleep(0.2)
+
+
+def _group_of(process: Path) -> int:
+    try:
+        return int((process / "stat").read_text().rpartition(")")[2].split()[2])
+    except (OSError, ValueError, IndexError):
+        return -1
+
+
+def main(names: list[str]) -> None:
+    """Measure and print as JSON."""
+    every = {
+        "rigid": lambda: timed(1000, "--executor", "joblib", "--workers", "2"),
+        "condensed": lambda: timed(1000, "--executor", "joblib", "--workers", "2", bodies="condensed"),
+        "memory": lambda: {str(n): timed(n)["peak_bytes"] for n in (200, 2000)},
+        "overhead": overhead,
+        "continuation": continuation,
+        "killed": killed,
+        "worker_killed": worker_killed,
+        "interrupted": interrupted,
+        "full_disk": full_disk,
+    }
+    for name in names or every:
+        print(json.dumps({name: every[name](), "load": os.getloadavg()[0]}), flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

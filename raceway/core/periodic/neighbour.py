@@ -1,0 +1,65 @@
+"""What a periodic motion lends to that of a similar problem: how it differs from its own linear response.
+
+Notes
+-----
+The linear response of the new problem about its own equilibrium, plus the nonlinear part of its neighbour's motion, is where
+Newton's iteration begins.  Where that part is large, several motions may exist under one force, and a neighbour could lead
+to another one than the search from rest: it is left alone then.
+"""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.core.periodic.collocation import Path, Problem, Solved
+from raceway.core.periodic.first_guess import guess
+from raceway.core.periodic.sampling import motion_at
+
+#: Nonlinear part over the motion's size, up to which a neighbour is followed.  A Duffing oscillator has one motion only as
+#: long as its amplitude stays within a third of the linear one (with some damping); far below that nothing can fold.
+MOST_NONLINEAR = 0.2
+
+
+@attrs.frozen(eq=False)
+class Neighbour:
+    """A solved motion, to be followed.
+
+    Attributes
+    ----------
+    problem : that it solves
+    excess : motion less its linear response about the equilibrium; balls and rates as they are
+    share : largest derivative of the excess over that of the motion
+    """
+
+    problem: Problem
+    excess: Path
+    share: float
+
+    def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path | None:
+        """Where Newton's iteration may begin on a mesh; None where this motion is no help.
+
+        Parameters
+        ----------
+        q : (5,) static equilibrium of ``problem``;  tangent : (5, 5) of its contacts
+        """
+        if self.share > MOST_NONLINEAR or not self._alike(problem):
+            return None
+        first = guess(problem, q, tangent, nodes)
+        dq, dv, _, _, _ = motion_at(self.problem, self.excess, nodes)
+        _, _, da, ball, rate = motion_at(self.problem, self.excess, problem.angles(nodes))
+        return Path(nodes, first.q + dq, first.v + dv, first.a + da, np.ascontiguousarray(ball), np.ascontiguousarray(rate))
+
+    def _alike(self, problem: Problem) -> bool:
+        mine, other = self.problem, problem
+        same = (mine.system.ball_count, mine.system.ball_columns) == (other.system.ball_count, other.system.ball_columns)
+        return same and mine.symmetry.span == other.symmetry.span and np.array_equal(mine.free, other.free)
+
+
+def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
+    """A solved motion, for other problems to start from; ``q``, ``tangent`` as in ``first_guess``."""
+    problem, path = solved.problem, solved.path
+    first = guess(problem, q, tangent, path.nodes)
+    excess = attrs.evolve(path, q=path.q - first.q, v=path.v - first.v, a=path.a - first.a)
+    share = float(np.abs(excess.v / problem.weight).max()) / max(solved.size, 1e-300)
+    return Neighbour(problem, excess, share)

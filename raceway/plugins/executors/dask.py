@@ -1,0 +1,187 @@
+"""Workers of a dask.distributed scheduler, on this machine or on a cluster."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.contracts import Lost, Refused
+from raceway.errors import PluginError
+from raceway.options import between, inside, option, optional
+
+if TYPE_CHECKING:
+    from raceway.contracts import Batch
+
+#: How often the list of workers is looked at [s].
+_LOOK_S = 2.0
+#: How often a batch that is refused is given to another worker.
+_REFUSALS = 3
+_TEXT = optional(lambda _instance, _attribute, _value: None)
+
+
+@attrs.frozen
+class Dask:
+    """Workers of dask.distributed: of a scheduler that runs already, else of a cluster on this machine.
+
+    Notes
+    -----
+    Workers may come and go.  Each is asked first whether it has the same program and plug-ins; one that has not gets no
+    points, and a warning names it.  Dask itself gives the batch of a dead worker to another one.
+    """
+
+    name: ClassVar[str] = "dask"
+
+    workers: int = option(2, help="processes of the cluster on this machine, without a scheduler", rule=between(1, 1024))
+    scheduler: str | None = option(None, help="address of a running scheduler, for instance tcp://10.0.0.1:8786", rule=_TEXT)
+    patience: float = option(
+        20.0, unit="s", help="that a scheduler may take to answer, or all workers may be away", rule=inside(0.0, 86400.0)
+    )
+
+    @classmethod
+    def examples(cls) -> list[Dask]:
+        """Instances for the conformance suite."""
+        return [cls(workers=1)]
+
+    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+        with self._client() as client:
+            flight = _Flight(client, work, self.patience)
+            yield from flight.answers(iter(batches))
+
+    @contextmanager
+    def _client(self) -> Iterator[Any]:
+        try:
+            from distributed import Client, LocalCluster
+        except ImportError as why:
+            raise PluginError(f"executor 'dask' needs dask.distributed: pip install 'raceway[sweep]' ({why})") from None
+        if self.scheduler is None:
+            options = {"processes": True, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
+            with LocalCluster(n_workers=self.workers, **options) as cluster, Client(cluster) as client:
+                yield client
+            return
+        try:
+            client = Client(self.scheduler, timeout=self.patience)
+        except (OSError, ValueError, TypeError) as why:
+            message = f"no dask scheduler answers at `{self.scheduler}` within {self.patience:g} s: {why}. Start one with `dask scheduler`"
+            raise PluginError(f"{message}, or correct --scheduler.") from None
+        with client:
+            yield client
+
+
+class _Flight:
+    """What is computed at the moment, and who is fit for it."""
+
+    def __init__(self, client: Any, work: Any, patience: float) -> None:
+        self.client, self.work, self.patience = client, work, patience
+        self.unfit: dict[str, str] = {}
+        self.fit: set[str] = set()
+        #: future -> its batch, and the workers that it is bound to (none: any)
+        self.flying: dict[Any, tuple[Batch, frozenset[str]]] = {}
+        self.refusals: dict[int, int] = {}
+        self.looked, self.alone_since = -_LOOK_S, time.monotonic()
+
+    def answers(self, batches: Iterator[Batch]) -> Iterator[tuple[int, Any]]:
+        from distributed import wait
+
+        self._meet()
+        try:
+            self._fill(batches)
+            while self.flying:
+                with suppress(TimeoutError):
+                    wait(list(self.flying), timeout=_LOOK_S, return_when="FIRST_COMPLETED")
+                for future in [f for f in self.flying if f.done()]:
+                    batch, _ = self.flying.pop(future)
+                    answer = _outcome(future)
+                    if isinstance(answer, Refused) and self._try_others(batch):
+                        continue
+                    yield batch[0], answer
+                self._look()
+                self._fill(batches)
+        finally:
+            self.client.cancel(list(self.flying), force=True)
+
+    def _try_others(self, batch: Batch) -> bool:
+        """Give a batch that a worker refused, for one that came after the last look, to those that are fit."""
+        self.refusals[batch[0]] = self.refusals.get(batch[0], 0) + 1
+        if self.refusals[batch[0]] > _REFUSALS:
+            return False
+        self.fit.clear()
+        self.looked = -_LOOK_S
+        self._look()
+        if self.fit:
+            self._submit(batch)
+        return bool(self.fit)
+
+    def _meet(self) -> None:
+        """Wait for a worker; ask all; refuse where none is fit."""
+        try:
+            self.client.wait_for_workers(1, timeout=self.patience)
+        except TimeoutError:
+            raise PluginError(
+                f"the dask scheduler has had no worker for {self.patience:g} s: start some with `dask worker`"
+            ) from None
+        self._look()
+        if not self.fit:
+            reasons = "; ".join(f"{worker}: {why}" for worker, why in self.unfit.items())
+            raise PluginError(f"no dask worker can compute these points: {reasons}")
+
+    def _look(self) -> None:
+        """See who came and who went; ask who is new."""
+        now = time.monotonic()
+        if now - self.looked < _LOOK_S:
+            return
+        self.looked = now
+        living = set(self.client.nthreads())
+        self.fit &= living
+        new = living - self.fit - set(self.unfit)
+        if new:
+            for worker, fault in self.client.run(_fault, self.work, workers=sorted(new), on_error="return").items():
+                if fault is None:
+                    self.fit.add(worker)
+                    continue
+                self.unfit[worker] = fault if isinstance(fault, str) else f"{type(fault).__name__}: {fault}"
+                warnings.warn(f"dask worker {worker} gets no points: {self.unfit[worker]}", stacklevel=2)
+        for future, (batch, bound) in list(self.flying.items()):
+            # Its workers are gone for good: a nanny's next one has another address.
+            if bound and self.fit and not bound & living:
+                self.client.cancel([future], force=True)
+                del self.flying[future]
+                self._submit(batch)
+        if self.fit:
+            self.alone_since = now
+        elif now - self.alone_since > self.patience:
+            raise PluginError(
+                f"the dask scheduler has had no fit worker for {self.patience:g} s; start one, and go on with --resume"
+            )
+
+    def _fill(self, batches: Iterator[Batch]) -> None:
+        threads = self.client.nthreads()
+        while len(self.flying) < 2 * max(sum(threads.get(worker, 0) for worker in self.fit), 1):
+            batch = next(batches, None)
+            if batch is None:
+                return
+            self._submit(batch)
+
+    def _submit(self, batch: Batch) -> None:
+        bound = frozenset(self.fit) if self.unfit else frozenset()
+        future = self.client.submit(
+            self.work, batch[1], pure=False, workers=sorted(bound) or None, key=f"sweep-{batch[0]}-{time.time_ns()}"
+        )
+        self.flying[future] = batch, bound
+
+
+def _fault(work: Any) -> str | None:
+    return work.fault()
+
+
+def _outcome(future: Any) -> Any:
+    from distributed import KilledWorker
+
+    try:
+        return future.result()
+    except KilledWorker as why:
+        return Lost(f"its workers died: {why}")

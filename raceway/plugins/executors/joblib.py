@@ -1,0 +1,103 @@
+"""Processes on this machine, by joblib."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.contracts import Lost
+from raceway.errors import PluginError
+from raceway.options import between, option
+
+if TYPE_CHECKING:
+    from raceway.contracts import Batch
+
+#: How often a worker looks whether the process that it works for is alive [s].
+_WATCH_S = 1.0
+
+
+@attrs.frozen
+class Joblib:
+    """Processes on this machine, each with one thread; one that dies is replaced.
+
+    Notes
+    -----
+    A process that dies takes joblib's whole pool with it.  What was in flight is then computed again, a batch at a time, so
+    that the one to blame is known.
+    """
+
+    name: ClassVar[str] = "joblib"
+
+    workers: int = option(2, help="processes that work at a time", rule=between(1, 1024))
+
+    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+        try:
+            from joblib.externals.loky import get_reusable_executor
+            from joblib.externals.loky.process_executor import TerminatedWorkerError
+        except ImportError as why:
+            raise PluginError(f"executor 'joblib' needs joblib: pip install 'raceway[sweep]' ({why})") from None
+        left, flying = iter(batches), dict[int, list[Any]]()
+
+        def taken() -> Iterator[Batch]:
+            for number, points in left:
+                flying[number] = points
+                yield number, points
+
+        try:
+            while True:
+                try:
+                    for number, answer in self._pool(work, taken()):
+                        del flying[number]
+                        yield number, answer
+                    return
+                except TerminatedWorkerError:
+                    for number, points in list(flying.items()):
+                        try:
+                            yield from self._pool(work, [(number, points)])
+                        except TerminatedWorkerError as why:
+                            yield number, Lost(f"its worker died: {str(why).splitlines()[0]}")
+                    flying.clear()
+        finally:
+            get_reusable_executor().shutdown(wait=True, kill_workers=True)
+
+    def _pool(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+        from joblib import Parallel, delayed, parallel_config
+
+        calls = (delayed(_answer)(work, number, points) for number, points in batches)
+        # One worker too is a process of its own: joblib would take this one.
+        workers = max(self.workers, 2)
+        before = workers * 2 if self.workers > 1 else 1
+        with parallel_config(backend="loky", inner_max_num_threads=1):
+            pool = Parallel(n_jobs=workers, return_as="generator_unordered", batch_size=1, pre_dispatch=before)
+            answers = pool(calls)
+            try:
+                yield from answers
+            finally:
+                with warnings.catch_warnings():
+                    warnings.filterwarnings("ignore", message=".*tasks which were still being processed")
+                    answers.close()
+
+
+def _answer(work: Callable[[list[Any]], Any], number: int, points: list[Any]) -> tuple[int, Any]:
+    _end_with_parent()
+    return number, work(points)
+
+
+@cache
+def _end_with_parent() -> None:
+    """In a worker: end when the process that it works for is killed; joblib's would wait for more to do for minutes."""
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_WATCH_S)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()

@@ -1,0 +1,167 @@
+"""A store as a labelled data set, as NetCDF, and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from raceway.errors import RacewayError
+from raceway.files import write_whole
+from raceway.registry import Registry, default_registry
+from raceway.scene import Scene
+from raceway.scene_file import scene_from_dict
+from raceway.studies.axes import is_number
+from raceway.studies.sweep.store import Store
+from raceway.studies.sweep.survey import key_facts
+from raceway.studies.sweep.variables import ARRAYS, DOF, NUMBERS
+
+if TYPE_CHECKING:
+    import xarray
+
+RESULTS, TABLE = "results.nc", "results.csv"
+
+
+def dataset(store: Store, registry: Registry | None = None) -> xarray.Dataset:
+    """The data set of a store: states, and the variables that its scenes have.
+
+    Raises
+    ------
+    RacewayError
+        xarray is missing.
+    """
+    xarray = _xarray()
+    design = store.design
+    dims = design.keys if design.axes else ("point",)
+    columns, status = _columns(store)
+    variables: dict[str, Any] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
+    for name, column in columns.items():
+        more, unit, words = ARRAYS[name] if name in ARRAYS else ((), *NUMBERS[name])
+        shape = (*design.shape, *column.shape[1:])
+        variables[name] = ((*dims, *more), column.reshape(shape), {"units": unit, "long_name": words})
+    attributes = {
+        "title": store.title,
+        "scene": json.dumps(store.scene),
+        "plugins": json.dumps(store.facts["identity"]["plugins"]),
+        "raceway": store.facts["identity"]["raceway"],
+        "program": store.facts["identity"]["program"],
+        "schema": store.facts["schema"],
+        "created": store.facts["created"],
+        "note": "NaN: not finished, or not estimated; see status",
+    }
+    return xarray.Dataset(variables, _coordinates(store, registry or default_registry()), attributes)
+
+
+def _columns(store: Store) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Variable -> (points, ...) float64, those that a finished point has; states (points,)."""
+    size, found = store.design.size, dict[str, np.ndarray]()
+    status = np.full(size, "waiting", dtype=object)
+    for number, row in enumerate(store.rows()):
+        status[number] = row["status"]
+        for name, value in row["values"].items():
+            if name not in found:
+                found[name] = np.full((size, *np.shape(value)), np.nan)
+            found[name][number] = value
+    order = [*NUMBERS, *ARRAYS]
+    return {name: found[name] for name in order if name in found}, status
+
+
+def _coordinates(store: Store, registry: Registry) -> dict[str, Any]:
+    design = store.design
+    try:
+        scene: Scene | None = scene_from_dict(store.scene, registry)
+    except RacewayError:  # its plug-ins are not installed here: values are there, units of its keys are not
+        scene = None
+    found: dict[str, Any] = {"dof": ("dof", list(DOF)), "dof2": ("dof2", list(DOF))}
+    for key in design.keys:
+        values = next(a.values for a in design.axes if a.key == key) if design.axes else [p[key] for p in design.listed]
+        unit, words = ("", "") if scene is None else key_facts(scene, key)
+        dim = key if design.axes else "point"
+        found[key] = (dim, _labels(values), {"units": unit or "1", "long_name": f"{key}: {words}" if words else key})
+    if not design.axes:
+        found["point"] = ("point", np.arange(design.size), {"long_name": "number of the point in the list"})
+    return found
+
+
+def _labels(values: Any) -> np.ndarray:
+    """Numbers as numbers; anything else as text."""
+    if all(is_number(value) for value in values):
+        return np.array(values)
+    return np.array([value if isinstance(value, str) else json.dumps(value) for value in values], dtype=object)
+
+
+def write_netcdf(store: Store) -> Path:
+    """``results.nc`` in the store, whole or not at all.
+
+    Raises
+    ------
+    RacewayError
+        xarray or h5netcdf is missing, or a disk that takes no more.
+    """
+    data = store.to_xarray()
+    try:
+        # In memory first: the HDF5 library takes the whole process down where a disk is full.
+        content = bytes(data.to_netcdf(engine="h5netcdf"))
+    except (ImportError, ValueError) as why:
+        if isinstance(why, ValueError) and "h5netcdf" not in str(why):
+            raise
+        raise RacewayError(f"NetCDF needs h5netcdf and h5py: pip install 'raceway[sweep]' ({why})") from None
+    return write_whole(content, store.path / RESULTS)
+
+
+def write_csv(store: Store, path: Path) -> Path:
+    """All points and their numbers as CSV, a line each.
+
+    Raises
+    ------
+    RacewayError
+        A file that cannot be written.
+    """
+    scratch = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with scratch.open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows(_lines(store))
+        scratch.replace(path)
+    except OSError as why:
+        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}. Choose another place.") from None
+    finally:
+        with suppress(OSError):
+            scratch.unlink(missing_ok=True)
+    return path
+
+
+def _lines(store: Store) -> Iterator[list[Any]]:
+    keys = store.design.keys
+    places: dict[str, list[tuple[str, ...]]] = {
+        "displacement": [(name,) for name in DOF],
+        "stiffness": [(a, b) for a in DOF for b in DOF],
+    }
+    yield [*keys, "status", "reason", *NUMBERS, *(f"{name}_{'_'.join(p)}" for name in ARRAYS for p in places[name])]
+    for row in store.rows():
+        values = row["values"]
+        arrays = [np.ravel(values[name]).tolist() if name in values else [""] * len(places[name]) for name in ARRAYS]
+        point = [v if isinstance(v, str) or is_number(v) else json.dumps(v) for v in row["point"].values()]
+        yield [*point, row["status"], row["reason"], *(values.get(n, "") for n in NUMBERS), *(v for a in arrays for v in a)]
+
+
+def csv_text(store: Store) -> str:
+    """The same as text."""
+    text = io.StringIO()
+    csv.writer(text).writerows(_lines(store))
+    return text.getvalue()
+
+
+def _xarray() -> Any:
+    try:
+        import xarray
+    except ImportError as why:
+        raise RacewayError(f"labelled results need xarray: pip install 'raceway[sweep]' ({why})") from None
+    return xarray

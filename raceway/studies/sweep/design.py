@@ -1,0 +1,210 @@
+"""The points of a sweep: a grid over keys of the scene, or a list of points; addressed by number, never held as a whole."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import Mistake, SceneError
+from raceway.scene_file import parse_value, read_toml
+from raceway.studies.axes import Axis, parse_axes, shown
+
+#: Most points of a sweep: beyond it, files of results are no longer something to open.
+MOST_POINTS = 1_000_000
+_FORM = 'must be a TOML file with a table [grid], for instance "load.axial" = [400, 1000], or with tables [[points]]'
+
+
+@attrs.frozen
+class Design:
+    """What is swept.
+
+    Attributes
+    ----------
+    axes : of a grid, the last one running fastest in the numbering of points; empty for a list
+    listed : the points of a list, all with the same keys; empty for a grid
+    """
+
+    axes: tuple[Axis, ...] = ()
+    listed: tuple[dict[str, Any], ...] = ()
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(len(axis.values) for axis in self.axes) if self.axes else (len(self.listed),)
+
+    @property
+    def size(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        return tuple(axis.key for axis in self.axes) if self.axes else tuple(self.listed[0])
+
+    def point(self, number: int) -> dict[str, Any]:
+        """Key -> value of one point."""
+        if not self.axes:
+            return dict(self.listed[number])
+        found = {}
+        for axis in reversed(self.axes):
+            number, place = divmod(number, len(axis.values))
+            found[axis.key] = axis.values[place]
+        return {axis.key: found[axis.key] for axis in self.axes}
+
+    def points(self) -> Iterator[dict[str, Any]]:
+        return (self.point(number) for number in range(self.size))
+
+    def chains(self, length: int) -> Iterator[list[int]]:
+        """Numbers of points, cut into chains of neighbours of at most ``length``.
+
+        Notes
+        -----
+        Chains run along the axis of numbers with the most values, so that a point differs least from the one before.
+        They depend on the design alone: a sweep that is resumed computes the same ones.
+        """
+        along = self._along()
+        sizes = self.shape
+        strides = [math.prod(sizes[k + 1 :]) for k in range(len(sizes))]
+        others = [range(size) if k != along else range(1) for k, size in enumerate(sizes)]
+        for place in itertools.product(*others):
+            first = sum(i * stride for i, stride in zip(place, strides, strict=True))
+            for start in range(0, sizes[along], length):
+                yield [first + strides[along] * k for k in range(start, min(start + length, sizes[along]))]
+
+    def _along(self) -> int:
+        if not self.axes:
+            return 0
+        return max(range(len(self.axes)), key=lambda k: (self.axes[k].numeric, len(self.axes[k].values), k))
+
+    def as_dict(self) -> dict[str, Any]:
+        if self.axes:
+            return {"axes": [axis.as_dict() for axis in self.axes]}
+        return {"points": list(self.listed)}
+
+    @classmethod
+    def from_dict(cls, tables: Mapping[str, Any]) -> Design:
+        axes = tuple(Axis(one["key"], tuple(one["values"])) for one in tables.get("axes", ()))
+        return cls(axes, tuple(tables.get("points", ())))
+
+    def in_words(self) -> str:
+        if not self.axes:
+            return f"{self.size} listed points over {', '.join(self.keys)}"
+        return f"{' x '.join(str(n) for n in self.shape)} points over {', '.join(self.keys)}"
+
+
+def grid(texts: Iterable[str]) -> Design:
+    """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``.
+
+    Raises
+    ------
+    SceneError
+        With every mistake in them.
+    """
+    return Design(axes=parse_axes(texts, "--grid", MOST_POINTS))
+
+
+def point_list(path: Path) -> Design:
+    """The points of a file: CSV with keys in its first line, JSON (a list of objects), or TOML (tables [[points]]).
+
+    Raises
+    ------
+    SceneError
+        A file that cannot be read, or points that do not have the same keys.
+    """
+    readers = {".csv": _csv_points, ".json": _json_points, ".toml": lambda p: read_toml(p).get("points")}
+    if path.suffix.lower() not in readers:
+        raise SceneError.at(str(path), None, f"must end in one of {', '.join(readers)}")
+    return _listed(path, readers[path.suffix.lower()](path))
+
+
+def design_file(path: Path) -> Design:
+    """A grid or a list from a TOML file: table ``[grid]`` with ``"key" = [values]`` or ``"start:stop:count"``, or ``[[points]]``.
+
+    Raises
+    ------
+    SceneError
+        A file of another form, or mistakes in its axes.
+    """
+    tables = read_toml(path)
+    strange = sorted(set(tables) - {"grid", "points"})
+    if strange or ("grid" in tables) == ("points" in tables):
+        raise SceneError.at(str(path), None, f"{_FORM}{', not both' if not strange else ', not ' + strange[0]}")
+    if "points" in tables:
+        return _listed(path, tables["points"])
+    given = tables["grid"]
+    if not isinstance(given, dict):
+        raise SceneError.at(f"{path}: grid", given, _FORM)
+    words = (
+        (key, [json.dumps(v) for v in value] if isinstance(value, list) else [str(value)]) for key, value in _dotted(given)
+    )
+    return grid(f"{key}={','.join(values)}" for key, values in words)
+
+
+def _dotted(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """``a.b`` for [grid] "a.b" and for [grid.a] b alike."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _dotted(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
+def _csv_points(path: Path) -> list[dict[str, Any]]:
+    text = _text(path)
+    rows = list(csv.reader(line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")))
+    if not rows:
+        return []
+    keys = [key.strip() for key in rows[0]]
+    mistakes = [
+        Mistake(f"{path}, row {k}", ",".join(row), f"has {len(row)} values for {len(keys)} keys")
+        for k, row in enumerate(rows[1:], 1)
+        if len(row) != len(keys)
+    ]
+    if mistakes:
+        raise SceneError(mistakes[:10])
+    return [{key: parse_value(value) for key, value in zip(keys, row, strict=True)} for row in rows[1:]]
+
+
+def _json_points(path: Path) -> Any:
+    try:
+        return json.loads(_text(path))
+    except ValueError as why:
+        raise SceneError.at(str(path), None, f"is not valid JSON: {why}") from None
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as why:
+        reason = (why.strerror or str(why)) if isinstance(why, OSError) else "it is not UTF-8 text"
+        raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+
+
+def _listed(path: Path, points: Any) -> Design:
+    if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
+        raise SceneError.at(str(path), None, "must hold a list of points, each with keys of the scene and their values")
+    points = [dict(_dotted(point)) for point in points]
+    if not points or not points[0]:
+        raise SceneError.at(str(path), None, "has no points: nothing to sweep")
+    if len(points) > MOST_POINTS:
+        raise SceneError.at(str(path), None, f"has {len(points)} points, more than {MOST_POINTS}")
+    keys = list(points[0])
+    for number, point in enumerate(points, 1):
+        if set(point) != set(keys):
+            odd = sorted(set(point) ^ set(keys))
+            raise SceneError.at(
+                f"{path}, point {number}", None, f"all points need the same keys; not in all: {', '.join(odd)}"
+            )
+    bad = [key for key in keys if not key or not all(part.strip() for part in key.split("."))]
+    if bad:
+        raise SceneError.at(str(path), bad[0], "is not a key of a scene, such as load.axial")
+    return Design(listed=tuple({key: point[key] for key in keys} for point in points))
+
+
+def point_words(point: Mapping[str, Any], keys: Sequence[str] | None = None) -> str:
+    return ", ".join(f"{key} = {shown(point[key])}" for key in keys or point)

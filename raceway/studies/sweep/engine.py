@@ -1,0 +1,181 @@
+"""Runs a sweep: from a design to a store whose points are all finished, by an executor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.contracts import Lost, Refused
+from raceway.errors import PluginError, RacewayError
+from raceway.plan import make_plan
+from raceway.section_plan import section_cost
+from raceway.simulate import OnProgress
+from raceway.studies.sweep.design import Design
+from raceway.studies.sweep.identity import differences, identity
+from raceway.studies.sweep.store import Store, exists, open_store, written
+from raceway.studies.sweep.survey import Survey, survey
+from raceway.studies.sweep.work import Work, registry_of
+from raceway.wall_plan import START_S
+
+#: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
+_LONGEST, _CHAIN_S = 16, 1.0
+#: Chains at least in a sweep: otherwise some of many workers have nothing to do.
+_CHAINS = 16
+
+
+@attrs.frozen
+class Sweep:
+    """A sweep that was looked over: what is computed, where it goes, and what is there already.
+
+    Attributes
+    ----------
+    length : of chains [points]
+    """
+
+    tables: dict[str, Any]
+    design: Design
+    store: Path
+    plugins: tuple[str, ...]
+    survey: Survey
+    facts: dict[str, Any]
+    length: int
+
+
+def prepare(
+    tables: Mapping[str, Any], design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False
+) -> Sweep:
+    """Look over a sweep; nothing is computed or written.
+
+    Parameters
+    ----------
+    tables : plain tables of a TOML scene;  plugins : one-off plug-in files
+    resume : go on with a store that is there
+
+    Raises
+    ------
+    SceneError
+        Mistakes in the scene or in the values that are swept.
+    RacewayError
+        A store that is there already and is not to be gone on with, or that belongs to another scene, sweep or version.
+    """
+    files = tuple(str(file.resolve()) for file in plugins)
+    registry = registry_of(files)
+    found = survey(tables, design, registry)
+    facts = {
+        "scene": found.scene.as_dict(),
+        "design": design.as_dict(),
+        "identity": identity(registry, found.used),
+        "files": found.files,
+    }
+    if any(key.rpartition(".")[2] == "kind" for key in design.keys):
+        facts["tables"] = dict(tables)  # options of kinds that the first point does not have
+    if exists(store):
+        with open_store(store) as there:
+            _refuse_other(there, facts, store)
+            if not resume:
+                states = there.status()
+                raise RacewayError(
+                    f"`{store}` holds this sweep already, {states['done']} of {states['total']} points done: go on with "
+                    "--resume, or choose another folder with --out. Nothing is overwritten."
+                )
+    elif (store / "results.nc").exists():
+        raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
+    return Sweep(dict(tables), design, store, files, found, facts, _chain_length(found, design))
+
+
+def _chain_length(found: Survey, design: Design) -> int:
+    """From the design and the predicted time of a point alone, so that a sweep that is resumed computes the same chains."""
+    scene = found.scene
+    try:
+        seconds = make_plan(scene).predicted_wall_s - START_S
+    except RacewayError:
+        return 1
+    if scene.bodies.kind == "condensed" and scene.contact.discretisation == "resultant":
+        seconds -= section_cost(scene).seconds  # its sections are meshed once
+    by_time = int(_CHAIN_S / max(seconds, 1e-3))
+    return max(1, min(_LONGEST, by_time, design.size // _CHAINS))
+
+
+def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progress: OnProgress | None = None) -> Store:
+    """Compute what is not finished; the store, open to be read.
+
+    Parameters
+    ----------
+    executor : follows ``raceway.contracts.Executor``
+    on_progress : called as ``on_progress(what, done, total)``; an exception stops the sweep
+
+    Raises
+    ------
+    PluginError
+        An executor that cannot work, or a worker that is not fit for it.
+    RacewayError
+        A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
+    """
+    design = prepared.design
+    work = Work(prepared.tables, prepared.facts["identity"], prepared.plugins)
+    with written(prepared.store, prepared.facts) as store:
+        store.wait_again(["running", *(["failed"] if retry_failed else [])])
+        waiting = store.numbers("waiting")
+        done, total = design.size - len(waiting), design.size
+        chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []
+
+        def batches() -> Iterator[tuple[int, list[Any]]]:
+            for number, chain in enumerate(chains):
+                left = [n for n in chain if n in waiting]
+                store.mark(left, "running")
+                yield number, [(n, design.point(n)) for n in left]
+
+        answers = executor.compute(work, batches())
+        try:
+            for number, answer in answers:
+                rows = _rows(answer, [n for n in chains[number] if n in waiting])
+                store.put(rows)
+                done += len(rows)
+                if on_progress is not None:
+                    on_progress("points", done, total)
+        finally:
+            close = getattr(answers, "close", None)
+            if close is not None:
+                close()
+            with suppress(RacewayError):  # a full disk was reported already; the next sweep does it
+                store.wait_again(["running"])
+    return open_store(prepared.store)
+
+
+def _rows(answer: Any, numbers: list[int]) -> list[dict[str, Any]]:
+    if isinstance(answer, Refused):
+        raise PluginError(f"worker {answer.worker} cannot compute these points: {answer.reason}")
+    if isinstance(answer, Lost):
+        return [
+            {"number": n, "state": "failed", "reason": answer.reason, "key": "", "values": {}, "cost": {}} for n in numbers
+        ]
+    return answer
+
+
+def _refuse_other(there: Store, facts: Mapping[str, Any], store: Path) -> None:
+    """A store that holds something else is named and left alone."""
+    reasons = _changed(there.scene, facts["scene"]) or _changed(there.facts.get("tables", {}), facts.get("tables", {}))
+    what = "another scene"
+    if not reasons and there.design != Design.from_dict(facts["design"]):
+        what, reasons = "another sweep", [there.design.in_words()]
+    if not reasons and there.facts["files"] != facts["files"]:
+        what, reasons = "another content of the files that the scene names", sorted({*there.facts["files"], *facts["files"]})
+    if not reasons:
+        what, reasons = "another version", differences(there.facts["identity"], facts["identity"])
+    if reasons:
+        told = "; ".join(reasons[:5]) + ("; ..." if len(reasons) > 5 else "")
+        raise RacewayError(
+            f"`{store}` holds results of {what} ({told}). It is not overwritten: choose another folder with --out."
+        )
+
+
+def _changed(old: Any, new: Any, place: str = "") -> list[str]:
+    """``key: old, now new`` for every leaf of two trees of tables that differs."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        keys = [*old, *(key for key in new if key not in old)]
+        return [w for key in keys for w in _changed(old.get(key), new.get(key), f"{place}.{key}" if place else key)]
+    return [] if old == new else [f"{place}: {old!r} there, {new!r} here"]

@@ -1,0 +1,285 @@
+"""The store of a sweep: a folder with the states and values of all points, which survives whatever stops the sweep.
+
+``points.sqlite`` is written by the one process that runs the sweep, a batch a transaction; ``results.nc`` and
+``results.csv`` are made from it.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import sqlite3
+import threading
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from raceway.errors import RacewayError
+from raceway.studies.axes import Axis
+from raceway.studies.sweep.design import Design
+
+if TYPE_CHECKING:
+    import xarray
+
+SCHEMA = 1
+STATES = ("waiting", "running", "done", "failed")
+#: A commit waits for the disk, twice: states of what is running are not worth more than a few of them a second.
+_MOMENT_S = 0.2
+POINTS, LOCK = "points.sqlite", ".lock"
+_TABLES = (
+    "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
+    "CREATE TABLE points (number INTEGER PRIMARY KEY, state TEXT NOT NULL, reason TEXT, key TEXT, content TEXT, cost TEXT)",
+    "CREATE INDEX points_by_state ON points (state)",
+)
+
+
+class Store:
+    """A sweep on disk; ``open_store`` reads one, ``written`` writes one.
+
+    Attributes
+    ----------
+    path : the folder
+    facts : scene (all keys, at the first point), design, identity (versions and plug-ins), files, options, schema, created
+    """
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self.path = path
+        self._connection = connection
+        self._lock = threading.RLock()
+        self._committed = -_MOMENT_S
+        with self._told():
+            found = connection.execute("SELECT name, value FROM facts").fetchall()
+        self.facts: dict[str, Any] = {name: json.loads(value) for name, value in found}
+        if self.facts.get("schema") != SCHEMA:
+            raise RacewayError(
+                f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
+            )
+        self.design = Design.from_dict(self.facts["design"])
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self._connection.close()
+
+    @property
+    def title(self) -> str:
+        return str(self.facts["scene"]["title"])
+
+    @property
+    def scene(self) -> dict[str, Any]:
+        """Every key of the scene at the first point."""
+        return dict(self.facts["scene"])
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Of a grid; empty for a list."""
+        return self.design.axes
+
+    def status(self) -> dict[str, int]:
+        """How many points are in each state, and ``total``."""
+        with self._told(), self._lock:
+            found = dict(self._connection.execute("SELECT state, COUNT(*) FROM points GROUP BY state").fetchall())
+        return {**{state: found.get(state, 0) for state in STATES}, "total": self.design.size}
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """``{point, status, reason, values, key, cost}`` of every point, in the order of the design."""
+        asked = "SELECT number, state, reason, key, content, cost FROM points ORDER BY number"
+        with self._told(), self._lock:
+            cursor = self._connection.execute(asked)
+        while True:
+            with self._told(), self._lock:
+                some = cursor.fetchmany(256)
+            if not some:
+                return
+            for number, state, reason, key, content, cost in some:
+                yield {
+                    "point": self.design.point(number),
+                    "status": state,
+                    "reason": reason or "",
+                    "values": json.loads(content) if content else {},
+                    "key": key or "",
+                    "cost": json.loads(cost) if cost else {},
+                }
+
+    def numbers(self, state: str) -> set[int]:
+        """Numbers of the points in a state."""
+        with self._told(), self._lock:
+            return {n for (n,) in self._connection.execute("SELECT number FROM points WHERE state = ?", (state,))}
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The labelled results: a dimension for each axis of a grid, or ``point`` for a list."""
+        from raceway.studies.sweep.dataset import dataset
+
+        return dataset(self)
+
+    def mark(self, numbers: Iterable[int], state: str) -> None:
+        """Put points into a state: at once, or with the next rows where the last transaction was a moment ago."""
+        with self._told(), self._lock:
+            self._connection.executemany("UPDATE points SET state = ? WHERE number = ?", [(state, n) for n in numbers])
+            if time.monotonic() - self._committed > _MOMENT_S:
+                self._commit()
+
+    def _commit(self) -> None:
+        self._connection.commit()
+        self._committed = time.monotonic()
+
+    def put(self, rows: Iterable[Mapping[str, Any]]) -> None:
+        """Keep finished rows, all in one transaction.
+
+        Raises
+        ------
+        RacewayError
+            A disk that takes no more; what was kept before stays readable.
+        """
+        lines = [
+            (row["state"], row["reason"], row["key"], _text(row["values"]), _text(row["cost"]), row["number"])
+            for row in rows
+        ]
+        asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, cost = ? WHERE number = ?"
+        with self._told(), self._lock:
+            try:
+                self._connection.executemany(asked, lines)
+                self._commit()
+            except sqlite3.Error:
+                self._connection.rollback()
+                raise
+
+    def wait_again(self, states: Iterable[str]) -> None:
+        """Points in these states wait again: those that a killed sweep left running, or failed ones to be tried again."""
+        with self._told(), self._lock:
+            for state in states:
+                self._connection.execute("UPDATE points SET state = 'waiting', reason = NULL WHERE state = ?", (state,))
+            self._commit()
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        with told(self.path):
+            yield
+
+
+def open_store(path: str | Path) -> Store:
+    """A store to read; a sweep may be writing to it.
+
+    Raises
+    ------
+    RacewayError
+        No store there, or one of another schema.
+    """
+    folder = Path(path)
+    file = folder / POINTS
+    if not file.is_file():
+        raise RacewayError(f"`{folder}` is no store of a sweep: it has no {POINTS}. `raceway sweep` makes one")
+    with told(folder):
+        return Store(
+            folder, sqlite3.connect(f"{file.resolve().as_uri()}?mode=rw", uri=True, timeout=30.0, check_same_thread=False)
+        )
+
+
+@contextmanager
+def written(folder: Path, facts: Mapping[str, Any] | None) -> Iterator[Store]:
+    """A store to write, for one process at a time; made with ``facts`` where there is none yet.
+
+    Raises
+    ------
+    RacewayError
+        Another process is writing to it, or the disk takes nothing.
+    """
+    with told(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        guard = (folder / LOCK).open("w")
+    with guard:
+        try:
+            fcntl.flock(guard, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise RacewayError(
+                f"`{folder}` is being written by another sweep: wait for it, or choose another --out"
+            ) from None
+        new = not exists(folder)
+        with told(folder):
+            connection = sqlite3.connect(folder / POINTS, timeout=30.0, check_same_thread=False)
+        try:
+            with told(folder):
+                connection.execute("PRAGMA journal_mode = TRUNCATE")
+                connection.execute("PRAGMA synchronous = NORMAL")
+                if facts is not None and not _made(connection):
+                    _make(connection, facts)
+            store = Store(folder, connection)
+            yield store
+        finally:
+            _leave(folder, connection, new)
+
+
+def _leave(folder: Path, connection: sqlite3.Connection, new: bool) -> None:
+    """Close a store that was written; one that was begun and got nowhere is taken away."""
+    with suppress(sqlite3.Error):  # what is wrong with the disk was said when it was written to
+        asked = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
+        empty = new and (not _made(connection) or connection.execute(asked).fetchone() is None)
+        connection.execute("PRAGMA journal_mode = DELETE")
+        connection.close()
+        if empty:
+            with suppress(OSError):
+                (folder / POINTS).unlink(missing_ok=True)
+                (folder / LOCK).unlink(missing_ok=True)
+                folder.rmdir()
+    connection.close()
+
+
+def exists(folder: Path) -> bool:
+    """Whether a folder holds a store: one that was killed while it was made is none."""
+    file = folder / POINTS
+    if not file.is_file():
+        return False
+    with told(folder):
+        connection = sqlite3.connect(f"{file.resolve().as_uri()}?mode=rw", uri=True, timeout=30.0)
+        try:
+            return _made(connection)
+        finally:
+            connection.close()
+
+
+def _made(connection: sqlite3.Connection) -> bool:
+    return connection.execute("SELECT 1 FROM sqlite_master WHERE name = 'facts'").fetchone() is not None
+
+
+def _make(connection: sqlite3.Connection, facts: Mapping[str, Any]) -> None:
+    """All in one transaction: a store is there with all its points, or not at all."""
+    size = Design.from_dict(facts["design"]).size
+    whole = {**facts, "schema": SCHEMA, "created": datetime.now(UTC).isoformat(timespec="seconds")}
+    connection.execute("BEGIN")
+    try:
+        for table in _TABLES:
+            connection.execute(table)
+        connection.executemany("INSERT INTO facts VALUES (?, ?)", [(name, _text(value)) for name, value in whole.items()])
+        waiting = ((number, "waiting") for number in range(size))
+        connection.executemany("INSERT INTO points (number, state) VALUES (?, ?)", waiting)
+    except BaseException:
+        connection.rollback()
+        raise
+    connection.commit()
+
+
+def _text(value: Any) -> str:
+    return json.dumps(value, allow_nan=False, separators=(",", ":"))
+
+
+@contextmanager
+def told(folder: Path) -> Iterator[None]:
+    """Faults of the disk or of the file, in words."""
+    try:
+        yield
+    except sqlite3.DatabaseError as why:
+        if isinstance(why, sqlite3.OperationalError):
+            raise RacewayError(
+                f"`{folder}` cannot be written or read: {why}. What is finished is kept: free some space, and go on with "
+                "--resume."
+            ) from None
+        raise RacewayError(f"`{folder / POINTS}` is not a store of a sweep ({why}): choose another folder.") from None
+    except OSError as why:
+        raise RacewayError(f"`{folder}`: {why.strerror or why}. Choose another folder with --out.") from None

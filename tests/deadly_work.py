@@ -1,0 +1,20 @@
+"""Work of a sweep that kills the process which computes the number 3; light, so that processes start fast."""
+
+from __future__ import annotations
+
+import os
+
+import attrs
+
+
+@attrs.frozen
+class Deadly:
+    """Ten times a number."""
+
+    def fault(self):
+        return None
+
+    def __call__(self, numbers):
+        if 3 in numbers:
+            os._exit(11)
+        return [10 * n for n in numbers]

@@ -1,0 +1,362 @@
+"""`raceway sweep`: designs, the store, what it survives, executors, continuation."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway.contracts import Lost, Refused
+from raceway.errors import PluginError, RacewayError, SceneError
+from raceway.plugins.executors.dask import Dask
+from raceway.plugins.executors.joblib import Joblib
+from raceway.plugins.executors.serial import Serial
+from raceway.registry import default_registry
+from raceway.run import run
+from raceway.scene_file import scene_from_dict
+from raceway.studies.axes import parse_axes, points
+from raceway.studies.points import tables_at
+from raceway.studies.sweep import Design, design_file, grid, open_store, point_list, prepare
+from raceway.studies.sweep import sweep as study
+from raceway.studies.sweep.store import written
+from raceway.studies.sweep.variables import values_of
+from raceway.studies.sweep.work import Work
+from tests.command_line import ARTICLE, invoke
+from tests.deadly_work import Deadly
+
+SCENE: dict[str, Any] = {
+    "title": "test",
+    "bearing": {"preset": "B7206C"},
+    "rotor": {"mass": 2.0},
+    "load": {"axial": 1000.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5},
+    "integrator": {"kind": "periodic"},
+}
+#: Tolerance of the periodic motion, and what Newton's iteration leaves of it: its last correction is far below.
+PERIODIC = 1e-9
+
+
+def rows_of(path):
+    with open_store(path) as store:
+        return [(row["point"], row["status"], row["reason"], row["values"]) for row in store.rows()]
+
+
+def swept(folder, design, executor=None, tables=SCENE, **options):
+    retry = options.pop("retry_failed", False)
+    study(prepare(tables, design, folder, **options), executor or Serial(), retry).close()
+    return rows_of(folder)
+
+
+@attrs.frozen
+class Stopping(Serial):
+    """Ctrl-C after some batches."""
+
+    after: int = 3
+
+    def compute(self, work, batches):
+        for count, answer in enumerate(super().compute(work, batches)):
+            if count == self.after:
+                raise KeyboardInterrupt
+            yield answer
+
+
+def test_a_grid_is_numbered_like_its_product_and_cut_into_chains_of_neighbours():
+    texts = ["load.axial=400,800", "excitation.speed_rpm=1000:9000:9", "supports.tilt=locked,free"]
+    design = grid(texts)
+    assert list(design.points()) == list(points(parse_axes(texts)))
+    chains = list(design.chains(4))
+    assert sorted(n for chain in chains for n in chain) == list(range(design.size))
+    for chain in chains:
+        alike = {(design.point(n)["load.axial"], design.point(n)["supports.tilt"]) for n in chain}
+        assert len(alike) == 1 and len(chain) <= 4
+    assert Design.from_dict(json.loads(json.dumps(design.as_dict()))) == design
+    assert list(grid(["a.b=x,y"]).chains(4)) == [[0, 1]]
+
+
+def test_lists_and_design_files(tmp_path):
+    wanted = [{"load.axial": 400, "supports.tilt": "locked"}, {"load.axial": 1.5e3, "supports.tilt": "free"}]
+    texts = {
+        "a.csv": "# loads\nload.axial, supports.tilt\n400, locked\n\n1.5e3, free\n",
+        "a.json": json.dumps(wanted),
+        "a.toml": '[[points]]\nload.axial = 400\nsupports.tilt = "locked"\n[[points]]\n"load.axial" = 1.5e3\nsupports.tilt = "free"\n',
+    }
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        assert list(point_list(tmp_path / name).listed) == wanted, name
+    assert list(design_file(tmp_path / "a.toml").listed) == wanted
+    (tmp_path / "grid.toml").write_text('[grid]\n"load.axial" = "400:1200:3"\nsupports.tilt = ["locked", "free"]\n')
+    assert design_file(tmp_path / "grid.toml") == grid(["load.axial=400:1200:3", 'supports.tilt="locked","free"'])
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "word"),
+    [
+        ("a.txt", "", "must end in one of .csv, .json, .toml"),
+        ("a.csv", "", "has no points"),
+        ("a.csv", "load.axial\n", "has no points"),
+        ("a.csv", "load.axial,b.c\n1\n", "has 1 values for 2 keys"),
+        ("a.json", "{", "is not valid JSON"),
+        ("a.json", "[1]", "must hold a list of points"),
+        ("a.json", '[{"load.axial": 1}, {"load.radial": 1}]', "not in all: load.axial, load.radial"),
+        ("a.json", '[{"a..b": 1}]', "is not a key of a scene"),
+        ("a.toml", "x = 1", "must hold a list of points"),
+        ("missing.csv", None, "cannot be read"),
+    ],
+)
+def test_bad_lists_are_refused(tmp_path, name, text, word):
+    if text is not None:
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError, match=word):
+        point_list(tmp_path / name)
+
+
+def test_bad_designs_are_refused_before_anything_is_written(tmp_path):
+    store = tmp_path / "store"
+    for design, word in (
+        (grid(["load.axail=1,2"]), "unknown key.*did you mean 'axial'"),
+        (grid(["load.axial=1,x"]), "load.axial"),
+        (Design(listed=({"load.axial": 1.0}, {"load.axial": "x"})), "point 2: load.axial"),
+    ):
+        with pytest.raises(SceneError, match=word):
+            prepare(SCENE, design, store)
+    with pytest.raises(SceneError, match="nothing is varied"):
+        grid([])
+    with pytest.raises(SceneError, match="has no values"):
+        grid(["load.axial="])
+    assert not store.exists()
+
+
+def test_values_are_those_of_single_runs_labelled_with_units(tmp_path):
+    import xarray
+
+    design = grid(["excitation.speed_rpm=11000,14000", "load.axial=500,1000,2000"])
+    found = swept(tmp_path / "s", design)
+    assert [status for _, status, _, _ in found] == ["done"] * 6
+    for point, _, _, values in found:
+        single = run(scene_from_dict(tables_at(SCENE, point, default_registry())))
+        assert values == values_of(single)
+    with open_store(tmp_path / "s") as store:
+        data = store.to_xarray()
+        assert store.status() == {"waiting": 0, "running": 0, "done": 6, "failed": 0, "total": 6}
+    assert dict(data.sizes) == {"excitation.speed_rpm": 2, "load.axial": 3, "dof": 5, "dof2": 5}
+    one = data.sel({"excitation.speed_rpm": 14000, "load.axial": 500})
+    assert one["z_real"] == found[3][3]["z_real"] and one["z_real"].attrs["units"] == "N/m"
+    assert one["stiffness"].sel(dof="y", dof2="y") == found[3][3]["stiffness"][1][1]
+    assert data["load.axial"].attrs["units"] == "N" and data["excitation.speed_rpm"].attrs["units"] == "r/min"
+    assert all(data[name].attrs.get("long_name") for name in data.variables if name not in ("dof", "dof2"))
+    assert json.loads(data.attrs["scene"])["rotor"]["mass"] == 2.0
+    assert json.loads(data.attrs["plugins"])["integrator:periodic"].startswith("raceway ")
+    from raceway.studies.sweep.dataset import write_netcdf
+
+    with open_store(tmp_path / "s") as store, xarray.open_dataset(write_netcdf(store)) as read:
+        assert read.equals(data) and read.attrs["program"] == data.attrs["program"]
+
+
+def test_a_static_scene_and_a_list_have_what_they_have(tmp_path):
+    static = {name: table for name, table in SCENE.items() if name not in ("excitation", "integrator")}
+    listed = Design(
+        listed=({"load.axial": 500.0, "supports.tilt": "free"}, {"load.axial": 900.0, "supports.tilt": "locked"})
+    )
+    swept(tmp_path / "s", listed, tables=static)
+    with open_store(tmp_path / "s") as store:
+        data = store.to_xarray()
+    assert data.sizes["point"] == 2 and "z_real" not in data and "p0" in data
+    assert data["supports.tilt"].values.tolist() == ["free", "locked"]
+    assert float(data["displacement"].sel(dof="x")[1]) > float(data["displacement"].sel(dof="x")[0]) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("speeds", "force"), [((10980.0, 15000.0), 400.0), ((60000.0, 120000.0), 20.0)], ids=["article", "resonance"]
+)
+def test_continuation_saves_work_and_changes_nothing(speeds, force):
+    """Also through a resonance of the ring, where the nonlinear part is carried over only as long as it is small."""
+    excitation = {"kind": "bidirectional", "amplitude": "constant", "force": force, "speed_rpm": 1.0}
+    tables = {**SCENE, "kinematics": {"ball_inertia": False}, "excitation": excitation}
+    registry, before, work = default_registry(), None, [0, 0]
+    for speed in np.linspace(*speeds, 16):
+        scene = scene_from_dict(tables_at(tables, {"excitation.speed_rpm": float(speed)}, registry), registry)
+        cold, warm = run(scene, registry), run(scene, registry, near=before)
+        z, other = cold.identification.dynamic_stiffness, warm.identification.dynamic_stiffness
+        assert abs(other - z) <= PERIODIC * abs(z)
+        work[0] += cold.cost["newton_iterations"]
+        work[1] += warm.cost["newton_iterations"]
+        before = warm
+    assert work[1] < work[0]
+
+
+def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
+    design = grid(["excitation.speed_rpm=10980:15000:32", "load.axial=400,2000"])  # chains of 4
+    whole = swept(tmp_path / "whole", design)
+    with pytest.raises(KeyboardInterrupt):
+        swept(tmp_path / "s", design, Stopping())
+    with open_store(tmp_path / "s") as store:
+        states = store.status()
+    assert states == {"waiting": 52, "running": 0, "done": 12, "failed": 0, "total": 64}
+
+    with pytest.raises(RacewayError, match=r"12 of 64 points done: go on with --resume"):
+        prepare(SCENE, design, tmp_path / "s")
+    assert swept(tmp_path / "s", design, Stopping(after=100), resume=True) == whole
+
+    # Nothing is left to do: no batch is asked for.
+    assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == whole
+
+
+def test_killed_while_it_computes(tmp_path):
+    """The store of a process that was killed is whole, and goes on to the same values."""
+    words = [
+        "--grid",
+        "excitation.speed_rpm=10980:15000:32",
+        "--grid",
+        "load.axial=400,900,2000",
+        "--out",
+        str(tmp_path / "s"),
+    ]
+    words = ["-m", "raceway", "sweep", ARTICLE, "--set", "integrator.kind=periodic", *words]
+    process = subprocess.Popen([sys.executable, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    file, done = tmp_path / "s" / "points.sqlite", 0
+    end = time.monotonic() + 100.0
+    while done < 8 and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.02)
+        if file.is_file() and file.stat().st_size > 0:
+            try:
+                with open_store(tmp_path / "s") as store:
+                    done = store.status()["done"]
+            except RacewayError:
+                continue  # it is being made
+    process.send_signal(signal.SIGKILL)
+    error = process.communicate()[1].decode()
+    assert process.returncode == -signal.SIGKILL, error
+    found = invoke("sweep", *words[3:], "--resume", "--json")
+    assert found.exit_code == 0, found.output
+    content = json.loads(found.stdout)
+    assert content["states"]["done"] == 96
+    again = invoke("sweep", *words[3:-1], str(tmp_path / "whole"), "--json")
+    assert json.loads(again.stdout)["rows"] == content["rows"]
+
+
+def test_a_full_disk_keeps_what_is_finished(tmp_path):
+    code = (
+        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000));"
+        "from raceway.cli import main; main(sys.argv[1:])"
+    )
+    words = ["sweep", ARTICLE, "--set", "integrator.kind=periodic", "--grid", "excitation.speed_rpm=10980:15000:64"]
+    words += ["--out", str(tmp_path / "s")]
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
+    assert done.returncode == 2, done.stderr
+    assert "Traceback" not in done.stderr and "free some space" in done.stderr and "--resume" in done.stderr
+    with open_store(tmp_path / "s") as store:
+        assert 0 < store.status()["done"] < 64
+    assert invoke(*words, "--resume").exit_code == 0
+    assert all(row[1] == "done" for row in rows_of(tmp_path / "s"))
+
+
+def test_points_that_fail_keep_their_reason_and_are_tried_again_when_asked(tmp_path):
+    design = grid(["supports.tilt=locked", "load.axial=0,500", "excitation.kind=bidirectional,unidirectional"])
+    found = swept(tmp_path / "s", design)
+    assert [status for _, status, _, _ in found] == ["failed", "failed", "done", "done"]
+    assert "nothing loads the bearing" in found[0][2] and not found[0][3]
+    assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == found
+    with pytest.raises(KeyboardInterrupt):
+        swept(tmp_path / "s", design, Stopping(after=0), resume=True, retry_failed=True)
+    with open_store(tmp_path / "s") as store:
+        assert store.status()["waiting"] == 2
+    done = invoke("sweep", ARTICLE, "--grid", "load.axial=0", "--grid", "rotor.mass=1,2", "--out", tmp_path / "t", "--json")
+    assert done.exit_code == 1 and "all 2 points failed" in json.loads(done.stdout)["errors"][0]["message"]
+
+
+def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
+    design = grid(["load.axial=500,600"])
+    whole = swept(tmp_path / "s", design)
+    heavier = {**SCENE, "rotor": {"mass": 3.0}}
+    with pytest.raises(RacewayError, match=r"another scene \(rotor.mass: 2.0 there, 3.0 here\).*not overwritten"):
+        prepare(heavier, design, tmp_path / "s", resume=True)
+    with pytest.raises(RacewayError, match=r"another sweep \(2 points over load.axial\)"):
+        prepare(SCENE, grid(["load.axial=500,600,700"]), tmp_path / "s", resume=True)
+    file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
+    with file:
+        (text,) = file.execute("SELECT value FROM facts WHERE name = 'identity'").fetchone()
+        old = {**json.loads(text), "raceway": "0.0.9"}
+        file.execute("UPDATE facts SET value = ? WHERE name = 'identity'", (json.dumps(old),))
+    file.close()
+    with pytest.raises(RacewayError, match=r"another version \(raceway 0.1.0 instead of 0.0.9\)"):
+        prepare(SCENE, design, tmp_path / "s", resume=True)
+    assert rows_of(tmp_path / "s") == whole
+    (tmp_path / "strange").mkdir()
+    (tmp_path / "strange" / "points.sqlite").write_text("not a data base at all, " * 50)
+    with pytest.raises(RacewayError, match="is not a store of a sweep"):
+        prepare(SCENE, design, tmp_path / "strange", resume=True)
+    with pytest.raises(RacewayError, match="no store of a sweep"):
+        open_store(tmp_path)
+
+
+def test_two_sweeps_do_not_write_one_store(tmp_path):
+    prepared = prepare(SCENE, grid(["load.axial=500,600"]), tmp_path / "s")
+    with written(prepared.store, prepared.facts), pytest.raises(RacewayError, match="is being written by another sweep"):
+        study(prepared, Serial())
+
+
+def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
+    prepared = prepare(SCENE, grid(["load.axial=500,600"]), tmp_path / "s")
+    wanted = prepared.facts["identity"]
+    for changed, words in (
+        ({"plugins": {**wanted["plugins"], "contact_law:mine": "raceway-mine 1.0"}}, "contact law 'mine' of raceway-mine 1.0 is missing"),
+        ({"plugins": {**wanted["plugins"], "contact_law:hertz": "raceway 0.2"}}, "contact law 'hertz' is of raceway 0.1.0 instead of raceway 0.2"),
+        ({"numpy": "1.0", "program": "x"}, "instead of 1.0"),
+        ({"program": "y"}, "under the same version"),
+    ):  # fmt: skip
+        answer = Work(SCENE, {**wanted, **changed})([(0, {"load.axial": 500.0})])
+        assert isinstance(answer, Refused) and words in answer.reason
+
+    class Elsewhere(Serial):
+        def compute(self, work, batches):
+            for number, _ in batches:
+                yield number, Refused("host:1", "contact law 'mine' is missing")
+
+    with pytest.raises(PluginError, match="worker host:1 cannot compute these points: contact law 'mine' is missing"):
+        study(prepared, Elsewhere())
+
+
+def test_processes_give_the_same_rows(tmp_path):
+    design = grid(["excitation.speed_rpm=10980:15000:32"])
+    assert swept(tmp_path / "a", design) == swept(tmp_path / "b", design, Joblib(workers=2))
+
+
+def test_a_process_that_dies_costs_its_batch_only():
+    answers = dict(Joblib(workers=2).compute(Deadly(), ((n, [n]) for n in (3, 4))))
+    assert isinstance(answers.pop(3), Lost)
+    assert answers == {4: [40]}
+
+
+def test_executors_say_what_is_missing(monkeypatch):
+    for name, executor in (("joblib.externals.loky", Joblib()), ("distributed", Dask())):
+        monkeypatch.setitem(sys.modules, name, None)
+        with pytest.raises(PluginError, match=r"pip install 'raceway\[sweep\]'"):
+            list(executor.compute(Deadly(), []))
+
+
+def test_the_command(tmp_path):
+    words = ["sweep", ARTICLE, "--set", "integrator.kind=periodic", "--grid", "load.axial=500,600", "--out", tmp_path / "s"]
+    shown = invoke(*words, "--csv")
+    assert shown.exit_code == 0 and "2 points: 2 done" in shown.output
+    lines = (tmp_path / "s" / "results.csv").read_text().splitlines()
+    assert len(lines) == 3 and lines[0].startswith("load.axial,status,reason,z_real")
+    assert (tmp_path / "s" / "results.nc").stat().st_size > 0
+    content = json.loads(invoke(*words, "--resume", "--json").stdout)
+    assert content["axes"] == [{"key": "load.axial", "values": [500, 600]}] and content["store"] == str(tmp_path / "s")
+    assert set(content["rows"][0]) == {"point", "status", "values"}
+    for more, word in (
+        (["--executor", "seriall"], "did you mean 'serial'"),
+        (["--workers", "3"], "executor 'serial' has no --workers"),
+        (["--list", "x.csv"], "contradict each other"),
+    ):
+        refused = invoke(*words, *more)
+        assert refused.exit_code == 2 and word in refused.output
