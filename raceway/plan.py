@@ -155,9 +155,12 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
             f"contact.discretisation is nodal: some {patches.points} points carry a contact, {patches.bytes / 2**20:.0f} MiB"
         )
         kept.append(Part("pressures at surface points", why))
-        left_out.append(
-            Part("inertia of the balls along the groove", "their slowest mode lies at some kHz: they follow at once")
-        )
+        recorded = dynamic and "record" in scene.identifier.method.needs
+        moves = recorded and scene.integrator.method.inertial and scene.kinematics.ball_inertia
+        decide(
+            moves, "inertia of the balls in their meridian planes", "two coordinates a ball, in steps of time",
+            "their slowest mode lies at some kHz: they follow at once",
+        )  # fmt: skip
     elif condensed:
         why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
         coupled = decide(coupled, "effect of balls on each other through the rings", "soft seats or thick rings", why_not)
@@ -277,7 +280,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal" and condensed:
-        faults += patch_faults(scene)
+        faults += patch_faults(scene) or section_faults(scene)
     elif condensed:
         faults += section_faults(scene)
     elif contact.discretisation == "nodal" and rigid:
