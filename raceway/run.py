@@ -11,7 +11,6 @@ import numpy as np
 
 from raceway.core.bodies.ring import GYROSCOPIC
 from raceway.core.energy import energy_balance
-from raceway.core.friction import friction_energy
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.lines import Line, lines
@@ -194,7 +193,7 @@ def _friction(model: Model, simulation: Simulation) -> float:
     """Energy that friction took from a motion [J]."""
     if simulation.whole.energies:
         return friction_lost(simulation.whole.energies)
-    return float(friction_energy(model.system, simulation.whole).lost[-1])
+    return float(model.system.friction_lost(simulation.whole))
 
 
 def _drift(model: Model, simulation: Simulation) -> float | None:

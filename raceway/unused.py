@@ -51,6 +51,8 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     locked = scene.supports.tilt == "locked"
     told(locked and not slow, "supports.tilt is locked", "rotor.transverse_inertia", "rotor.polar_inertia")
     told(scene.contact.friction == 0.0, "contact.friction is 0", "contact.stick_stiffness")
+    points = scene.bodies.kind == "condensed" and scene.contact.discretisation == "nodal"
+    told(points, "points stick by the compliance of rings and balls themselves", "contact.stick_stiffness")
     whole = scene.bodies.kind == "elastic"
     told(not whole, f"bodies.kind is '{scene.bodies.kind}'", "bodies.formulation", "bodies.hourglass")
     plain = whole and scene.bodies.formulation != "one_point"

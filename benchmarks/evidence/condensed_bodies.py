@@ -62,7 +62,7 @@ def _full() -> list[Row]:
 
     for inner in (True, False):
         profile, word = _small(inner), "inner" if inner else "outer"
-        for formulation in ("incompatible", "one_point"):
+        for formulation in ("incompatible", "full", "one_point"):
             swept = Swept(profile, 36, formulation)
             found = worst(Revolution(profile, 36, *STEEL, formulation), swept.clamped, swept)
             what = f"{word} ring clamped, {formulation}: difference from the full solve, loads along r, theta and x"
@@ -236,7 +236,7 @@ def _cost() -> list[Row]:
         with tempfile.TemporaryDirectory() as folder:
             command = [sys.executable, "-c", BUILD, str(nodes), folder]
             done = json.loads(subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout)
-        note = f"{done['parts']['elements'] / 1e6:.1f} million elements' worth; friction's third component included"
+        note = f"{done['parts']['elements'] / 1e6:.1f} million elements' worth; all three components, of which pressures need two and friction the third"
         word = f"{nodes} nodes per semi-axis"
         out += [
             below(f"{word}: set-up of ball and rings, CPU seconds", done["first"], limit, COMMAND, note),

@@ -16,6 +16,7 @@ import numpy as np
 from benchmarks.evidence import Row, below, near
 from benchmarks.evidence._files import ROOT
 from benchmarks.evidence._scenes import model_of, rotating, settled
+from benchmarks.evidence.condensed_patches import NAMES, held_poles, solved_points
 
 TITLE = "Condensed bodies: the calibrated law"
 COMMAND = "python -m benchmarks.evidence condensed_calibrated"
@@ -30,7 +31,6 @@ POINTS = {
     "free": {"x": 27.064, "y": 13.701, "tilt_z": 1.5465, "kxx": 66.08, "kyy": 269.6, "kzz": 256.2},
 }
 BED = {"x": 32.191, "y": 2.598, "kxx": 55.48, "kyy": 191.7}
-RIPPLE = "tangents of points ripple with their places, so that two programs differ, too: this one's are compared below"
 UNITS = {"x": "um", "y": "um", "tilt_z": "mrad"}
 #: Sizes of elements [m] with elements along a semi-axis of the contact, and how near their limit they must come.
 LADDER = ((2e-3, 1, 0.02), (1e-3, 1, 0.02), (0.5e-3, 2, 0.01), (0.25e-3, 4, 0.003))
@@ -79,22 +79,31 @@ def structural() -> list[Row]:
 
 
 def bearing() -> list[Row]:
-    """Both tilt boundaries against both columns of the notes."""
+    """Both tilt boundaries against both columns of the notes.
+
+    Tangents of points there leave out what the load on the other pole of a ball does, which this program's give with and without.
+    """
     out = []
     for tilt in ("locked", "free"):
         found = quantities(settled(tables(tilt))[1])
+        model, nodal = solved_points(8, tilt)
+        ratio = dict(zip(NAMES, np.diag(nodal.stiffness) / np.diag(held_poles(model, nodal)), strict=True))
         for word, column in (("the same law", CALIBRATED), ("8 points per semi-axis", POINTS)):
             for name, want in column[tilt].items():
                 unit = UNITS.get(name, "N m/mrad" if "tilt" in name else "N/um")
-                stiffness_of_points = column is POINTS and name.startswith("k")
-                note = RIPPLE if stiffness_of_points else ""
-                what = f"tilt {tilt}: {name}, {unit}, against {word} (notes)"
-                out.append(near(what, found[name], want, 0.01, COMMAND, note))
+                what, note, within = f"tilt {tilt}: {name}, {unit}, against {word} (notes)", "", 0.01
+                if column is POINTS and name.startswith("k"):
+                    note = (
+                        f"{want:g} there, less {100 * (1 - ratio[name]):.2f} %: pole-to-pole compliance, which its tangents leave out; "
+                        "1 % and the 0.5 % by which tangents at one place of 8 points ripple; against this program's points: below"
+                    )
+                    want, within = want * ratio[name], 0.015
+                out.append(near(what, found[name], want, within, COMMAND, note))
     return out
 
 
 def points() -> list[Row]:
-    """Against this program's own pressures at surface points, whose ripple in the tangent a mean over five loads halves."""
+    """Against this program's own pressures at surface points, five loads a little apart."""
     out = []
     for tilt in ("locked", "free"):
         found: dict[str, list[float]] = {}
@@ -107,7 +116,7 @@ def points() -> list[Row]:
             for name in ("x", "y", "tilt_z", "kxx", "kyy", "kzz", "k tilt_y", "k tilt_z"):
                 if abs(theirs[name]) > 1e-9:
                     found.setdefault(name, []).append(ours[name] / theirs[name] - 1.0)
-        note = "mean over five loads within 3 %; largest single difference: "
+        note = "mean of five loads from 970 to 1030 N axial; largest difference of one of them: "
         for name, apart in found.items():
             mean, most = float(np.mean(apart)), max(np.abs(apart))
             what = f"tilt {tilt}: {name}, calibrated over own 8 points per semi-axis, less 1"

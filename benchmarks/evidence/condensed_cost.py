@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import time
+import tomllib
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.evidence import Row
+from benchmarks.evidence._files import ROOT
 from benchmarks.evidence.condensed_calibrated import quantities, tables
 from raceway import array_cache
 from raceway.errors import RacewayError
@@ -29,6 +31,7 @@ OTHER = {
     "setting": "CalculiX, C3D8R, 63 000 elements", "displacement": 1.0, "stiffness": None, "set_up_s": None, "solve_s": 334.0,
     "note": "factor 2 off: facets of the concave groove cut into the balls (measured with that program; no part of this package)",
 }  # fmt: skip
+NOTES = {"elastic": "one node along a semi-axis: contacts are not resolved, and no mesh that resolves them is as cheap"}
 
 
 def settings() -> dict[str, dict[str, Any]]:
@@ -43,7 +46,15 @@ def settings() -> dict[str, dict[str, Any]]:
             }
             for n in (2, 4, 8)
         },
+        "elastic, 3.2 mm elements": elastic(),
     }  # fmt: skip
+
+
+def elastic() -> dict[str, Any]:
+    """Bodies, mesh and contact of the example: the coarsest that stands for what every node costs."""
+    with open(ROOT / "examples" / "b7206_elastic.toml", "rb") as file:
+        example = tomllib.load(file)
+    return {name: example[name] for name in ("bodies", "mesh", "contact")}
 
 
 def table() -> list[dict[str, Any]]:
@@ -55,7 +66,7 @@ def table() -> list[dict[str, Any]]:
     for name, changes in settings().items():
         kind = name.split(" points")[0].rstrip("0123456789")
         try:
-            if kind not in loaded:
+            if kind not in loaded and not name.startswith("elastic"):  # half a minute: its kernels' seconds do not count
                 _measured(changes)  # the first of its kind loads kernels
                 loaded.add(kind)
             found = _anew(partial(_measured, changes))
@@ -71,7 +82,7 @@ def table() -> list[dict[str, Any]]:
                 }
             )
             continue
-        out.append({"setting": name, **_errors(found, reference), "note": ""})
+        out.append({"setting": name, **_errors(found, reference), "note": NOTES.get(name.split(",")[0], "")})
     return [*out, OTHER]
 
 

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def inertia_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
     """First elastic frequencies of both rings as supported and free, and of a ball along its grooves [Hz].
 
-    Each with the error (w / w_1)^2 that leaving out its inertia makes in what it contributes; None in a static scene.
+    Each with the error (w / w_1)^2 that leaving out its inertia makes in what it contributes; None in a static scene, and for
+    a ball whose inertia the motion has.
 
     Notes
     -----
@@ -47,4 +48,9 @@ def inertia_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
     mass = geometry.ball_mass(b.balls.density)
     slowest = float(np.sqrt(loaded.min() / mass) / (2.0 * np.pi)) if len(loaded) else None
     tell("ball_along_grooves", slowest)
+    recorded = excitation is not None and "record" in scene.identifier.method.needs
+    moves = recorded and scene.integrator.method.inertial and getattr(model.system, "ball_mass", 0.0) > 0.0
+    out["ball_along_grooves_in_motion"] = moves
+    if moves:
+        out["ball_along_grooves_error"] = None
     return out

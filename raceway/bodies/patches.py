@@ -77,9 +77,11 @@ def _system(
     """A ring like another one, on patches with so many points along the semi-axes at a load [N]."""
     spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
     make = _maker(scene, spacing)
-    pool = Pool(make(reach), _point_laws(scene, basis, spacing), _widening(basis, reach, make))
+    laws = _point_laws(scene, basis, spacing)
+    pool = Pool(make(reach), laws, _widening(basis, reach, make), scene.contact.friction)
+    mass = basis.geometry.ball_mass(scene.bearing.balls.density) if scene.kinematics.ball_inertia else 0.0
     fields = {f.name: getattr(like, f.name) for f in attrs.fields(System)}
-    return PatchSystem(**{**fields, "table": like.table.copy()}, pool=pool), spacing
+    return PatchSystem(**{**fields, "table": like.table.copy()}, pool=pool, ball_mass=mass), spacing
 
 
 def _semi_axes(ellipse: Any, load: float) -> tuple[float, float]:
@@ -96,7 +98,7 @@ def _first_reach(scene: Scene, basis: Basis, rigid: System, guess: np.ndarray) -
         try:
             orbit = steady_orbit(rigid.at_standstill(), excitation.period_s, q, samples=33)
             times = np.arange(33) * orbit.period / 33
-            states += [(q, ball[:, :2], t) for q, ball, t in zip(orbit.displacement, orbit.ball, times, strict=True)]
+            states += [(q, ball, t) for q, ball, t in zip(orbit.displacement, orbit.ball, times, strict=True)]
         except ConvergenceError:
             pass  # patches grow on the way
     angles: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
@@ -139,13 +141,14 @@ def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Pat
 
     def make(reach: Reach) -> tuple[Patch, Patch]:
         grid = spacing.holding(reach.widest)
-        slide = 0.5 * grid.along / min(ring_shape(b, inner).groove for inner in (True, False))  # for mean stiffnesses
+        # Half a row for mean stiffnesses, which slide so far, and half a row since the last one must carry nothing.
+        slide = grid.along / min(ring_shape(b, inner).groove for inner in (True, False))
         bodies = [
             RingBody(ring_shape(b, inner), rings, seat, (window[0] - slide, window[1] + slide))
             for inner, seat, window in zip((True, False), seats, (reach.inner, reach.outer), strict=True)
         ]
         rows = max(int((body.window[1] - body.window[0]) * body.shape.groove / grid.along) + 2 for body in bodies)
-        ball = make_ball(0.5 * b.ball_diameter, steel, grid, rows)
+        ball = make_ball(0.5 * b.ball_diameter, steel, grid, rows, shear=scene.contact.friction > 0.0)
         first, second = (make_patch(body, ball, grid, b.ball_count) for body in bodies)
         return first, second
 

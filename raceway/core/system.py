@@ -22,6 +22,7 @@ from raceway.core.bodies.ring import (
     stop,
 )
 from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
+from raceway.core.record import Record
 from raceway.core.root import find_root
 from raceway.errors import ConvergenceError
 
@@ -299,6 +300,12 @@ class System:
         turned = self.table[:, SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
         groove = self.scalars[OFFSET_INNER] + 0.5 * self.scalars[DIAMETER]
         return np.column_stack([self.scalars[OFFSET_INNER] * inner - groove * turned, self.scalars[OFFSET_OUTER] * outer])
+
+    def friction_lost(self, record: Record) -> float:
+        """Energy that friction has taken at the end of a record [J]."""
+        from raceway.core.friction import friction_energy
+
+        return float(friction_energy(self, record).lost[-1])
 
     def at_standstill(self) -> System:
         """Without friction and with balls that do not orbit: for periodic motions that a transient may start on."""

@@ -55,13 +55,16 @@ class Single:
         return float(pressed.load.max() / self.patch.area)
 
 
-def single(points: float, load: float, inner: bool = True, angle: float | None = None, room: float = 1.2) -> Single:
+def single(
+    points: float, load: float, inner: bool = True, angle: float | None = None, room: float = 1.2, shear: bool = False
+) -> Single:
     """A patch with so many points along each semi-axis at a load [N].
 
     Parameters
     ----------
     angle : of the contact [rad]; the free contact angle when None
     room : how much further than the ellipse the points reach, as a factor
+    shear : with compliances along the groove, for friction
     """
     scene = scene_from_dict({"title": "single contact", "bearing": {"preset": "B7206C"}})
     bearing, basis = scene.bearing, make_basis(scene)
@@ -74,6 +77,7 @@ def single(points: float, load: float, inner: bool = True, angle: float | None =
     solid = Solid(bearing.rings.young, bearing.rings.poisson)
     ring = RingBody(shape, solid, "clamped", (angle - half, angle + half))
     ball = make_ball(
-        radius, Solid(bearing.balls.young, bearing.balls.poisson), spacing, int(2.0 * half * radius / spacing.along) + 3
-    )
+        radius, Solid(bearing.balls.young, bearing.balls.poisson), spacing, int(2.0 * half * radius / spacing.along) + 3,
+        shear,
+    )  # fmt: skip
     return Single(make_patch(ring, ball, spacing, bearing.ball_count), ellipse, angle)

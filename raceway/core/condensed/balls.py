@@ -11,6 +11,9 @@ contacts on the balls, and W the compliance between contacts: of a ball from pol
 acts on resultants: far from a contact the field of its pressure is that of its resultant.  With K the contacts' own
 stiffness, S = (1 + K W)^-1 K is what they show together; the balls' balance F_inner + F_outer + F_c = 0 then is a system
 in p alone.
+
+Friction also feels the turn of the inner ring's section at every ball: B = (1 + K W)^-1 b, b the contacts' derivatives, and
+a couple on that section.  The balls' inertia is a force that falls with their place, ``Given``.
 """
 
 from __future__ import annotations
@@ -18,12 +21,35 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.condensed.contact import Contact, Pressed
+from raceway.core.condensed.contact import Contact, Held, Pressed
 from raceway.errors import ConvergenceError
 
 _LIMIT = 60
 #: Share of the regularisation that gives an unloaded ball a stiffness, of the largest one.
 _IDLE = 1e-12
+
+
+@attrs.frozen(eq=False)
+class Given:
+    """What acts on balls and contacts beside their places.
+
+    Attributes
+    ----------
+    turn : (Z,) of the inner ring's section at every ball [rad]
+    slip : of the points of all contacts, each (rows * columns,) [m]; empty: no friction
+    push, spring : (Z, 2) [N] and [N/m]: force push - spring * place on the balls, their inertia
+    """
+
+    turn: np.ndarray
+    slip: list[np.ndarray] = attrs.field(factory=list)
+    push: np.ndarray | float = 0.0
+    spring: float = 0.0
+
+    def of(self, contact: int) -> Held | None:
+        """What a contact has to know."""
+        if not self.slip:
+            return None
+        return Held(float(self.turn[contact % len(self.turn)]), self.slip[contact])
 
 
 @attrs.frozen(eq=False)
@@ -36,6 +62,9 @@ class Linear:
     force : (2 Z, 2) forces on the balls that are carried on [N];  rest : (2 Z, 2) what the contacts give beyond them
     shown : (4 Z, 4 Z) S [N/m];  held : (2 Z, 2 Z) the balls' own stiffness H = P^T S P
     balance : (2 Z,) forces on the balls, contact forces at W F included to first order [N]
+    turned : (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
+    couple : (Z,) on that section [N m]
+    seen : (2 Z, 2) D, the balls seen from the grooves [m]
     """
 
     pressed: list[Pressed]
@@ -45,6 +74,9 @@ class Linear:
     shown: np.ndarray
     held: np.ndarray
     balance: np.ndarray
+    turned: np.ndarray
+    couple: np.ndarray
+    seen: np.ndarray
 
 
 class Balls:
@@ -67,41 +99,56 @@ class Balls:
         self._ones = np.eye(2 * n)
         self.evaluations = 0
 
-    def linear(self, centre: np.ndarray, place: np.ndarray, force: np.ndarray, rate: np.ndarray) -> Linear:
+    def linear(
+        self, centre: np.ndarray, place: np.ndarray, force: np.ndarray, rate: np.ndarray, given: Given | None = None
+    ) -> Linear:
         """Press all contacts.
 
         Parameters
         ----------
         centre, place : (Z, 2) e and p [m];  force : (2 Z, 2) F [N];  rate : (2 Z, 2) velocities of D [m/s]
         """
+        given = given or Given(np.zeros(self.count))
         moved = (self.coupling @ force.reshape(-1)).reshape(-1, 2)
         seen = np.concatenate([place - centre, place]) + moved
-        pressed = [contact.press(d, r) for contact, d, r in zip(self.contacts, seen, rate, strict=True)]
+        pressed = [
+            contact.press(d, r, given.of(k)) for k, (contact, d, r) in enumerate(zip(self.contacts, seen, rate, strict=True))
+        ]
         self.evaluations += 1
         answer = np.array([one.force for one in pressed])
         rest = (answer - force).reshape(-1)
-        shown, held, carried = self._together([one.stiffness for one in pressed], rest)
-        balance = self._both.T @ (force.reshape(-1) + carried) + self.loads.reshape(-1)
-        return Linear(pressed, force, rest.reshape(-1, 2), carried, shown, held, balance)
+        shown, held, carried, turned = self._together([one.stiffness for one in pressed], rest, pressed, given.spring)
+        acting = self.loads + given.push - given.spring * place
+        balance = self._both.T @ (force.reshape(-1) + carried) + acting.reshape(-1)
+        couple = np.array([one.couple for one in pressed[: self.count]])
+        return Linear(pressed, force, rest.reshape(-1, 2), carried, shown, held, balance, turned, couple, seen)
 
     def without_ripple(self, now: Linear, centre: np.ndarray, place: np.ndarray) -> Linear:
         """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""
         moved = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
         seen = np.concatenate([place - centre, place]) + moved
-        stiffness = [contact.mean_stiffness(d) for contact, d in zip(self.contacts, seen, strict=True)]
-        shown, held, carried = self._together(stiffness, now.rest.reshape(-1))
-        return attrs.evolve(now, shown=shown, held=held, carried=carried)
+        stiffness = [
+            contact.mean_stiffness(d) + one.along for contact, d, one in zip(self.contacts, seen, now.pressed, strict=True)
+        ]
+        shown, held, carried, turned = self._together(stiffness, now.rest.reshape(-1), now.pressed)
+        return attrs.evolve(now, shown=shown, held=held, carried=carried, turned=turned)
 
-    def _together(self, stiffness: list[np.ndarray], rest: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """S, H and (1 + K W)^-1 rest, for the stiffness (2, 2) of every contact."""
-        stiff = np.zeros_like(self.coupling)
+    def _together(
+        self, stiffness: list[np.ndarray], rest: np.ndarray, pressed: list[Pressed], spring: float = 0.0
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """S, H, (1 + K W)^-1 rest and B, for the stiffness (2, 2) of every contact."""
+        stiff, turned = np.zeros_like(self.coupling), np.zeros((len(rest), self.count))
         for k, one in enumerate(stiffness):
             stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one
-        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, rest]))
-        shown = 0.5 * (both[:, :-1] + both[:, :-1].T)
+        for k, other in enumerate(pressed[: self.count]):
+            turned[2 * k : 2 * k + 2, k] = other.by_turn
+        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, turned, rest]))
+        shown = both[:, : len(rest)]
+        if all(one.gripped is None for one in pressed):
+            shown = 0.5 * (shown + shown.T)
         held = self._both.T @ shown @ self._both
-        held += _IDLE * max(np.abs(held).max(), 1.0) * np.eye(len(held))
-        return shown, held, both[:, -1]
+        held += (spring + _IDLE * max(np.abs(held).max(), 1.0)) * np.eye(len(held))
+        return shown, held, both[:, -1], both[:, len(rest) : -1]
 
     def follow(self, now: Linear) -> np.ndarray:
         """(2 Z, 2 Z) motion of the balls that follows a motion of the inner groove centres."""
@@ -110,7 +157,24 @@ class Balls:
     def tangent(self, now: Linear) -> np.ndarray:
         """(2 Z, 2 Z) stiffness against motions of the inner groove centres."""
         carried = self._both.T @ now.shown @ self._inner
-        return self._inner.T @ now.shown @ self._inner - carried.T @ np.linalg.solve(now.held, carried)
+        lost = self._inner.T @ now.shown @ self._both @ np.linalg.solve(now.held, carried)
+        return np.asarray(self._inner.T @ now.shown @ self._inner - lost)
+
+    def tangent_with_turns(self, now: Linear) -> np.ndarray:
+        """(3 Z, 3 Z) the same against those motions and, behind them, turns of the inner ring's section."""
+        n, z = 2 * self.count, self.count
+        by_place, by_turn = np.zeros((z, 2 * n)), np.zeros(z)
+        for k, one in enumerate(now.pressed[:z]):
+            by_place[k, 2 * k : 2 * k + 2], by_turn[k] = one.couple_by_place, one.couple_by_turn
+        # D moves by P p' - E e' + W F';  F' = -S (P p' - E e') - B t'.
+        seen = by_place @ (self._ones - self.coupling @ now.shown)
+        given = np.concatenate([now.shown @ self._inner, -now.turned], axis=1)
+        balls = np.linalg.solve(now.held, self._both.T @ given)
+        force = given - now.shown @ self._both @ balls
+        couple = seen @ self._both @ balls
+        couple[:, :n] -= seen @ self._inner
+        couple[:, n:] += np.diag(by_turn) - by_place @ self.coupling @ now.turned
+        return np.concatenate([self._inner.T @ force, couple])
 
     def slip(self, now: Linear) -> np.ndarray:
         """(4 Z, 2 Z) change of D that a motion of the inner groove centres brings, the balls following."""
@@ -133,7 +197,13 @@ class Balls:
         return float(max(np.abs(now.balance).max(), np.abs(now.rest).max()))
 
     def settle(
-        self, centre: np.ndarray, place: np.ndarray, force: np.ndarray, rate: np.ndarray, tolerance: float
+        self,
+        centre: np.ndarray,
+        place: np.ndarray,
+        force: np.ndarray,
+        rate: np.ndarray,
+        tolerance: float,
+        given: Given | None = None,
     ) -> tuple[np.ndarray, np.ndarray, Linear]:
         """Equilibrium of the balls while the ring stands: places, forces and the state there.
 
@@ -142,7 +212,7 @@ class Balls:
         ConvergenceError
         """
         still = np.zeros(2 * self.count)
-        now = self.linear(centre, place, force, rate)
+        now = self.linear(centre, place, force, rate, given)
         for _ in range(_LIMIT):
             size = self.residual(now)
             scale = max(np.abs(now.force).max(), np.abs(self.loads).max(), 1.0)
@@ -151,7 +221,7 @@ class Balls:
             step, change = self.move(now, still)
             part = min(1.0, self.step / max(np.abs(step).max(), 1e-300))
             for _ in range(8):
-                other = self.linear(centre, place + part * step, force + part * change, rate)
+                other = self.linear(centre, place + part * step, force + part * change, rate, given)
                 if self.residual(other) < (1.0 - 0.1 * part) * size or part < 0.02:
                     break
                 part *= 0.4

@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.core.condensed.patch import Ball, Patch, Race, Spacing, race_divisions
 from raceway.core.meshing.ring import RingShape
-from raceway.core.revolution.ball import free_ball
+from raceway.core.revolution.ball import FreeBall, free_ball
 from raceway.core.revolution.kept import kept_compliance
 from raceway.core.revolution.profile import dofs
 from raceway.core.revolution.ring_profile import graded_profile
@@ -50,7 +50,7 @@ class RingBody:
 
 
 def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patch:
-    """The patch of a ring for a ball; ``balls`` in a row.
+    """The patch of a ring for a ball, ``balls`` in a row; compliances along the groove where the ball has them.
 
     Raises
     ------
@@ -72,6 +72,8 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     )
     normal = np.array([np.cos(section.angles), np.sin(section.angles)])  # radial, axial
     near = _projected(full[:columns], normal)
+    along = np.array([-normal[1], normal[0]])
+    shear = None if ball.shear is None else _projected(full[:columns], along)
     chosen = [rows // 2, rows + rows // 2]
     between = full[columns:][:, chosen][:, :, chosen][:, ::-1, ::-1]  # (axial, radial)
     low, high = shape.edges
@@ -79,27 +81,32 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     crossing = np.zeros((balls, 2, 2))
     for k, block in enumerate(between, start=1):
         crossing[k] = crossing[-k] = block
-    race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, edges, crossing)
+    race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, edges, crossing, shear)
     return Patch(ball, race, spacing.area)
 
 
-def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int) -> Ball:
-    """The floating ball on a grid of so many rows."""
+def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: bool = False) -> Ball:
+    """The floating ball on a grid of so many rows; ``shear``: with its compliance along the rows' direction, for friction."""
     steps = np.append(np.arange(rows), spacing.ball_divisions // 2)
     finest = min(spacing.along, spacing.across)
-    found = free_ball(
-        radius, solid.poisson, spacing.ball_divisions, spacing.across, (spacing.columns - 0.5) * spacing.across, finest, solid.bulk, steps,
-        formulation=solid.formulation,
-    )  # fmt: skip
-    assert len(found.latitudes) == 2 * spacing.columns + 1
-    normal = np.array([np.cos(found.latitudes), np.sin(found.latitudes)])
-    near = _projected(found.compliance(radius, solid.young), normal)
-    middle = len(found.latitudes) // 2
-    return Ball(radius, found.latitudes, np.ascontiguousarray(near[:-1]), float(near[-1, middle, middle]))
+
+    def found(components: tuple[int, ...]) -> FreeBall:
+        return free_ball(
+            radius, solid.poisson, spacing.ball_divisions, spacing.across, (spacing.columns - 0.5) * spacing.across, finest, solid.bulk,
+            steps, components, solid.formulation,
+        )  # fmt: skip
+
+    pressed = found((0, 2))
+    assert len(pressed.latitudes) == 2 * spacing.columns + 1
+    normal = np.array([np.cos(pressed.latitudes), np.sin(pressed.latitudes)])
+    near = _projected(pressed.compliance(radius, solid.young), normal)
+    middle = len(pressed.latitudes) // 2
+    around = np.ascontiguousarray(found((1,)).compliance(radius, solid.young)[:-1]) if shear else None
+    return Ball(radius, pressed.latitudes, np.ascontiguousarray(near[:-1]), float(near[-1, middle, middle]), around)
 
 
 def _projected(full: Any, normal: np.ndarray) -> np.ndarray:
-    """(o, n, n) along normals, from (o, 2 n, 2 n) of two components; normal (2, n)."""
+    """(o, n, n) along directions normal (2, n), from (o, 2 n, 2 n) of two components."""
     n = normal.shape[1]
     parts = np.asarray(full).reshape(len(full), 2, n, 2, n)
     return np.ascontiguousarray(np.einsum("ci,ocidj,dj->oij", normal, parts, normal, optimize=True))

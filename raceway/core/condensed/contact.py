@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.core.condensed.factor import Factor
+from raceway.core.condensed.friction import Friction, Gripped
 from raceway.core.condensed.gap import derivatives, sphere_in_torus
 from raceway.core.condensed.nodal_law import LawState, PointLaw, by_law
 from raceway.core.condensed.patch import Patch
@@ -44,6 +45,10 @@ class Pressed:
     nodes, load : (n,) points that carry and their forces [N], number k * columns + i
     penetration : largest one that a law leaves [m]
     truncated : whether points at the groove's edge carry
+    along : (2, 2) what friction adds to ``stiffness``
+    couple : of friction on the section of the ring, derivative of its work by the section's turn [N m]
+    by_turn : (2,) minus the derivative of the force by that turn [N];  couple_by_place : (2,) [N];  couple_by_turn [N m]
+    gripped : tractions along the groove; None without friction
     """
 
     force: np.ndarray
@@ -53,6 +58,20 @@ class Pressed:
     load: np.ndarray
     penetration: float = 0.0
     truncated: bool = False
+    along: np.ndarray = attrs.field(factory=lambda: np.zeros((2, 2)))
+    couple: float = 0.0
+    by_turn: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
+    couple_by_place: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
+    couple_by_turn: float = 0.0
+    gripped: Gripped | None = None
+
+
+@attrs.frozen(eq=False)
+class Held:
+    """What friction at a contact needs to know: the turn of the ring's section [rad], slips (rows * columns,) [m]."""
+
+    turn: float
+    slip: np.ndarray
 
 
 #: Places of the points over which a mean is taken.
@@ -67,18 +86,22 @@ class Contact:
     ----------
     patch : Patch
     law : what gives the pressure at a point; None for no penetration
+    friction : coefficient of Coulomb friction; the patch has compliances along the groove where it is not 0
     """
 
-    def __init__(self, patch: Patch, law: PointLaw | None) -> None:
+    def __init__(self, patch: Patch, law: PointLaw | None, friction: float = 0.0) -> None:
         self.patch, self.law = patch, law
+        self.friction = Friction(patch, friction) if friction > 0.0 else None
         self._factor = Factor(patch)
         self._nodes = _NONE
         self._depth = np.zeros(patch.rows * patch.columns)
         self._gap = np.empty((patch.rows, patch.columns))
         self.iterations = 0
 
-    def press(self, place: np.ndarray, rate: np.ndarray) -> Pressed:
+    def press(self, place: np.ndarray, rate: np.ndarray, held: Held | None = None) -> Pressed:
         """Solve for a place (2,) and a velocity (2,) of the ball's centre, seen from the groove's centre.
+
+        Friction acts where ``held`` is given.
 
         Raises
         ------
@@ -90,7 +113,7 @@ class Contact:
         sphere_in_torus(axial, radial, patch.geometry, patch.meridian, patch.parallel, self._gap)
         gap = self._gap.reshape(-1)
         if not (gap < 0.0).any():
-            return self._open()
+            return self._open(place, held)
         if self.law is None:
             nodes, load, count = active_set(gap, self._nodes, self._factor)
             solve: Any = lambda right: self._factor.solve(nodes, right)  # noqa: E731
@@ -104,14 +127,15 @@ class Contact:
         self.iterations += count
         self._nodes = nodes
         if not len(nodes):
-            return self._open()
+            return self._open(place, held)
         slope, curved = self._derivatives(nodes, load, axial, radial)
         force = slope.T @ load
-        held = solve(slope)
-        stiffness = slope.T @ held - curved
-        viscous = self._viscous(state, slope, held)
+        carried = solve(slope)
+        stiffness = slope.T @ carried - curved
+        viscous = self._viscous(state, slope, carried)
         truncated = self._ends(nodes, force)
-        return Pressed(force, stiffness, viscous, nodes, load, penetration, truncated)
+        normal = Pressed(force, stiffness, viscous, nodes, load, penetration, truncated)
+        return normal if held is None else self._rubbed(normal, place, held, -carried)
 
     def mean_stiffness(self, place: np.ndarray) -> np.ndarray:
         """(2, 2) stiffness as ``press`` gives it, the mean over all places of the points under the ellipse [N/m].
@@ -132,10 +156,37 @@ class Contact:
         self._nodes, self._depth = kept
         return total / _PLACES
 
-    def _open(self) -> Pressed:
+    def _open(self, place: np.ndarray, held: Held | None) -> Pressed:
         self._nodes = _NONE
         zero = np.zeros((2, 2))
-        return Pressed(np.zeros(2), zero, zero, _NONE, np.zeros(0))
+        open_ = Pressed(np.zeros(2), zero, zero, _NONE, np.zeros(0))
+        return open_ if held is None else self._rubbed(open_, place, held, np.zeros((0, 2)))
+
+    def along(self, place: np.ndarray, turn: float = 0.0) -> float:
+        """Place of the contact along the groove [m]: all points of the ball move so far over the race."""
+        race = self.patch.race
+        angle = np.arctan2(race.sense * place[0], race.sense * place[1])
+        return float((race.groove - self.patch.ball.radius) * angle - (race.groove * turn if race.sense < 0.0 else 0.0))
+
+    def _rubbed(self, normal: Pressed, place: np.ndarray, held: Held, load_by_place: np.ndarray) -> Pressed:
+        """With friction; load_by_place (n, 2): derivatives of the points' forces by the ball's place [N/m]."""
+        assert self.friction is not None
+        race = self.patch.race
+        gripped = self.friction.pull(normal.nodes, normal.load, self.along(place, held.turn), held.slip)
+        length = float(np.hypot(*place))
+        n = race.sense * place / length
+        t = np.array([n[1], -n[0]])
+        lever = (race.groove - self.patch.ball.radius) / length
+        ahead = race.sense * lever * t  # derivative of the place along the groove by the ball's
+        tau = gripped.force
+        by_place = gripped.by_place * ahead + gripped.by_load @ load_by_place
+        along = np.outer(ahead, by_place) - tau * lever / length * (np.outer(t, n) + np.outer(n, t))
+        arm = race.groove if race.sense < 0.0 else 0.0
+        return attrs.evolve(
+            normal, force=normal.force - tau * ahead, stiffness=normal.stiffness + along, along=along, gripped=gripped,
+            couple=-arm * tau, by_turn=-arm * gripped.by_place * ahead, couple_by_place=-arm * by_place,
+            couple_by_turn=arm * arm * gripped.by_place,
+        )  # fmt: skip
 
     def _derivatives(
         self, nodes: np.ndarray, load: np.ndarray, axial: float, radial: float

@@ -79,6 +79,7 @@ class Race:
     edges : (2,) contact angles of the groove's edges [rad], ascending
     crossing : (Z, 2, 2) displacement (axial, radial) at the middle row by a force (axial, radial) at the same row under
         the k-th next ball [m/N]; row 0, the ball itself, is zero
+    shear : like ``compliance``, both along the groove; None without friction
     """
 
     sense: float
@@ -89,6 +90,7 @@ class Race:
     across: float
     edges: tuple[float, float]
     crossing: np.ndarray
+    shear: np.ndarray | None = None
 
     @property
     def name(self) -> str:
@@ -117,12 +119,14 @@ class Ball:
     compliance : (rows, columns, columns) displacement of a column by a force on another one, so many rows apart, both
         along the normal [m/N]
     opposite : displacement at a contact by a force at the opposite pole, along the normals [m/N]
+    shear : like ``compliance``, both along the rows' direction, that of the groove; None without friction
     """
 
     radius: float
     latitude: np.ndarray
     compliance: np.ndarray
     opposite: float
+    shear: np.ndarray | None = None
 
 
 @attrs.frozen(eq=False)

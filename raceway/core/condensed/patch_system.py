@@ -11,6 +11,7 @@ import numpy as np
 from raceway.core.bodies.ring import (
     CENTRIFUGAL,
     DAMPING,
+    FRICTION,
     LEVER,
     OFFSET_INNER,
     OFFSET_OUTER,
@@ -19,8 +20,11 @@ from raceway.core.bodies.ring import (
     TILT_ARM,
     place,
 )
-from raceway.core.condensed.balls import Balls, Linear
+from raceway.core.condensed.balls import Balls, Given, Linear
+from raceway.core.condensed.contact import BeyondPatch
+from raceway.core.condensed.history import History
 from raceway.core.condensed.pool import STEP, Pool, Row
+from raceway.core.record import Record
 from raceway.core.system import TOLERANCE, Evaluation, System
 from raceway.errors import ConvergenceError
 
@@ -38,9 +42,17 @@ class PatchSystem(System):
     Attributes
     ----------
     pool : patches and solvers, shared by all copies of this system
+    ball_mass : of one ball [kg]; 0 leaves out its inertia in steps of time
+
+    Notes
+    -----
+    ``memory`` (2 Z, 4 + points) is empty at first.  Columns: energy that friction has taken [J]; how many velocities of
+    the balls are known; the last one and the one before, axial in the inner races' rows and radial in the outer ones'
+    [m/s]; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
     """
 
     pool: Pool = attrs.field(kw_only=True)
+    ball_mass: float = attrs.field(kw_only=True, default=0.0)
 
     @property
     def companion(self) -> System:
@@ -50,11 +62,16 @@ class PatchSystem(System):
 
     @property
     def conservative(self) -> bool:
-        return True
+        return self.pool.friction == 0.0
 
     @property
     def ball_columns(self) -> int:
-        return 2
+        return 2 if self.conservative else 4
+
+    @property
+    def rubbing(self) -> bool:
+        """Whether friction acts where its history is known."""
+        return not self.conservative and self.scalars[FRICTION] > 0.0
 
     def evaluate(
         self,
@@ -70,28 +87,55 @@ class PatchSystem(System):
     ) -> Evaluation:
         q = np.asarray(q, dtype=float)
         v = np.zeros(5) if v is None else np.asarray(v, dtype=float)
-        return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, ball_gain))
+        history = History.of(self.law_state if memory is None else memory, self.ball_count)
+        if history.slip.size and self.rubbing:
+            try:
+                return self._evaluate(q, v, ball, ball_rate, t, ball_gain, dt, history)
+            except BeyondPatch as left:
+                raise ConvergenceError(
+                    f"{left}, where friction remembers what it did: set a larger `mesh.ball_load`, for which points are laid out"
+                ) from left
+        return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, ball_gain, dt, history))
 
     def _evaluate(
-        self, q: np.ndarray, v: np.ndarray, ball: np.ndarray | None, ball_rate: np.ndarray | None, t: float, gain: float
-    ) -> Evaluation:
-        row = self.pool.row(self.table)
+        self, q: np.ndarray, v: np.ndarray, ball: np.ndarray | None, ball_rate: np.ndarray | None, t: float, gain: float,
+        dt: float, history: History,
+    ) -> Evaluation:  # fmt: skip
+        rubbing = self.rubbing and ball is not None  # without a history nothing sticks
+        row = self.pool.row(self.table, rubbing)
         centre, jacobian, velocity = self._groove(q, v, t)
         where = self._places(centre, ball)
         moving = bool(v.any()) or ball_rate is not None
         rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
-        where, now = row.settle(centre, where, rate, _BALLS)
-        return self._answer(row.balls, centre, jacobian, where, rate, now)
+        turning = self._turning(t)
+        given = Given(turning @ q)
+        if rubbing and ball is not None:
+            sizes = [patch.rows * patch.columns for patch in self.pool.patches for _ in range(self.ball_count)]
+            given = attrs.evolve(given, slip=history.slips(ball[:, 2:4].T.reshape(-1), sizes))
+        if self.ball_mass > 0.0 and dt > 0.0 and ball_rate is not None:
+            given = history.with_inertia(given, self.ball_mass, dt, gain, ball_rate[:, :2])
+        where, now = row.settle(centre, where, rate, _BALLS, given)
+        answer = self._answer(row.balls, centre, jacobian, turning, where, rate, now)
+        known = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
+        reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
+        after = history.after(known, [one.gripped for one in now.pressed], reference.T.reshape(-1))
+        columns = where if self.conservative else np.concatenate([where, reference], axis=1)
+        return attrs.evolve(answer, ball=columns, memory=after)
 
     def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
 
         def found() -> np.ndarray:
-            row, still = self.pool.row(self.table), np.zeros((2 * self.ball_count, 2))
-            centre, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
-            where, last = row.settle(centre, now.ball, still, _BALLS)
-            smooth = row.balls.without_ripple(last, centre, where)
-            return np.asarray(jacobian.T @ row.balls.tangent(smooth) @ jacobian)
+            self._evaluate(
+                np.asarray(q, dtype=float), np.zeros(5), now.ball, None, 0.0, 0.0, 0.0,
+                History.of(self.law_state, self.ball_count),
+            )  # fmt: skip
+            row = self.pool.row(self.table, self.rubbing)
+            _, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
+            assert row.last is not None
+            return self._stiffness(
+                row.balls, row.balls.without_ripple(row.last, row.centre, row.where), jacobian, self._turning(0.0)
+            )
 
         return self.pool.widened(found)
 
@@ -100,6 +144,8 @@ class PatchSystem(System):
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under ``load``: ring and balls together by Newton, from the equilibrium of rigid bodies.
 
+        Friction is left out: the balls have rolled into place, and their slips are such that no point carries traction.
+
         Raises
         ------
         ConvergenceError
@@ -107,16 +153,38 @@ class PatchSystem(System):
         """
         if ball is not None and np.any(ball):
             try:
-                return self.pool.widened(lambda: self._newton(q, np.asarray(ball), self.load, tolerance))
+                return self._rolled(*self.pool.widened(lambda: self._newton(q, np.asarray(ball), self.load, tolerance)))
             except ConvergenceError:
                 pass  # from rigid bodies, then
         for parts in (1, 4, 16):
             try:
-                return self._by_load(q, parts, tolerance)
+                return self._rolled(*self._by_load(q, parts, tolerance))
             except ConvergenceError as why:
                 if parts == 16 or "nothing holds" in str(why):
                     raise
         raise AssertionError("unreachable")
+
+    def _rolled(self, q: np.ndarray, ball: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, int]:
+        if not self.conservative:
+            ball = np.concatenate([ball, self.rolled_in(q, ball)], axis=1)
+        return q, ball, count
+
+    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
+        still = self.without(FRICTION)
+        still.evaluate(q, ball=ball, t=t)
+        row = self.pool.row(self.table)
+        turn = self._turning(t) @ q
+        assert row.last is not None
+        places = [
+            contact.along(seen, float(turn[k % self.ball_count]))
+            for k, (contact, seen) in enumerate(zip(row.balls.contacts, row.last.seen, strict=True))
+        ]
+        return np.array(places).reshape(2, -1).T
+
+    def friction_lost(self, record: Record) -> float:
+        """Energy that friction has taken at the end of a record that began without history [J]."""
+        memory = self.law_state if record.final.memory is None else record.final.memory
+        return float(History.of(memory, self.ball_count).lost.sum())
 
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
@@ -183,12 +251,13 @@ class PatchSystem(System):
 
     def pressures(self) -> list[Any]:
         """Answers of all contacts (``raceway.core.condensed.contact.Pressed``), inner races first, at the last state."""
-        last = self.pool.row(self.table).last
+        last = self.pool.row(self.table, self.rubbing).last
         return [] if last is None else last.pressed
 
     def _answer(
-        self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, where: np.ndarray, rate: np.ndarray, now: Linear
-    ) -> Evaluation:
+        self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, turning: np.ndarray, where: np.ndarray, rate: np.ndarray,
+        now: Linear,
+    ) -> Evaluation:  # fmt: skip
         force = np.array([one.force for one in now.pressed])
         size = np.hypot(force[:, 0], force[:, 1])
         viscous = np.zeros((4 * self.ball_count, 4 * self.ball_count))
@@ -207,14 +276,33 @@ class PatchSystem(System):
         reach = np.concatenate([centre - where, where])
         rest = np.repeat([self.scalars[OFFSET_INNER], self.scalars[OFFSET_OUTER]], self.ball_count)
         return Evaluation(
-            jacobian.T @ inner.reshape(-1),
-            jacobian.T @ balls.tangent(now) @ jacobian,
+            jacobian.T @ inner.reshape(-1) + turning.T @ now.couple,
+            self._stiffness(balls, now, jacobian, turning),
             along.T @ viscous @ along,
             rest - np.hypot(reach[:, 0], reach[:, 1]),
             np.hypot(force[:, 0], force[:, 1]),
             where,
             self.law_state.copy(),
         )
+
+    @staticmethod
+    def _stiffness(balls: Balls, now: Linear, jacobian: np.ndarray, turning: np.ndarray) -> np.ndarray:
+        """(5, 5) against motions of the ring."""
+        if now.pressed[0].gripped is None:
+            return np.asarray(jacobian.T @ balls.tangent(now) @ jacobian)
+        both = np.concatenate([jacobian, turning])
+        return np.asarray(both.T @ balls.tangent_with_turns(now) @ both)
+
+    def _turning(self, t: float) -> np.ndarray:
+        """(Z, 5) turn of the ring's section at every ball by the ring's motion."""
+        work = np.zeros((3, 2 * self.ball_count))
+        place(float(t), np.zeros(5), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
+        out = np.zeros((self.ball_count, 5))
+        out[:, 3], out[:, 4] = (
+            self.table[:, SIDE] * work[0, self.ball_count :],
+            -self.table[:, SIDE] * work[0, : self.ball_count],
+        )
+        return out
 
     def _groove(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(Z, 2) inner groove centres, (2 Z, 5) their derivatives by q, (Z, 2) their velocities."""

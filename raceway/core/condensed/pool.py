@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.core.bodies.ring import CENTRIFUGAL
-from raceway.core.condensed.balls import Balls, Linear
+from raceway.core.condensed.balls import Balls, Given, Linear
 from raceway.core.condensed.contact import BeyondPatch, Contact
 from raceway.core.condensed.nodal_law import PointLaw
 from raceway.core.condensed.patch import Patch
@@ -39,7 +39,9 @@ class Row:
     centre: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
     where: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
 
-    def settle(self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float) -> tuple[np.ndarray, Linear]:
+    def settle(
+        self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float, given: Given | None = None
+    ) -> tuple[np.ndarray, Linear]:
         """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
 
         Notes
@@ -50,10 +52,11 @@ class Row:
         if self.last is not None and np.abs(centre - self.centre).max() < STEP * np.abs(self.where).max():
             step, change = self.balls.move(self.last, (centre - self.centre).reshape(-1))
             try:
-                return self._keep(centre, self.balls.settle(centre, self.where + step, self.force + change, rate, tolerance))
+                near = self.balls.settle(centre, self.where + step, self.force + change, rate, tolerance, given)
+                return self._keep(centre, near)
             except ConvergenceError:
                 pass  # from the guess, then
-        return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance))
+        return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance, given))
 
     def _keep(self, centre: np.ndarray, found: tuple[np.ndarray, np.ndarray, Linear]) -> tuple[np.ndarray, Linear]:
         self.centre, (self.where, self.force, self.last) = centre, found
@@ -68,6 +71,7 @@ class Pool:
     patches : of the inner and the outer race
     laws : at the points of the inner and the outer race; None for no penetration
     wider : called with a ``BeyondPatch``, returns patches that reach further; None: contact that leaves is an error
+    friction : coefficient of Coulomb friction; the patches have compliances along the groove where it is not 0
     """
 
     def __init__(
@@ -75,21 +79,28 @@ class Pool:
         patches: tuple[Patch, Patch],
         laws: tuple[PointLaw | None, PointLaw | None] = (None, None),
         wider: Callable[[BeyondPatch], tuple[Patch, Patch]] | None = None,
+        friction: float = 0.0,
     ) -> None:
-        self.patches, self.laws, self._wider = patches, laws, wider
-        self._rows: dict[tuple[float, ...], Row] = {}
+        self.patches, self.laws, self._wider, self.friction = patches, laws, wider, friction
+        self._rows: dict[tuple[bool, tuple[float, ...]], Row] = {}
+
+    @property
+    def points(self) -> int:
+        """Of the larger patch."""
+        return max(patch.rows * patch.columns for patch in self.patches)
 
     @property
     def diameter(self) -> float:
         """Of the balls [m]."""
         return 2.0 * self.patches[0].ball.radius
 
-    def row(self, table: np.ndarray) -> Row:
-        """The solver for the balls of a system's ``table``."""
-        key = tuple(table[:, CENTRIFUGAL].tolist())
+    def row(self, table: np.ndarray, rubbing: bool = False) -> Row:
+        """The solver for the balls of a system's ``table``; ``rubbing``: with friction."""
+        key = rubbing, tuple(table[:, CENTRIFUGAL].tolist())
         if key not in self._rows:
             z = len(table)
-            contacts = [Contact(patch, law) for patch, law in zip(self.patches, self.laws, strict=True) for _ in range(z)]
+            both, friction = zip(self.patches, self.laws, strict=True), self.friction if rubbing else 0.0
+            contacts = [Contact(patch, law, friction) for patch, law in both for _ in range(z)]
             loads = np.zeros((z, 2))
             loads[:, 1] = table[:, CENTRIFUGAL]
             balls = Balls(contacts, self._coupling(z), loads, STEP * self.diameter)

@@ -1,0 +1,207 @@
+"""Friction at surface points: Cattaneo and Mindlin, tangents, history, energy; inertia of balls."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from raceway import build_model, make_plan
+from raceway.core.condensed.balls import Given
+from raceway.core.condensed.contact import Contact, Held
+from raceway.core.condensed.friction import Friction, Gripped
+from raceway.core.condensed.history import History
+from raceway.errors import ConvergenceError
+from raceway.patch_plan import patch_cost
+from raceway.run import run
+from raceway.statics import settle
+from raceway.unused import unused
+from tests.patches.single import single
+from tests.patches.test_bearing import model, scene
+from tests.reference.mindlin import Mindlin
+
+MU, LOAD = 0.1, 300.0
+
+
+@cache
+def pressed():
+    """A contact under 300 N, 4 points per semi-axis, and Mindlin's numbers for it."""
+    case = single(4, LOAD, shear=True)
+    approach, answer = case.at_load(LOAD)
+    a, b = (float(axis) for axis in case.ellipse.semi_axes(LOAD))
+    return case, approach, answer, Mindlin(a, b, 212e9, 0.29, MU * float(answer.load.sum()))
+
+
+def pulled(friction: Friction, to: float, slip: np.ndarray) -> Gripped:
+    _, _, answer, _ = pressed()
+    return friction.pull(answer.nodes, answer.load, to, slip)
+
+
+def at_force(pull: float) -> tuple[float, Gripped]:
+    """Displacement from rest at which the tractions add up to a force."""
+    case, _, _, mindlin = pressed()
+    friction = Friction(case.patch, MU)
+    low, high = 0.0, 4.0 * float(mindlin.displacement(0.999 * mindlin.limit))
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        found = pulled(friction, middle, np.zeros(case.patch.rows * case.patch.columns))
+        low, high = (middle, high) if found.force < pull else (low, middle)
+    return middle, found
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.75, 0.9])
+def test_a_pulled_contact_slips_in_an_annulus(share):
+    """Mindlin's displacement to 2 % (finite bodies give 0.2 to 0.3 nm/N less than half-spaces, 2 % of it, and 4 points some
+    percent more where few of them stick); the area that sticks to two rows of points around an ellipse of 8 points."""
+    _, _, answer, mindlin = pressed()
+    moved, found = at_force(share * mindlin.limit)
+    assert moved == pytest.approx(float(mindlin.displacement(share * mindlin.limit)), rel=0.02)
+    sticking = found.sliding == 0
+    assert sticking.sum() / len(answer.nodes) == pytest.approx(mindlin.stick_share(share * mindlin.limit), abs=0.1)
+    # The points with the largest pressures stick.
+    assert answer.load[sticking].min() > 0.8 * np.median(answer.load[~sticking])
+
+
+def test_a_contact_that_is_pulled_further_slides_with_mu_times_its_load():
+    case, _, _, mindlin = pressed()
+    none = np.zeros(case.patch.rows * case.patch.columns)
+    found = pulled(Friction(case.patch, MU), 2e-6, none)
+    assert found.force == pytest.approx(mindlin.limit, rel=1e-12)
+    assert found.by_place == 0.0
+    assert (found.sliding == 1).all()
+
+
+def test_a_swing_takes_the_energy_of_mindlins_loop():
+    """6 %: the discrete annulus is half a row too wide or narrow; 1.4 % with 8 points (docs/nodal_contact.md)."""
+    case, _, _, mindlin = pressed()
+    force = 0.75 * mindlin.limit
+    end, first = at_force(force)
+    friction, slip, lost, pull = Friction(case.patch, MU), first.slip, 0.0, first.force
+    for place in np.concatenate([np.linspace(end, -end, 40)[1:], np.linspace(-end, end, 40)[1:]]):
+        found = pulled(friction, place, slip)
+        slip, lost, pull = found.slip, lost + found.lost, found.force
+        assert found.lost >= 0.0
+    assert pull == pytest.approx(force, rel=1e-9)  # Masing: the loop closes
+    assert lost == pytest.approx(mindlin.loop(force), rel=0.06)
+
+
+def test_the_tangent_is_the_derivative_while_some_points_slide():
+    """Inside a step that changes no set of points."""
+    case, approach, _, mindlin = pressed()
+    contact = Contact(case.patch, None, MU)
+    place = case.place(approach)
+    slip = np.full(
+        case.patch.rows * case.patch.columns, contact.along(place) - float(mindlin.displacement(0.6 * mindlin.limit))
+    )
+    turn, step = 1e-6, 1e-12
+
+    def answer(moved: np.ndarray, turned: float) -> np.ndarray:
+        found = contact.press(place + moved, np.zeros(2), Held(turned, slip))
+        return np.append(found.force, found.couple)
+
+    now = contact.press(place, np.zeros(2), Held(turn, slip))
+    assert now.gripped is not None
+    assert 0 < (now.gripped.sliding == 0).sum() < len(now.nodes)
+    for k, way in enumerate(np.eye(2)):
+        found = (answer(step * way, turn) - answer(-step * way, turn)) / (2.0 * step)
+        assert found[:2] == pytest.approx(-now.stiffness[:, k], abs=1e-4 * np.abs(now.stiffness).max())
+        assert found[2] == pytest.approx(now.couple_by_place[k], rel=1e-4, abs=1e-4 * np.abs(now.couple_by_place).max())
+    found = (answer(np.zeros(2), turn + 1e-10) - answer(np.zeros(2), turn - 1e-10)) / 2e-10
+    assert found[:2] == pytest.approx(-now.by_turn, rel=1e-4, abs=1e-4 * np.abs(now.by_turn).max())
+    assert found[2] == pytest.approx(now.couple_by_turn, rel=1e-4)
+
+
+ROTATING = {
+    "load": {"axial": 1000.0, "radial": [0.0, 0.0]},
+    "mesh": {"nodes_per_semi_axis": 2},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 200.0},
+    "rotor": {"mass": 2.0},
+}
+
+
+def test_a_bearing_with_friction_has_exact_tangents_and_a_history():
+    case = model(contact={"friction": 0.05}, supports={"tilt": "free"}, mesh={"nodes_per_semi_axis": 2})
+    found = settle(case)
+    system = case.system
+    rest = system.evaluate(found.displacement, ball=found.ball)
+    # Balls have rolled into place: no traction.  Places are known to some 1e-12 m, a contact that sticks has 70 N/um.
+    assert max(abs(one.gripped.force) for one in system.pressures()) < 1e-3
+    moved = found.displacement + np.array([2e-7, 3e-7, 1e-7, 5e-5, -3e-5])
+    now = system.evaluate(moved, ball=found.ball)
+    sliding = [(one.gripped.sliding != 0).mean() for one in system.pressures()]
+    assert 0.0 < np.mean(sliding) < 1.0
+    for j, size in enumerate([1e-11, 1e-11, 1e-11, 1e-9, 1e-9]):
+        step = size * np.eye(5)[j]
+        ahead, behind = (system.evaluate(moved + s * step, ball=found.ball).force for s in (1.0, -1.0))
+        weight = np.sqrt(np.diag(now.stiffness) * now.stiffness[j, j])
+        assert np.abs(((ahead - behind) / (2.0 * size) - now.stiffness[:, j]) / weight).max() < 1e-3
+    # A trial leaves no trace; an accepted state does: on the way back the points pull the other way.
+    again = system.evaluate(found.displacement, ball=found.ball)
+    assert again.force == pytest.approx(rest.force, abs=1e-2)
+    back = system.evaluate(found.displacement, ball=now.ball, memory=now.memory)
+    assert np.abs(back.force - rest.force)[:3].max() > 1.0
+    assert History.of(now.memory, 12).lost.sum() > 0.0
+
+
+def test_a_contact_that_leaves_points_which_remember_says_so():
+    case = model(contact={"friction": 0.05}, mesh={"nodes_per_semi_axis": 2}, load={"axial": 300.0, "radial": [0.0, 0.0]})
+    found = settle(case)
+    now = case.system.evaluate(found.displacement, ball=found.ball)
+    with pytest.raises(ConvergenceError, match="where friction remembers what it did: set a larger `mesh.ball_load`"):
+        case.system.evaluate(3.0 * found.displacement, ball=found.ball, memory=now.memory)
+
+
+def test_what_a_plan_says_of_friction_and_inertia():
+    found = scene(**{**ROTATING, "contact": {"friction": 0.05, "stick_stiffness": 1e8}})
+    kept = {part.part for part in make_plan(found).kept}
+    assert {"friction", "inertia of the balls in their meridian planes"} <= kept
+    slow = scene(**{**ROTATING, "integrator": {"kind": "quasi_static"}})
+    assert "inertia of the balls in their meridian planes" in {part.part for part in make_plan(slow).left_out}
+    assert patch_cost(found).step_s > patch_cost(slow).step_s
+    assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in unused(found))
+
+
+def test_points_agree_with_resultants_on_what_friction_does():
+    """Both slide almost everywhere under 600 N: what friction takes differs by what sticks meanwhile, and by the start."""
+    lost, stiffness = [], []
+    for contact in ({"friction": 0.03}, {"friction": 0.03, "kind": "hertz", "discretisation": "resultant"}):
+        case = scene(
+            contact=contact, integrator={"kind": "quasi_static", "turns": 2, "steps_per_turn": 24},
+            **{**ROTATING, "excitation": {**ROTATING["excitation"], "force": 600.0}, "mesh": {} if "kind" in contact else ROTATING["mesh"]},
+        )  # fmt: skip
+        found = run(case).as_dict()
+        lost.append(found["stability"]["friction_energy_j"])
+        stiffness.append(found["identification"]["equivalent_stiffness"])
+    assert lost[0] > 0.0
+    assert lost[0] == pytest.approx(lost[1], rel=0.1)
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=0.03)
+
+
+def test_balls_are_accelerated_by_their_contacts():
+    """m a = F_inner + F_outer + F_c at velocities that change evenly, with both formulas of the backward difference."""
+    found = scene(**ROTATING)
+    case = build_model(found, make_plan(found))
+    rest, system, dt, mass = settle(case), case.system, 1e-5, case.system.ball_mass
+    acceleration = np.tile([20.0, -30.0], (12, 1))
+    gain, rate = 1.5 / dt, -1.5 / dt * rest.ball[:, :2]  # a velocity of zero at the rest's place
+    for known, first in ((1, 1.0), (2, 1.5)):
+        memory = np.zeros((24, 4))
+        memory[:, 1] = known
+        memory[:, 2], memory[:, 3] = (-dt * k * acceleration.T.reshape(-1) for k in (1.0, 2.0))
+        now = system.evaluate(
+            rest.displacement, ball=rest.ball, ball_rate=rate, ball_gain=gain, dt=dt, memory=memory, v=np.zeros(5)
+        )
+        force = np.array([one.force for one in system.pressures()])
+        balance = force[:12] + force[12:] + np.column_stack([np.zeros(12), system.table[:, 2]])
+        velocity = gain * now.ball[:, :2] + rate
+        # The place changes by far less than a micrometre, its velocity with it: part of the acceleration.
+        assert balance == pytest.approx(mass * (acceleration + first * velocity / dt), abs=1e-6)
+        assert np.abs(balance).max() > 0.01  # the contacts give way, or it were mass * 30
+        assert now.memory[0, 1] == 2.0
+
+
+def test_a_series_of_equilibria_knows_no_inertia():
+    history = History.of(np.zeros((24, 0)), 12)
+    assert history.with_inertia(Given(np.zeros(12)), 1.0, 1e-5, 1e5, np.zeros((12, 2))).spring == 0.0
+    assert History.of(history.after(None, [None] * 24, np.zeros(24)), 12).known == 0
