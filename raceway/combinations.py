@@ -42,7 +42,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal" and condensed:
-        faults += patch_faults(scene)
+        faults += patch_faults(scene) or section_faults(scene)
     elif condensed:
         faults += section_faults(scene)
     elif contact.discretisation == "nodal" and rigid:

@@ -103,7 +103,9 @@ def decide_bodies(scene: Scene, parts: Decisions, elastic: ElasticCost | None, p
             f"contact.discretisation is nodal: some {patches.points} points carry a contact, {patches.bytes / 2**20:.0f} MiB"
         )
         parts.keep("pressures at surface points", why)
-        parts.leave_out("inertia of the balls along the groove", "their slowest mode lies at some kHz: they follow at once")
+        moves = uses_record(scene) and scene.integrator.method.inertial and scene.kinematics.ball_inertia
+        part, why = "inertia of the balls in their meridian planes", "two coordinates a ball, in steps of time"
+        parts.decide(moves, part, why, "their slowest mode lies at some kHz: they follow at once")
     elif kind == "condensed":
         why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
         part = "effect of balls on each other through the rings"

@@ -8,11 +8,12 @@ from raceway.patch_plan import PatchCost
 from raceway.scene import Scene
 from raceway.section_plan import section_cost
 
-#: Seconds, measured on one core of a small server: a whole step for 12 balls, start-up with warm caches.
+#: Seconds, measured on one core of a small server: a whole step for 12 balls.
 _STEP_S = {"weightless": 1.3e-6, "inertial": 3.0e-6, "tangential": 12.0e-6}
 #: The same for condensed bodies, and what the matrices between balls add.
 _CONDENSED_STEP_S = {"weightless": 10.5e-6, "inertial": 13.5e-6, "tangential": 22.0e-6}
 _BETWEEN_S = 23.0e-6
+#: Start-up with warm caches.
 START_S = 0.6
 
 

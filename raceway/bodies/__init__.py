@@ -8,4 +8,5 @@ condensed   elastic rings and balls, one force for each contact
 inertia     what it costs that condensed bodies follow at once
 patches     the same with pressures at surface points (contact.discretisation = "nodal")
 patch_report  what a result tells of those
+locking     materials too incompressible for elements under surface points
 """

@@ -224,11 +224,13 @@ def _refuse_stiff_law(scene: Scene, stiff: Built, bodies: ElasticBodies) -> None
             gap, np.zeros_like(gap), system.law_params, system.law_state, system.law_state.copy(), 0.0, force, d_gap, d_rate
         )
         if (-d_gap * -taken).max() >= 1.0:
+            thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
+            remedy = thin if scene.contact.kind == "hertz" else "Use 'hertz', or a softer law"
             raise SceneError.at(
                 "contact.kind",
                 scene.contact.kind,
                 f"its contact of {1e-6 * -d_gap.min():.3g} N/µm is stiffer than elastic bodies allow: they take "
-                f"{-1e9 * taken:.3g} nm/N off it, as they give less than half-spaces do. Use 'hertz', or a softer law",
+                f"{-1e9 * taken:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
             )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.bodies.locking import locking
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
 from raceway.core.system import COORDINATES, System
@@ -114,7 +115,8 @@ class ElasticBodies:
         return None, "not estimated: run the scene with a finer mesh, or with bodies.kind = 'condensed'"
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
-        """Contacts with too few points for their pressure."""
+        """Contacts with too few points for their pressure; elements that lock."""
+        found = locking(model.scene)
         columns = self.ball_columns(model, equilibrium)
         z = model.system.ball_count
         force = equilibrium.contact_force
@@ -123,9 +125,9 @@ class ElasticBodies:
             columns[f"points_{word}"][carries[part]].min(initial=np.inf)
             for word, part in (("inner", slice(0, z)), ("outer", slice(z, 2 * z)))
         )
-        if least >= _FEW_POINTS:
-            return []
-        return [
-            f"only {least:.0f} surface points carry a loaded contact: its pressure and the displacement depend on the mesh; take "
-            "more mesh.nodes_per_semi_axis, with azimuth_cells = 'graded', or bodies.kind = 'condensed'"
-        ]
+        if least < _FEW_POINTS:
+            found.append(
+                f"only {least:.0f} surface points carry a loaded contact: its pressure and the displacement depend on the mesh; "
+                "take more mesh.nodes_per_semi_axis, with azimuth_cells = 'graded', or bodies.kind = 'condensed'"
+            )
+        return found

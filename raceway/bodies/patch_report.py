@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.inertia import inertia_table
+from raceway.bodies.locking import locking
 from raceway.core.bodies.ring import CAGE
 from raceway.core.condensed.contact import Pressed
 from raceway.core.condensed.field import PressureField, pressure_field
@@ -144,9 +145,9 @@ class PatchBodies:
         return float(change) / 3.0, "a third of the displacement's change from half as many points per semi-axis (order 2)"
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
-        """Contacts that the groove's edge cuts off, with the load at which that begins; points that are too few."""
+        """Contacts that the groove's edge cuts off, with the load at which that begins; points that are too few; elements that lock."""
         _, contacts = self.pressed(model, equilibrium)
-        z, radius, found = model.system.ball_count, 0.5 * model.geometry.ball_diameter, []
+        z, radius, found = model.system.ball_count, 0.5 * model.geometry.ball_diameter, locking(model.scene)
         for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
             cut = [one for one in contacts[race * z : (race + 1) * z] if one.truncated]
             if not cut:

@@ -121,21 +121,6 @@ def _inner_factor(tables: dict[str, Any], changes: dict[str, Any], registry: Reg
     return float(build_model(scene, make_plan(scene)).system.law_params[0, 0])
 
 
-def points(case: Case, registry: Registry) -> list[Row]:
-    """Surface points against the calibrated law on the same bodies."""
-    a = case.arguments
-    scene = scene_at(a["tables"], {**a["same"], "integrator.kind": "periodic", "contact.kind": "hertz"}, registry)
-    known = abs(_dynamic(run(scene, registry)))
-    changes = {**a["same"], **a["changes"], "integrator.kind": a["integrator"]}
-    setting = {**a["shown"], "integrator": a["integrator"]}
-
-    def motion() -> Measured:
-        return abs(_dynamic(run(scene_at(a["tables"], changes, registry), registry))), None
-
-    close = Near(0.05, "two points along a semi-axis are off by percents; converged ones differ by 1 %")
-    return [judged(case.name, setting, "|Z| [N/m], predicted by Hertz on these bodies", close, known, motion)]
-
-
 def refusal(case: Case, registry: Registry) -> list[Row]:
     """A scene that has no answer: the message says why."""
     a = case.arguments

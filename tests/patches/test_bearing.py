@@ -138,6 +138,7 @@ def test_the_result_tells_pressures_approaches_and_points(free):
 
 REFUSED = {
     "memory": ({"mesh": {"nodes_per_semi_axis": 60}}, "mesh.nodes_per_semi_axis", "take fewer points"),
+    "elements": ({"mesh": {"element_size": 1e-5}}, "mesh.element_size", "take larger elements"),
     "moments": (
         {"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "kinematics.gyroscopic", "use discretisation = 'resultant'",
     ),

@@ -12,8 +12,11 @@ from raceway.core.condensed.balls import Given
 from raceway.core.condensed.contact import Contact, Held
 from raceway.core.condensed.friction import Friction, Gripped
 from raceway.core.condensed.history import History
+from raceway.errors import ConvergenceError
+from raceway.patch_plan import patch_cost
 from raceway.run import run
 from raceway.statics import settle
+from raceway.unused import unused
 from tests.patches.single import single
 from tests.patches.test_bearing import model, scene
 from tests.reference.mindlin import Mindlin
@@ -139,6 +142,24 @@ def test_a_bearing_with_friction_has_exact_tangents_and_a_history():
     back = system.evaluate(found.displacement, ball=now.ball, memory=now.memory)
     assert np.abs(back.force - rest.force)[:3].max() > 1.0
     assert History.of(now.memory, 12).lost.sum() > 0.0
+
+
+def test_a_contact_that_leaves_points_which_remember_says_so():
+    case = model(contact={"friction": 0.05}, mesh={"nodes_per_semi_axis": 2}, load={"axial": 300.0, "radial": [0.0, 0.0]})
+    found = settle(case)
+    now = case.system.evaluate(found.displacement, ball=found.ball)
+    with pytest.raises(ConvergenceError, match="where friction remembers what it did: set a larger `mesh.ball_load`"):
+        case.system.evaluate(3.0 * found.displacement, ball=found.ball, memory=now.memory)
+
+
+def test_what_a_plan_says_of_friction_and_inertia():
+    found = scene(**{**ROTATING, "contact": {"friction": 0.05, "stick_stiffness": 1e8}})
+    kept = {part.part for part in make_plan(found).kept}
+    assert {"friction", "inertia of the balls in their meridian planes"} <= kept
+    slow = scene(**{**ROTATING, "integrator": {"kind": "quasi_static"}})
+    assert "inertia of the balls in their meridian planes" in {part.part for part in make_plan(slow).left_out}
+    assert patch_cost(found).step_s > patch_cost(slow).step_s
+    assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in unused(found))
 
 
 def test_points_agree_with_resultants_on_what_friction_does():
