@@ -71,9 +71,7 @@ def patch_faults(scene: Scene) -> list[Mistake]:
             faults.append(Mistake(path, value, why))
 
     instead = "use discretisation = 'resultant'"
-    kinematics, contact = scene.kinematics, scene.contact
-    why = f"surface points carry no gyroscopic moments: {instead}"
-    refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
+    contact = scene.contact
     remembers = getattr(contact.law, "state_size", 0) > 0
     why = f"remembers what a contact did, but surface points of condensed bodies travel with the contact: {instead}"
     refuse(remembers, "contact.kind", contact.kind, why)

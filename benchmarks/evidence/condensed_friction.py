@@ -11,14 +11,14 @@ import numpy as np
 from benchmarks.evidence import Row, below, near
 from benchmarks.evidence.condensed_patches import tables
 
-TITLE = "Condensed bodies: friction at surface points, inertia of balls"
+TITLE = "Condensed bodies: friction at surface points, moments and inertia of balls"
 COMMAND = "python -m benchmarks.evidence condensed_friction"
 #: Coefficient and load [N] of the single contact.
 MU, LOAD = 0.1, 300.0
 
 
 def rows() -> list[Row]:
-    return [*_mindlin(), *_beside_resultants(), *_inertia()]
+    return [*_mindlin(), *_beside_resultants(), *_moments(), *_inertia()]
 
 
 def _mindlin() -> list[Row]:
@@ -116,6 +116,26 @@ def _beside_resultants() -> list[Row]:
         why = "a resultant has Mindlin's first stiffness until it slides, points give half as much again before they do"
         note = f"{pairs[0][1]:.4g} and {pairs[1][1]:.4g} N s/m; {why}"
         out.append(near(f"{word}: damping", pairs[0][1] / pairs[1][1], 1.0, 0.15, COMMAND, note))
+    return out
+
+
+def _moments() -> list[Row]:
+    """Gyroscopic moments at 15 000 and 40 000 r/min, 1 kN axial and 300 N radial, tilt free."""
+    from raceway import build_model, make_plan, scene_from_dict
+    from raceway.statics import settle
+
+    out = []
+    for rpm in (15000.0, 40000.0):
+        both = []
+        for points in (4, None):
+            made = {**tables(points, "free"), "load": {"axial": 1000.0, "radial": [300.0, 0.0]}}
+            scene = scene_from_dict({**made, "kinematics": {"gyroscopic": "shared", "spin_speed_rpm": rpm}})
+            both.append(settle(build_model(scene, make_plan(scene))))
+        chosen = np.abs(both[1].displacement) > 1e-9
+        moved = float(np.abs(both[0].displacement[chosen] / both[1].displacement[chosen] - 1.0).max())
+        angle = float(np.degrees(np.abs(both[0].angle_inner - both[1].angle_inner).max()))
+        word = f"gyroscopic moments, {rpm:g} r/min, 4 points against resultants"
+        out.append(below(f"{word}: displacements", moved, 0.015, COMMAND, f"inner contact angles within {angle:.2f} deg"))
     return out
 
 

@@ -139,9 +139,6 @@ def test_the_result_tells_pressures_approaches_and_points(free):
 REFUSED = {
     "memory": ({"mesh": {"nodes_per_semi_axis": 60}}, "mesh.nodes_per_semi_axis", "take fewer points"),
     "elements": ({"mesh": {"element_size": 1e-5}}, "mesh.element_size", "take larger elements"),
-    "moments": (
-        {"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "kinematics.gyroscopic", "use discretisation = 'resultant'",
-    ),
     "a law of pairs only": ({"contact": {"kind": "unilateral", "discretisation": "resultant"}}, "contact.discretisation", "'nodal'"),
     "many steps": (
         {"excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0},

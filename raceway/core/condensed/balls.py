@@ -13,7 +13,8 @@ stiffness, S = (1 + K W)^-1 K is what they show together; the balls' balance F_i
 in p alone.
 
 Friction also feels the turn of the inner ring's section at every ball: B = (1 + K W)^-1 b, b the contacts' derivatives, and
-a couple on that section.  The balls' inertia is a force that falls with their place, ``Given``.
+a couple acts on that section; so do gyroscopic moments, which tie both contacts of a ball together in K.  The balls' inertia is
+a force that falls with their place, ``Given``.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ import attrs
 import numpy as np
 
 from raceway.core.condensed.contact import Contact, Held, Pressed
+from raceway.core.condensed.gyroscopic import Gyroscopic
 from raceway.errors import ConvergenceError
 
 _LIMIT = 60
@@ -38,12 +40,19 @@ class Given:
     turn : (Z,) of the inner ring's section at every ball [rad]
     slip : of the points of all contacts, each (rows * columns,) [m]; empty: no friction
     push, spring : (Z, 2) [N] and [N/m]: force push - spring * place on the balls, their inertia
+    gyroscopic : moments of the balls; None: none
     """
 
     turn: np.ndarray
     slip: list[np.ndarray] = attrs.field(factory=list)
     push: np.ndarray | float = 0.0
     spring: float = 0.0
+    gyroscopic: Gyroscopic | None = None
+
+    @property
+    def with_couples(self) -> bool:
+        """Whether couples act on the ring's section."""
+        return bool(self.slip) or self.gyroscopic is not None
 
     def of(self, contact: int) -> Held | None:
         """What a contact has to know."""
@@ -64,6 +73,8 @@ class Linear:
     balance : (2 Z,) forces on the balls, contact forces at W F included to first order [N]
     turned : (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
     couple : (Z,) on that section [N m]
+    couple_by_place : (Z, 4 Z) its derivative by D [N]; None where there are no couples
+    crossed : (4 Z, 4 Z) what gyroscopic moments add to K [N/m]; 0 without
     seen : (2 Z, 2) D, the balls seen from the grooves [m]
     """
 
@@ -76,6 +87,8 @@ class Linear:
     balance: np.ndarray
     turned: np.ndarray
     couple: np.ndarray
+    couple_by_place: np.ndarray | None
+    crossed: np.ndarray | float
     seen: np.ndarray
 
 
@@ -116,12 +129,30 @@ class Balls:
         ]
         self.evaluations += 1
         answer = np.array([one.force for one in pressed])
+        z = self.count
+        couple, by_place = np.array([one.couple for one in pressed[:z]]), None
+        crossed: np.ndarray | float = 0.0
+        if given.with_couples:
+            by_place = np.zeros((z, 4 * z))
+            for k, one in enumerate(pressed[:z]):
+                by_place[k, 2 * k : 2 * k + 2] = one.couple_by_place
+        if given.gyroscopic is not None and by_place is not None:
+            crossed = np.zeros_like(self.coupling)
+            for k, one in enumerate(pressed[:z]):
+                more = given.gyroscopic.of(seen[k], seen[z + k], one)
+                at = np.r_[2 * k : 2 * k + 2, 2 * (z + k) : 2 * (z + k) + 2]
+                answer[[k, z + k]] += more.force.reshape(2, 2)
+                crossed[np.ix_(at, at)] = more.stiffness
+                couple[k] += more.couple
+                by_place[k, at] += more.couple_by_place
         rest = (answer - force).reshape(-1)
-        shown, held, carried, turned = self._together([one.stiffness for one in pressed], rest, pressed, given.spring)
+        stiffness = [one.stiffness for one in pressed]
+        shown, held, carried, turned = self._together(stiffness, rest, pressed, crossed, given.spring)
         acting = self.loads + given.push - given.spring * place
         balance = self._both.T @ (force.reshape(-1) + carried) + acting.reshape(-1)
-        couple = np.array([one.couple for one in pressed[: self.count]])
-        return Linear(pressed, force, rest.reshape(-1, 2), carried, shown, held, balance, turned, couple, seen)
+        return Linear(
+            pressed, force, rest.reshape(-1, 2), carried, shown, held, balance, turned, couple, by_place, crossed, seen
+        )
 
     def without_ripple(self, now: Linear, centre: np.ndarray, place: np.ndarray) -> Linear:
         """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""
@@ -130,21 +161,27 @@ class Balls:
         stiffness = [
             contact.mean_stiffness(d) + one.along for contact, d, one in zip(self.contacts, seen, now.pressed, strict=True)
         ]
-        shown, held, carried, turned = self._together(stiffness, now.rest.reshape(-1), now.pressed)
+        shown, held, carried, turned = self._together(stiffness, now.rest.reshape(-1), now.pressed, now.crossed)
         return attrs.evolve(now, shown=shown, held=held, carried=carried, turned=turned)
 
     def _together(
-        self, stiffness: list[np.ndarray], rest: np.ndarray, pressed: list[Pressed], spring: float = 0.0
+        self,
+        stiffness: list[np.ndarray],
+        rest: np.ndarray,
+        pressed: list[Pressed],
+        crossed: np.ndarray | float,
+        spring: float = 0.0,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """S, H, (1 + K W)^-1 rest and B, for the stiffness (2, 2) of every contact."""
         stiff, turned = np.zeros_like(self.coupling), np.zeros((len(rest), self.count))
         for k, one in enumerate(stiffness):
             stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one
+        stiff += crossed
         for k, other in enumerate(pressed[: self.count]):
             turned[2 * k : 2 * k + 2, k] = other.by_turn
         both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, turned, rest]))
         shown = both[:, : len(rest)]
-        if all(one.gripped is None for one in pressed):
+        if isinstance(crossed, float) and all(one.gripped is None for one in pressed):
             shown = 0.5 * (shown + shown.T)
         held = self._both.T @ shown @ self._both
         held += (spring + _IDLE * max(np.abs(held).max(), 1.0)) * np.eye(len(held))
@@ -162,10 +199,9 @@ class Balls:
 
     def tangent_with_turns(self, now: Linear) -> np.ndarray:
         """(3 Z, 3 Z) the same against those motions and, behind them, turns of the inner ring's section."""
-        n, z = 2 * self.count, self.count
-        by_place, by_turn = np.zeros((z, 2 * n)), np.zeros(z)
-        for k, one in enumerate(now.pressed[:z]):
-            by_place[k, 2 * k : 2 * k + 2], by_turn[k] = one.couple_by_place, one.couple_by_turn
+        n, by_place = 2 * self.count, now.couple_by_place
+        assert by_place is not None
+        by_turn = np.array([one.couple_by_turn for one in now.pressed[: self.count]])
         # D moves by P p' - E e' + W F';  F' = -S (P p' - E e') - B t'.
         seen = by_place @ (self._ones - self.coupling @ now.shown)
         given = np.concatenate([now.shown @ self._inner, -now.turned], axis=1)
@@ -175,6 +211,14 @@ class Balls:
         couple[:, :n] -= seen @ self._inner
         couple[:, n:] += np.diag(by_turn) - by_place @ self.coupling @ now.turned
         return np.concatenate([self._inner.T @ force, couple])
+
+    def couple(self, now: Linear) -> np.ndarray:
+        """(Z,) couples on the ring's section that equilibrium of the balls will bring, to first order."""
+        if now.couple_by_place is None:
+            return now.couple
+        step, change = self.move(now, np.zeros(2 * self.count))
+        moved = self._both @ step.reshape(-1) + self.coupling @ change.reshape(-1)
+        return now.couple + now.couple_by_place @ moved
 
     def slip(self, now: Linear) -> np.ndarray:
         """(4 Z, 2 Z) change of D that a motion of the inner groove centres brings, the balls following."""

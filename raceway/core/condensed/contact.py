@@ -49,6 +49,7 @@ class Pressed:
     couple : of friction on the section of the ring, derivative of its work by the section's turn [N m]
     by_turn : (2,) minus the derivative of the force by that turn [N];  couple_by_place : (2,) [N];  couple_by_turn [N m]
     gripped : tractions along the groove; None without friction
+    normal : (2,) the part of ``force`` that pressures make, where there is friction [N]
     """
 
     force: np.ndarray
@@ -64,6 +65,7 @@ class Pressed:
     couple_by_place: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
     couple_by_turn: float = 0.0
     gripped: Gripped | None = None
+    normal: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
 
 
 @attrs.frozen(eq=False)
@@ -183,7 +185,7 @@ class Contact:
         along = np.outer(ahead, by_place) - tau * lever / length * (np.outer(t, n) + np.outer(n, t))
         arm = race.groove if race.sense < 0.0 else 0.0
         return attrs.evolve(
-            normal, force=normal.force - tau * ahead, stiffness=normal.stiffness + along, along=along, gripped=gripped,
+            normal, force=normal.force - tau * ahead, stiffness=normal.stiffness + along, along=along, gripped=gripped, normal=normal.force,
             couple=-arm * tau, by_turn=-arm * gripped.by_place * ahead, couple_by_place=-arm * by_place,
             couple_by_turn=arm * arm * gripped.by_place,
         )  # fmt: skip

@@ -9,19 +9,25 @@ import attrs
 import numpy as np
 
 from raceway.core.bodies.ring import (
+    BALL_OVER_PITCH,
     CENTRIFUGAL,
     DAMPING,
+    DIAMETER,
     FRICTION,
+    GYROSCOPIC,
     LEVER,
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_SHARE,
+    SHARE_INNER,
+    SHARE_OUTER,
     SIDE,
     TILT_ARM,
     place,
 )
 from raceway.core.condensed.balls import Balls, Given, Linear
 from raceway.core.condensed.contact import BeyondPatch
+from raceway.core.condensed.gyroscopic import Gyroscopic
 from raceway.core.condensed.history import History
 from raceway.core.condensed.pool import STEP, Pool, Row
 from raceway.core.record import Record
@@ -62,7 +68,19 @@ class PatchSystem(System):
 
     @property
     def conservative(self) -> bool:
-        return self.pool.friction == 0.0
+        return self.pool.friction == 0.0 and self.scalars[GYROSCOPIC] == 0.0
+
+    @property
+    def gyroscopic(self) -> Gyroscopic | None:
+        """Moments of the balls, where the scene has them."""
+        s = self.scalars
+        if s[GYROSCOPIC] == 0.0:
+            return None
+        groove = self.pool.patches[0].race.groove
+        return Gyroscopic(
+            float(s[GYROSCOPIC]), float(s[BALL_OVER_PITCH]), (float(s[SHARE_INNER]), float(s[SHARE_OUTER])), float(s[DIAMETER]),
+            groove,
+        )  # fmt: skip
 
     @property
     def ball_columns(self) -> int:
@@ -71,7 +89,7 @@ class PatchSystem(System):
     @property
     def rubbing(self) -> bool:
         """Whether friction acts where its history is known."""
-        return not self.conservative and self.scalars[FRICTION] > 0.0
+        return self.pool.friction > 0.0 and bool(self.scalars[FRICTION] > 0.0)
 
     def evaluate(
         self,
@@ -108,7 +126,7 @@ class PatchSystem(System):
         moving = bool(v.any()) or ball_rate is not None
         rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
         turning = self._turning(t)
-        given = Given(turning @ q)
+        given = Given(turning @ q, gyroscopic=self.gyroscopic)
         if rubbing and ball is not None:
             sizes = [patch.rows * patch.columns for patch in self.pool.patches for _ in range(self.ball_count)]
             given = attrs.evolve(given, slip=history.slips(ball[:, 2:4].T.reshape(-1), sizes))
@@ -209,14 +227,15 @@ class PatchSystem(System):
         q = q.copy()
         centre, jacobian, _ = self._groove(q, none, 0.0)
         where, force = self._places(centre, ball), np.zeros((2 * self.ball_count, 2))
-        now = balls.linear(centre, where, force, still)
+        turning, gyroscopic = self._turning(0.0), self.gyroscopic
+        now = balls.linear(centre, where, force, still, Given(turning @ q, gyroscopic=gyroscopic))
         weight = np.array([1.0, 1.0, 1.0, 1.0 / self.arm, 1.0 / self.arm]) * self.free
         limit = STEP * self.pool.diameter
         chosen = self.free > 0.0
         best = np.inf
         for iteration in range(1, _LIMIT + 1):
-            rest = jacobian.T @ balls.carried(now) + self.stiffness @ q - load
-            out = jacobian.T @ now.force[: self.ball_count].reshape(-1) + self.stiffness @ q - load
+            rest = jacobian.T @ balls.carried(now) + turning.T @ balls.couple(now) + self.stiffness @ q - load
+            out = jacobian.T @ now.force[: self.ball_count].reshape(-1) + turning.T @ now.couple + self.stiffness @ q - load
             size = max(float(np.abs(out * weight).max()), balls.residual(now))
             scale = float(np.abs(now.force[: self.ball_count]).sum() + np.abs(load * weight).sum())
             relative = size / max(scale, 1e-300)
@@ -224,7 +243,7 @@ class PatchSystem(System):
                 row.force, row.last, row.centre, row.where = now.force, now, centre, where
                 return q, where, iteration
             best = min(best, size)
-            tangent = jacobian.T @ balls.tangent(now) @ jacobian + self.stiffness
+            tangent = self._stiffness(balls, now, jacobian, turning) + self.stiffness
             dq = np.zeros(5)
             matrix = self.reduced(tangent)
             matrix += 1e-12 * max(np.trace(matrix), 1.0) * np.eye(len(matrix))
@@ -238,8 +257,10 @@ class PatchSystem(System):
             for _ in range(6):
                 other_q = q + part * dq
                 centre, _, _ = self._groove(other_q, none, 0.0)
-                other = balls.linear(centre, where + part * step, force + part * change, still)
-                out = jacobian.T @ other.force[: self.ball_count].reshape(-1) + self.stiffness @ other_q - load
+                given = Given(turning @ other_q, gyroscopic=gyroscopic)
+                other = balls.linear(centre, where + part * step, force + part * change, still, given)
+                out = jacobian.T @ other.force[: self.ball_count].reshape(-1) + turning.T @ other.couple
+                out += self.stiffness @ other_q - load
                 if max(float(np.abs(out * weight).max()), balls.residual(other)) < 2.0 * before:
                     break
                 part *= 0.4
@@ -258,17 +279,19 @@ class PatchSystem(System):
         self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, turning: np.ndarray, where: np.ndarray, rate: np.ndarray,
         now: Linear,
     ) -> Evaluation:  # fmt: skip
-        force = np.array([one.force for one in now.pressed])
-        size = np.hypot(force[:, 0], force[:, 1])
+        force = now.force + now.rest  # of pressures, friction and gyroscopic moments
+        pressures = np.array([one.force if one.gripped is None else one.normal for one in now.pressed])
+        size = np.hypot(pressures[:, 0], pressures[:, 1])
         viscous = np.zeros((4 * self.ball_count, 4 * self.ball_count))
         for k, one in enumerate(now.pressed):
             block = one.viscous
             if self.scalars[DAMPING] > 0.0 and size[k] > 0.0:
-                normal = force[k] / size[k]
+                normal = pressures[k] / size[k]
                 dashpot = self.scalars[DAMPING] * np.outer(normal, normal)
                 pull = -float(normal @ dashpot @ rate[k])
                 if size[k] + pull > 0.0:
                     force[k] += pull * normal
+                    size[k] += pull
                     block = block + dashpot
             viscous[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = block
         along = balls.slip(now) @ jacobian
@@ -280,7 +303,7 @@ class PatchSystem(System):
             self._stiffness(balls, now, jacobian, turning),
             along.T @ viscous @ along,
             rest - np.hypot(reach[:, 0], reach[:, 1]),
-            np.hypot(force[:, 0], force[:, 1]),
+            size,
             where,
             self.law_state.copy(),
         )
@@ -288,7 +311,7 @@ class PatchSystem(System):
     @staticmethod
     def _stiffness(balls: Balls, now: Linear, jacobian: np.ndarray, turning: np.ndarray) -> np.ndarray:
         """(5, 5) against motions of the ring."""
-        if now.pressed[0].gripped is None:
+        if now.couple_by_place is None:
             return np.asarray(jacobian.T @ balls.tangent(now) @ jacobian)
         both = np.concatenate([jacobian, turning])
         return np.asarray(both.T @ balls.tangent_with_turns(now) @ both)
