@@ -118,12 +118,7 @@ def elastic_faults(scene: Scene) -> list[Mistake]:
     refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
     why = f"elastic bodies are one row of balls: use 'single', {other}"
     refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, why)
-    why = f"elastic rings have the size that they are meshed with: leave it out, {other}"
-    refuse(kinematics.radial_expansion != 0.0, "kinematics.radial_expansion", kinematics.radial_expansion, why)
-    refuse(kinematics.ring_growth, "kinematics.ring_growth", True, why)
-    why = f"a held displacement is not available for elastic bodies: use 'force', {other}"
-    refuse(scene.supports.axial == "displacement", "supports.axial", scene.supports.axial, why)
-    why = f"elastic rings tilt about the axis of their groove centres: use 'groove', {other}"
+    why = f"the arm follows from the shape of elastic rings, which is that of 'groove': use it, {other}"
     refuse(b.tilt_arm != "groove", "bearing.tilt_arm", b.tilt_arm, why)
     steady = scene.excitation is not None and getattr(scene.integrator.method, "steady", False)
     why = f"solves for all times at once, which all nodes of elastic bodies would not fit: use 'newmark', {other}"

@@ -52,6 +52,7 @@ class Setup:
     seat_inner, seat_outer : "rigid" or a bed [N/m3]
     contact_damping : normal damping [N s/m] of each contact at the reference load
     ball_force : outward force on each ball [N], centrifugal
+    growth : how much larger in radius the inner raceway is than meshed [m]: fit, temperature, rotation
     caged : whether an ideal cage holds the balls at their azimuth
     friction : Coulomb's coefficient;  stick : stiffness of sticking points [N/m3], None: Mindlin's ratio times the penalty's
     """
@@ -75,6 +76,7 @@ class Setup:
     seat_outer: float | str = "rigid"
     contact_damping: float = 0.0
     ball_force: float = 0.0
+    growth: float = 0.0
     caged: bool = True
     friction: float = 0.0
     stick: float | None = None
@@ -223,7 +225,8 @@ class ElasticBearing:
             index = 0 if inner else 1
             centre = s.offsets[index]
             radius = (g.conformity_inner if inner else g.conformity_outer) * g.ball_diameter
-            surface = groove(np.array([centre[0], 0.0, 0.0]), centre[1], radius)
+            circle = centre[1] + (s.growth if inner else 0.0)
+            surface = groove(np.array([centre[0], 0.0, 0.0]), circle, radius)
             mesh = self._meshes[index]
             facets = Facets(mesh.points, mesh.facet_nodes("raceway"))
             ellipse = g.ellipses(s.modulus)[index]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import attrs
@@ -27,9 +28,11 @@ class ElasticRing(System):
     Attributes
     ----------
     bodies : ElasticBearing
+    held_by : axial load [N] whose displacement, where it acts alone, is held; None: the axial motion is free
     """
 
     bodies: ElasticBearing = attrs.field(kw_only=True)
+    held_by: float | None = attrs.field(kw_only=True, default=None)
     _y: np.ndarray | None = attrs.field(init=False, default=None)
     _stiffness: np.ndarray | None = attrs.field(init=False, default=None)
 
@@ -71,11 +74,10 @@ class ElasticRing(System):
         ConvergenceError
             With the last good state ``y`` and the residuals.
         """
-        if self._y is None:
-            place, places, _ = self.companion.settle(q)
-            if not places[:, 1].any():
-                places = self._on_the_line(place, places)
-            guess = self.bodies.guess(place, places)
+        if self._y is None and self.held_by is not None:
+            guess = self._alone(q, self.held_by)
+        elif self._y is None:
+            guess = self._undeformed(self.companion, q)
         else:
             guess = self._y
         self._y, count = self.settled(guess, self.load, max(tolerance, _TOLERANCE))
@@ -171,20 +173,42 @@ class ElasticRing(System):
             system.load = before
         return found.y, found.iterations
 
+    def _undeformed(self, rigid: System, q: np.ndarray) -> np.ndarray:
+        """(size,) undeformed bodies at the equilibrium of rigid ones near q (5,)."""
+        place, places, _ = rigid.settle(q)
+        if not places[:, 1].any():
+            places = self._on_the_line(place, places)
+        return self.bodies.guess(place, places)
+
+    def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
+        """(size,) equilibrium under an axial load [N] alone, the ring's other motions held."""
+        only, load = np.arange(5) == 0, np.array([axial, 0.0, 0.0, 0.0, 0.0])
+        rigid = attrs.evolve(self.companion, free=only.astype(float), load=load)
+        with self._letting_free(only):
+            found, _ = self.settled(self._undeformed(rigid, q * only), load)
+        self.bodies.system.solver.forget()  # it knows how the bodies follow the axial motion
+        return found
+
+    @contextmanager
+    def _letting_free(self, motions: np.ndarray) -> Iterator[None]:
+        """Inside, these motions (5,) of the ring are the unknowns, and no others."""
+        assembly = self.bodies.system.assembly
+        kept, unknown = assembly.frame_free.copy(), assembly.unknown.copy()
+        assembly.frame_free[:], assembly.unknown[:5] = motions, motions
+        try:
+            yield
+        finally:
+            assembly.frame_free[:], assembly.unknown[:] = kept, unknown
+
     def _tangent(self) -> np.ndarray:
         """(5, 5) stiffness of the ring's motions, the shaft's left out: inverse of its compliance, all motions let free."""
         system = self.bodies.system
-        assembly = system.assembly
-        kept, unknown = assembly.frame_free.copy(), assembly.unknown.copy()
-        assembly.frame_free[:], assembly.unknown[:5] = True, True
-        try:
-            compliance = np.empty((5, 5))
+        compliance = np.empty((5, 5))
+        with self._letting_free(np.ones(5, dtype=bool)):
             for k in range(5):
                 force = np.zeros(system.size)
                 force[k] = 1.0
                 compliance[:, k] = system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR)[:5]
-        finally:
-            assembly.frame_free[:], assembly.unknown[:] = kept, unknown
         found = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
         return np.asarray(0.5 * (found + found.T))
 

@@ -48,7 +48,6 @@ class ElasticSystem:
         # Moments count as the force at the arm of the rotations: columns of rotations hold lengths, of translations ones.
         reach = np.abs(assembly.carried).max(axis=0) if m else np.zeros(0)
         self._weight = np.concatenate([np.where(reach > 0.0, 1.0 / np.maximum(reach, 1e-30), 0.0), np.ones(self.size - m)])
-        self._weight *= assembly.unknown
         self._u = np.zeros(3 * assembly.nodes)
         self._y = np.zeros(self.size)
         self._element_step: float | None = None
@@ -111,7 +110,7 @@ class ElasticSystem:
 
     def measure(self, r: np.ndarray) -> float:
         """Euclidean norm of nodal forces and of the frames' forces; moments over their arm [N]."""
-        return float(np.linalg.norm(r * self._weight))
+        return float(np.linalg.norm(r * self._weight * self.assembly.unknown))
 
     def force_scale(self) -> float:
         """Norm of the forces that have to balance at the last ``internal`` [N]."""
