@@ -167,6 +167,13 @@ def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
         make_plan(scene())
 
 
+def test_a_motion_that_nothing_holds_is_named_before_anything_is_iterated():
+    seen = []
+    with pytest.raises(RacewayError, match="nothing holds the ring against z with tilt_y"):
+        run(scene(bearing={"ball_count": 2}, supports={"tilt": "free"}), on_progress=lambda *told: seen.append(told[0]))
+    assert not any("residual" in text for text in seen)
+
+
 def test_no_load_is_refused_by_name():
     with pytest.raises(RacewayError, match="nothing loads the bearing"):
         run(scene(load={"axial": 0.0}))
