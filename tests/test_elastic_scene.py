@@ -167,6 +167,11 @@ def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
         make_plan(scene())
 
 
+def test_surfaces_that_overlap_by_more_than_an_element_are_refused():
+    with pytest.raises(RacewayError, match="inner race: the surfaces overlap by 1.4.* um before anything is loaded"):
+        run(scene(kinematics={"radial_expansion": 1.5e-3}))
+
+
 def test_a_motion_that_nothing_holds_is_named_before_anything_is_iterated():
     seen = []
     with pytest.raises(RacewayError, match="nothing holds the ring against z with tilt_y"):

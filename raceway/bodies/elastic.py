@@ -13,8 +13,9 @@ from raceway.bodies.rigid import place_ring, probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.contracts import ContactPairs
 from raceway.core.bodies.ring import CENTRIFUGAL, FRICTION
-from raceway.core.elastic.bearing import ElasticBearing, Setup
+from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.ring import ElasticRing
+from raceway.core.elastic.setup import Setup
 from raceway.core.plugin_kernel import plugin_kernel
 from raceway.core.signatures import LAW
 from raceway.core.system import System

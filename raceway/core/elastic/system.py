@@ -205,10 +205,10 @@ class ElasticSystem:
             return
         self.contact.evaluate(0.0, self._u)
         for index, pair in enumerate(self.contact.pairs):
-            depth = -float(self.contact.gap[self.contact.pair == index].min())
-            size = float(np.sqrt(4.0 * pair.points.area.max()))
+            gap = self.contact.gap[self.contact.pair == index]
+            depth, size = -float(gap.min()), float(np.sqrt(4.0 * pair.points.area[gap.argmin()]))  # a facet has four points
             if depth > size:
                 raise MeshError(
                     f"{pair.name}: the surfaces overlap by {1e6 * depth:.3g} um before anything is loaded, more than an "
-                    f"element there ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance and preload"
+                    f"element there ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
                 )
