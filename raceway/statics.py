@@ -57,6 +57,8 @@ def settle(
     _refuse_no_load(model)
     if on_progress is not None:
         system.follow(_telling(on_progress))
+    if model.scene.bodies.kind == "elastic":
+        _foresee_free_motion(model)
     q, ball, iterations = _settled(model, near)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
@@ -103,6 +105,14 @@ def _refuse_no_load(model: Model) -> None:
             "nothing loads the bearing: every motion is free and there is no stiffness to find. Set `load.axial`, or hold "
             'the ring with supports.axial = "displacement" under an axial load.'
         )
+
+
+def _foresee_free_motion(model: Model) -> None:
+    """What nothing holds shows on the same ring with rigid bodies in milliseconds; elastic ones would iterate for minutes."""
+    rigid = model.system.companion
+    q, ball, _ = rigid.settle(model.guess)
+    now = rigid.evaluate(q, ball=ball)
+    _refuse_free_motion(model, rigid.stiffness_at(q, now), q)
 
 
 def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> None:

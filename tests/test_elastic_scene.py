@@ -13,7 +13,7 @@ from raceway.plan import make_plan
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
 
-#: Three balls on some four thousand hexahedra: every path, no accuracy.
+#: Three balls on some two thousand hexahedra: every path, no accuracy.
 TINY = {
     "title": "tiny",
     "bearing": {"preset": "B7206C", "ball_count": 3},
@@ -25,14 +25,17 @@ TINY = {
         "azimuth_cells": 12,
         "growth": 3.0,
         "patch": 0.5,
-        "ball_load": 300.0,
+        "ball_load": 3e4,
     },
-    "load": {"axial": 250.0},
+    "load": {"axial": 2500.0},
     "rotor": {"mass": 0.5},
-    "contact": {"kind": "penalty", "discretisation": "nodal", "stiffness": 3e15},
+    "contact": {"kind": "penalty", "discretisation": "nodal", "stiffness": 3e14},
 }
-#: 15 000 r/min: a turn of 4 ms.
-EXCITED = {"excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 60.0}}
+#: 15 000 r/min: a turn of 4 ms.  QUICK: a turn of 6 us, some 430 explicit steps; balls without centrifugal force.
+EXCITED = {"excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0}}
+
+
+QUICK = {"excitation": {**EXCITED["excitation"], "speed_rpm": 1e7}, "kinematics": {"ball_inertia": False}}
 
 
 def scene(**tables):
@@ -55,10 +58,10 @@ def test_a_static_scene_balances_and_tells_what_it_found(static):
     json.dumps(found, allow_nan=False)
     balls, model = found["equilibrium"]["balls"], found["model"]
     # Newton's residual is 1e-7 of the forces.
-    assert model["reaction_n"]["x"] == pytest.approx(-250.0, rel=1e-5)
-    assert model["unbalanced_n"] < 1e-3
+    assert model["reaction_n"]["x"] == pytest.approx(-2500.0, rel=1e-5)
+    assert model["unbalanced_n"] < 1e-2
     assert sum(b["load_inner_n"] * np.sin(np.radians(b["contact_angle_inner_deg"])) for b in balls) == pytest.approx(
-        250.0,
+        2500.0,
         rel=0.01,  # the angle is that of the ball's centre, not of the resultant
     )
     # Three balls alike, on a mesh that repeats itself three times.
@@ -69,7 +72,7 @@ def test_a_static_scene_balances_and_tells_what_it_found(static):
     assert model["mesh"]["hourglass_coefficient"] == 0.05
     assert 0.0 < model["hourglass_energy_ratio"] < 1.0
     assert model["energies_j"]["elastic"] > 0.0
-    assert abs(model["cage_force_n"]) < 1e-3
+    assert abs(model["cage_force_n"]) < 1e-2
     assert any("equilibrium, residual" in text for text in seen)
 
 
@@ -79,11 +82,10 @@ def test_the_tangent_is_symmetric_and_positive(static):
     assert (np.linalg.eigvalsh(stiffness) > 0.0).all()
 
 
-def test_newmark_runs_from_the_scene():
-    """Series of equilibria and the tangent run in the matrix, explicit steps in tests/stepping."""
-    found = run(
-        scene(**EXCITED, integrator={"kind": "newmark", "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})
-    ).as_dict()
+@pytest.mark.parametrize("kind", ["newmark", "generalized_alpha"])
+def test_implicit_steps_run_from_the_scene(kind):
+    """Series of equilibria and the tangent run in the matrix."""
+    found = run(scene(**EXCITED, integrator={"kind": kind, "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})).as_dict()
     json.dumps(found, allow_nan=False)
     assert found["identification"]["equivalent_stiffness"] > 1e7
     # Eight steps a turn: the balance is that of the trapezoidal rule, some percent.
@@ -92,9 +94,49 @@ def test_newmark_runs_from_the_scene():
     assert found["error"]["total"] is None
 
 
+def test_explicit_steps_run_from_the_scene():
+    found = run(scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"})).as_dict()
+    json.dumps(found, allow_nan=False)
+    steps, stability = found["cost"]["steps"], found["stability"]
+    # By itself a run takes 0.8 of the stable step of elements and contacts, in whole multiples of 360 steps a turn.
+    assert 0.3 < 6e-6 / steps / stability["critical_time_step_s"] < 1.0
+    # Of second order, and the motion takes hundreds of steps.
+    assert stability["energy_drift"] < 1e-4
+
+
+def test_a_step_above_the_stable_limit_is_refused_with_the_limit():
+    steps = {"kind": "central_difference", "turns": 1, "start": "static", "steps_per_turn": 100}
+    with pytest.raises(RacewayError, match="above the stable limit of 'central_difference', 2.* s. Take at least"):
+        run(scene(**QUICK, integrator=steps))
+
+
+def test_a_held_axial_displacement_is_that_of_the_axial_load_alone(static):
+    alone = static[0].as_dict()["equilibrium"]
+    found = run(scene(load={"axial": 2500.0, "radial": [500.0, 0.0]}, supports={"axial": "displacement"})).as_dict()
+    held = found["equilibrium"]["displacement"]
+    assert held["x"] == pytest.approx(alone["displacement"]["x"], rel=1e-6)  # Newton's tolerance
+    assert held["y"] > 0.0
+    # What the ground does not carry of a radial load is the cage's: two of the three balls lean on it.
+    model = found["model"]
+    assert model["unbalanced_n"] < 2.0 * model["cage_force_n"] + 1e-2
+    # The ground carries what the held ring presses, not the load.
+    assert abs(model["reaction_n"]["x"] + 2500.0) > 1.0
+
+
+def test_a_larger_inner_raceway_moves_less_for_the_same_load(static):
+    before = static[0].as_dict()
+    found = run(scene(kinematics={"radial_expansion": 1e-6})).as_dict()
+    moved = found["equilibrium"]["displacement"]["x"] - before["equilibrium"]["displacement"]["x"]
+    rigid = [one["model"]["rigid_rings"]["displacement"]["x"] for one in (found, before)]
+    # Geometry decides, -cot(contact angle) to first order; the stiffness of contact and mesh enters with a tenth of that,
+    # and this mesh is far from Hertz.
+    assert moved == pytest.approx(rigid[0] - rigid[1], rel=0.1)
+    assert moved < -1e-6
+
+
 def test_the_plan_tells_size_and_cost_and_builds_nothing():
     plan = make_plan(scene())
-    assert plan.dofs > 10_000
+    assert plan.dofs > 5_000
     assert 0.5 < plan.predicted_wall_s < 60.0
     assert any("every node" in part.why for part in plan.kept)
     assert any(part.part == "travel of the balls" for part in plan.left_out)
@@ -104,8 +146,9 @@ REFUSED = [
     ({"contact": {"discretisation": "resultant", "stiffness": 3e15}}, "contact.discretisation", "surface points"),
     ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "kinematics.orbiting", "azimuth"),
     ({"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "kinematics.gyroscopic", "do not turn"),
-    ({"supports": {"axial": "displacement"}}, "supports.axial", "use 'force'"),
-    ({"kinematics": {"radial_expansion": 1e-6}}, "kinematics.radial_expansion", "leave it out"),
+    ({"bearing": {"tilt_arm": "pitch"}}, "bearing.tilt_arm", "shape of elastic rings"),
+    ({"bearing": {"arrangement": "DB"}}, "bearing.arrangement", "one row of balls"),
+    ({**EXCITED, "integrator": {"kind": "periodic"}}, "integrator.kind", "thousands of states"),
     ({"mesh": {"element_size": 2e-5}}, "mesh.element_size", "larger elements"),
 ]
 
@@ -122,6 +165,18 @@ def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
     monkeypatch.setattr("raceway.elastic_plan.machine_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
+
+
+def test_surfaces_that_overlap_by_more_than_an_element_are_refused():
+    with pytest.raises(RacewayError, match="inner race: the surfaces overlap by 1.4.* um before anything is loaded"):
+        run(scene(kinematics={"radial_expansion": 1.5e-3}))
+
+
+def test_a_motion_that_nothing_holds_is_named_before_anything_is_iterated():
+    seen = []
+    with pytest.raises(RacewayError, match="nothing holds the ring against z with tilt_y"):
+        run(scene(bearing={"ball_count": 2}, supports={"tilt": "free"}), on_progress=lambda *told: seen.append(told[0]))
+    assert not any("residual" in text for text in seen)
 
 
 def test_no_load_is_refused_by_name():

@@ -13,14 +13,16 @@ from raceway.bodies.rigid import place_ring, probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.contracts import ContactPairs
 from raceway.core.bodies.ring import CENTRIFUGAL, FRICTION
-from raceway.core.elastic.bearing import ElasticBearing, Setup
+from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.ring import ElasticRing
+from raceway.core.elastic.setup import Setup
 from raceway.core.plugin_kernel import plugin_kernel
 from raceway.core.signatures import LAW
 from raceway.core.system import System
 from raceway.errors import PluginError
 from raceway.meshing import mesh_scene
 from raceway.plan import Plan
+from raceway.ring import radial_growth
 from raceway.scene import Scene
 
 
@@ -40,7 +42,8 @@ def build(scene: Scene, plan: Plan) -> Built:
     guess = place_ring(as_rigid, basis, rigid)
     bodies = ElasticBearing(mesh_scene(scene), _setup(scene, basis, rigid))
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
-    system = ElasticRing(**fields, bodies=bodies)
+    held_by = scene.load.axial if scene.supports.axial == "displacement" else None
+    system = ElasticRing(**fields, bodies=bodies, held_by=held_by)
     return Built(basis, system, guess, ElasticBodies(bodies, rigid, guess))
 
 
@@ -70,6 +73,7 @@ def _setup(scene: Scene, basis: Basis, rigid: System) -> Setup:
         seat_outer=scene.supports.outer_seat,
         contact_damping=contact.damping,
         ball_force=float(rigid.table[0, CENTRIFUGAL]),
+        growth=radial_growth(scene),
         friction=contact.friction,
         stick=_stick(scene, basis),
     )

@@ -97,7 +97,7 @@ class ElasticBodies:
                 "hourglass_coefficient": scene.bodies.hourglass if scene.bodies.formulation == "one_point" else None,
             },
             "reaction_n": dict(zip("xyz", force.tolist(), strict=True)),
-            "unbalanced_n": float(np.abs(force + load[:3]).max()),
+            "unbalanced_n": float(np.abs((force + load[:3]) * model.system.free[:3]).max()),
             "cage_force_n": float(pushed),
             "energies_j": energies,
             "hourglass_energy_ratio": energies["hourglass"] / max(energies["elastic"], 1e-300),

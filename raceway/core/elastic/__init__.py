@@ -5,12 +5,17 @@ assembly    the unknowns of all bodies in one vector, rigid frames included; lin
 cage        what holds a ball that nothing else holds: at its azimuth, without turning
 surface     quadrature points of a contacting surface, on the exact sphere where it is one
 facets      where on a meshed surface a point lies: facet and weights
+gap         distance from the exact surfaces, its normal and curvature
 contact     gap, normal, pressure and friction at the points; nodal forces and their tangent
 friction    Coulomb friction at the points, by return mapping
 penalty     stiffness of the penalty from the bodies' own
 solver      conjugate gradients with multigrid and the rigid frames' own coordinates
+factorised  sparse factors in the place of multigrid, for small systems
 statics     Newton's method with a line search; the last good state is kept
 system      all of it, stepped in time or settled
 recovery    peak pressures, approach, and what the penalty takes of it
+setup       what a ball bearing is beyond its meshes
 bearing     the bodies of a ball bearing, made into a system
+ring        the bearing seen from its inner ring: the interface of all systems
+start       where motions begin
 """

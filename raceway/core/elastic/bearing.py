@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
-import attrs
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
@@ -16,10 +14,9 @@ from raceway.core.elastic.facets import Facets
 from raceway.core.elastic.friction import CoulombFriction
 from raceway.core.elastic.gap import groove
 from raceway.core.elastic.penalty import penalty_stiffness
+from raceway.core.elastic.setup import Setup
 from raceway.core.elastic.surface import SurfacePoints, surface_points
 from raceway.core.elastic.system import ElasticSystem
-from raceway.core.geometry import BallBearing
-from raceway.core.hertz import contact_modulus
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh import HexMesh
 from raceway.core.stepping.elastic import Seen
@@ -30,66 +27,6 @@ from raceway.errors import MeshError
 REACH = 5.0
 #: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.
 CAGE_SHARE = 0.1
-
-Material = tuple[float, float, float]
-
-
-@attrs.frozen(eq=False)
-class Setup:
-    """What a bearing is beyond its meshes.
-
-    Attributes
-    ----------
-    geometry : BallBearing;  azimuth : (Z,) of the balls [rad]
-    rings, balls : young [Pa], poisson, density [kg/m3]
-    reference_load : load of a ball [N], from which the points that may touch are chosen
-    law : kernel of signature ``LAW``;  params : function of (pair (n,), area (n,)) -> (n, k) parameters of the points;
-        pairs are counted as in a record: inner races of all balls, then outer
-    state_size : columns of the law's memory
-    mass, damping, stiffness : (5, 5) of rotor and shaft at the reference point, without the ring
-    free : (5,) bool;  load : (5,) constant load [N, N m]
-    formulation, hourglass : of the hexahedra
-    seat_inner, seat_outer : "rigid" or a bed [N/m3]
-    contact_damping : normal damping [N s/m] of each contact at the reference load
-    ball_force : outward force on each ball [N], centrifugal
-    caged : whether an ideal cage holds the balls at their azimuth
-    friction : Coulomb's coefficient;  stick : stiffness of sticking points [N/m3], None: Mindlin's ratio times the penalty's
-    """
-
-    geometry: BallBearing
-    azimuth: np.ndarray
-    rings: Material
-    balls: Material
-    reference_load: float
-    law: Any
-    params: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    mass: np.ndarray
-    free: np.ndarray
-    load: np.ndarray
-    damping: np.ndarray = attrs.field(factory=lambda: np.zeros((5, 5)))
-    stiffness: np.ndarray = attrs.field(factory=lambda: np.zeros((5, 5)))
-    state_size: int = 0
-    formulation: str = "full"
-    hourglass: float = 0.05
-    seat_inner: float | str = "rigid"
-    seat_outer: float | str = "rigid"
-    contact_damping: float = 0.0
-    ball_force: float = 0.0
-    caged: bool = True
-    friction: float = 0.0
-    stick: float | None = None
-
-    @property
-    def modulus(self) -> float:
-        return contact_modulus(*self.rings[:2], *self.balls[:2])
-
-    @property
-    def offsets(self) -> tuple[np.ndarray, np.ndarray]:
-        """Groove centres, inner and outer: axial place and radius [m]."""
-        g = self.geometry
-        direction = np.array([np.sin(g.contact_angle), np.cos(g.contact_angle)])
-        middle = np.array([0.0, 0.5 * g.pitch_diameter])
-        return middle + g.offset_inner * direction, middle - g.offset_outer * direction
 
 
 class ElasticBearing:
@@ -223,7 +160,8 @@ class ElasticBearing:
             index = 0 if inner else 1
             centre = s.offsets[index]
             radius = (g.conformity_inner if inner else g.conformity_outer) * g.ball_diameter
-            surface = groove(np.array([centre[0], 0.0, 0.0]), centre[1], radius)
+            circle = centre[1] + (s.growth if inner else 0.0)
+            surface = groove(np.array([centre[0], 0.0, 0.0]), circle, radius)
             mesh = self._meshes[index]
             facets = Facets(mesh.points, mesh.facet_nodes("raceway"))
             ellipse = g.ellipses(s.modulus)[index]

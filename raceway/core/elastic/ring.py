@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import attrs
@@ -13,8 +14,8 @@ from raceway.core.stepping.elastic import SteppedElastic
 from raceway.core.system import Evaluation, System
 from raceway.errors import ConvergenceError
 
-#: Relative residual of equilibria and of the linear solves for the ring's stiffness.
-_TOLERANCE, _LINEAR = 1e-7, 1e-7
+#: Relative residual of equilibria, and of the linear solves for the ring's stiffness, whose error is its square.
+_TOLERANCE, _LINEAR = 1e-7, 1e-4
 
 
 @attrs.define(eq=False)
@@ -27,9 +28,11 @@ class ElasticRing(System):
     Attributes
     ----------
     bodies : ElasticBearing
+    held_by : axial load [N] whose displacement, where it acts alone, is held; None: the axial motion is free
     """
 
     bodies: ElasticBearing = attrs.field(kw_only=True)
+    held_by: float | None = attrs.field(kw_only=True, default=None)
     _y: np.ndarray | None = attrs.field(init=False, default=None)
     _stiffness: np.ndarray | None = attrs.field(init=False, default=None)
 
@@ -71,11 +74,10 @@ class ElasticRing(System):
         ConvergenceError
             With the last good state ``y`` and the residuals.
         """
-        if self._y is None:
-            place, places, _ = self.companion.settle(q)
-            if not places[:, 1].any():
-                places = self._on_the_line(place, places)
-            guess = self.bodies.guess(place, places)
+        if self._y is None and self.held_by is not None:
+            guess = self._alone(q, self.held_by)
+        elif self._y is None:
+            guess = self._undeformed(self.companion, q)
         else:
             guess = self._y
         self._y, count = self.settled(guess, self.load, max(tolerance, _TOLERANCE))
@@ -171,22 +173,49 @@ class ElasticRing(System):
             system.load = before
         return found.y, found.iterations
 
-    def _tangent(self) -> np.ndarray:
-        """(5, 5) stiffness of the ring's motions, the shaft's left out: inverse of its compliance, all motions let free."""
-        system = self.bodies.system
-        assembly = system.assembly
+    def _undeformed(self, rigid: System, q: np.ndarray) -> np.ndarray:
+        """(size,) undeformed bodies at the equilibrium of rigid ones near q (5,)."""
+        place, places, _ = rigid.settle(q)
+        if not places[:, 1].any():
+            places = self._on_the_line(place, places)
+        return self.bodies.guess(place, places)
+
+    def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
+        """(size,) equilibrium under an axial load [N] alone, the ring's other motions held."""
+        only, load = np.arange(5) == 0, np.array([axial, 0.0, 0.0, 0.0, 0.0])
+        rigid = attrs.evolve(self.companion, free=only.astype(float), load=load)
+        with self._letting_free(only):
+            found, _ = self.settled(self._undeformed(rigid, q * only), load)
+        self.bodies.system.solver.forget()  # it knows how the bodies follow the axial motion
+        return found
+
+    @contextmanager
+    def _letting_free(self, motions: np.ndarray) -> Iterator[None]:
+        """Inside, these motions (5,) of the ring are the unknowns, and no others."""
+        assembly = self.bodies.system.assembly
         kept, unknown = assembly.frame_free.copy(), assembly.unknown.copy()
-        assembly.frame_free[:], assembly.unknown[:5] = True, True
+        assembly.frame_free[:], assembly.unknown[:5] = motions, motions
         try:
-            compliance = np.empty((5, 5))
-            for k in range(5):
-                force = np.zeros(system.size)
-                force[k] = 1.0
-                compliance[:, k] = system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR)[:5]
+            yield
         finally:
             assembly.frame_free[:], assembly.unknown[:] = kept, unknown
-        found = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
-        return np.asarray(0.5 * (found + found.T))
+
+    def _tangent(self) -> np.ndarray:
+        """(5, 5) stiffness of the ring's motions, the shaft's left out: inverse of its compliance, all motions let free.
+
+        Notes
+        -----
+        Of solutions u_k with errors e_k under forces f_k: f_i u_k + f_k u_i - u_i A u_k = f_i A^-1 f_k - e_i A e_k.
+        """
+        system = self.bodies.system
+        found = np.empty((5, system.size))
+        with self._letting_free(np.ones(5, dtype=bool)):
+            for k, force in enumerate(np.eye(5, system.size)):
+                found[k] = system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR)
+            image = system.solver.image(1.0, 0.0, 0.0)
+            compliance = found[:, :5] + found[:, :5].T - found @ np.stack([image(u) for u in found], axis=1)
+        stiffness = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
+        return np.asarray(0.5 * (stiffness + stiffness.T))
 
     def _on_the_line(self, q: np.ndarray, places: np.ndarray) -> np.ndarray:
         """(Z, 2) places of weightless balls, which lie between the groove centres: their first column is the distance."""

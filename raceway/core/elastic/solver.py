@@ -61,7 +61,7 @@ class LinearSolver:
         if stale or other:
             self._make(c_k, c_m)
         wanted = np.where(a.unknown, right, 0.0)
-        apply = self._operator(c_k, c_c, c_m)
+        apply = self.image(c_k, c_c, c_m)
         precondition = self._preconditioner(c_k, apply)
         found, self.last_iterations = _conjugate_gradients(apply, wanted, precondition, tolerance)
         self._fresh = False
@@ -102,7 +102,7 @@ class LinearSolver:
         """How the free nodes follow each frame: the solution of the whole for a unit motion of the frame."""
         a, m = self.assembly, self.assembly.frame_size
         self._follow = self._ride.copy()
-        apply = self._operator(c_k, 0.0, c_m)
+        apply = self.image(c_k, 0.0, c_m)
         multigrid, scale = self._multigrid, 1.0 / c_k
         assert multigrid is not None
         for k in np.flatnonzero(a.frame_free):
@@ -116,7 +116,8 @@ class LinearSolver:
             self._follow[:, k] += more
             self.iterations += used
 
-    def _operator(self, c_k: float, c_c: float, c_m: float) -> Callable[[np.ndarray], np.ndarray]:
+    def image(self, c_k: float, c_c: float, c_m: float) -> Callable[[np.ndarray], np.ndarray]:
+        """The matrix' product with unknowns (size,), with the tangents of the last contact forces."""
         a, contact = self.assembly, self.contact
         m = a.frame_size
         if self._matrix is None:

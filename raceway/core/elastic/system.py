@@ -48,7 +48,6 @@ class ElasticSystem:
         # Moments count as the force at the arm of the rotations: columns of rotations hold lengths, of translations ones.
         reach = np.abs(assembly.carried).max(axis=0) if m else np.zeros(0)
         self._weight = np.concatenate([np.where(reach > 0.0, 1.0 / np.maximum(reach, 1e-30), 0.0), np.ones(self.size - m)])
-        self._weight *= assembly.unknown
         self._u = np.zeros(3 * assembly.nodes)
         self._y = np.zeros(self.size)
         self._element_step: float | None = None
@@ -111,7 +110,7 @@ class ElasticSystem:
 
     def measure(self, r: np.ndarray) -> float:
         """Euclidean norm of nodal forces and of the frames' forces; moments over their arm [N]."""
-        return float(np.linalg.norm(r * self._weight))
+        return float(np.linalg.norm(r * self._weight * self.assembly.unknown))
 
     def force_scale(self) -> float:
         """Norm of the forces that have to balance at the last ``internal`` [N]."""
@@ -206,10 +205,10 @@ class ElasticSystem:
             return
         self.contact.evaluate(0.0, self._u)
         for index, pair in enumerate(self.contact.pairs):
-            depth = -float(self.contact.gap[self.contact.pair == index].min())
-            size = float(np.sqrt(4.0 * pair.points.area.max()))
+            gap = self.contact.gap[self.contact.pair == index]
+            depth, size = -float(gap.min()), float(np.sqrt(4.0 * pair.points.area[gap.argmin()]))  # a facet has four points
             if depth > size:
                 raise MeshError(
                     f"{pair.name}: the surfaces overlap by {1e6 * depth:.3g} um before anything is loaded, more than an "
-                    f"element there ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance and preload"
+                    f"element there ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
                 )
