@@ -47,7 +47,7 @@ class Elsewhere(Hertz):
 def raceway_contact_laws():
     return [Elsewhere]
 """
-START_S = 90.0
+START_S = 300.0
 
 
 class Cluster:

@@ -12,10 +12,13 @@ import numpy as np
 import pytest
 
 from raceway.errors import RacewayError, SceneError
+from raceway.plugins.executors.serial import Serial
 from raceway.studies.coefficients import coefficients
 from raceway.studies.ross_file import NAMES, ross_file
 from raceway.studies.ross_reading import smoothed, through_points
 from raceway.studies.selection import select
+from raceway.studies.sweep import grid, prepare, sweep
+from tests.conftest import b7206c
 from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 
 SPEED, SPIN, DIRECTION = "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.direction_deg"
@@ -139,6 +142,27 @@ def test_directions_give_both_columns_and_the_cross_terms():
     np.testing.assert_allclose(found.damping, np.broadcast_to(c, found.damping.shape), rtol=1e-8)
     with pytest.raises(RacewayError, match="cross terms are there, and two directions do not tell them"):
         table(made({SPEED: SPEEDS, DIRECTION: [0, 90]}, tables, **changes))
+
+
+@pytest.mark.parametrize("tilt", ["locked", "free"])
+def test_forces_along_three_directions_find_the_tangent_of_a_loaded_bearing(tmp_path, tilt):
+    """A real bearing with a load across its axis: two ways to one matrix with different diagonal and cross terms."""
+    scene = b7206c(
+        title="loaded",
+        supports={"tilt": tilt},
+        load={"axial": 1000.0, "radial": [200.0, 150.0]},
+        excitation={"kind": "unidirectional", "speed_rpm": 1000.0, "amplitude": "constant", "force": 1.0},
+        integrator={"kind": "quasi_static"},
+    )
+    plan = prepare(scene, grid(["excitation.speed_rpm=1000:9000:5", f"{DIRECTION}=0,45,90"]), tmp_path / "sweep")
+    with sweep(plan, Serial()) as store:
+        data = store.to_xarray()
+    secant, tangent = table(data), table(data, {DIRECTION: 0}, "tangent")
+    assert (secant.source, tangent.source) == ("directions", "tangent")
+    cross = tangent.stiffness[:, 0, 1] / tangent.stiffness[:, 0, 0]
+    assert np.abs(cross).min() > (3e-2 if tilt == "free" else 9e-4)  # there is something to find
+    # 1 N of 1000 N: the secant's cubic part is (dF / F)^2, and the cross terms are a difference of nearly equal numbers.
+    np.testing.assert_allclose(secant.stiffness, tangent.stiffness, rtol=1e-5)
 
 
 def test_a_table_over_speed_and_frequency_is_for_ross_3():
