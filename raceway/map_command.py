@@ -43,7 +43,7 @@ def study_map(
     of a scene is replaced by the method's.
 
     \b
-    Examples:
+    Example:
       raceway study map
       raceway study map --set excitation.amplitude=constant --set excitation.force=100 --vary load.axial=100,1000
     """
