@@ -18,7 +18,6 @@ from benchmarks.evidence._files import ROOT
 from raceway.cache_folder import cache_root
 from raceway.studies.row_store import RowStore
 
-
 #: Seconds that parts read from disk took when they were computed, by report.
 EARLIER: dict[str, float] = {}
 
