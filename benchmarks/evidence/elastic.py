@@ -84,7 +84,7 @@ def _bearing() -> list[Row]:
     model = result["model"]
     solver = model["linear_solver"]
     cost = (
-        f"CalculiX with facets: {CALCULIX_BEARING:g} CPU-s; {result['cost']['newton_iterations']} + {solver['iterations']} iterations, "
+        f"CalculiX with facets: {CALCULIX_BEARING:g} CPU-s; {found['iterations']} + {solver['iterations']} iterations, "
         f"{solver['setups']} set-ups, with the 5 x 5 stiffness"
     )
     cells = model["mesh"]["cells"]

@@ -13,7 +13,7 @@ from raceway.core.elastic.factorised import MOST_OF_A_BODY, MOST_UNKNOWNS, Facto
 from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
-MOST_ITERATIONS, MANY_ITERATIONS = 600, 120
+MOST_ITERATIONS, MANY_ITERATIONS = 600, 300
 #: Iterations of a solve with factors that still fit, and how many more all solves together may take before new factors pay.
 FEW_ITERATIONS, WORTH_FACTORS = 3, 30
 #: Nodes of an aggregate.  Flat cells of contacts are put together in pairs or triples, whose six unknowns would make the next
