@@ -91,15 +91,15 @@ ELASTIC = (
 
 
 def elastic_tables(cell: Combination) -> dict[str, Any]:
-    """A bearing of three balls on a few thousand hexahedra, for one turn of 8 steps; nothing for other bodies."""
+    """A bearing of three balls on two thousand hexahedra, for one turn of 8 steps; nothing for other bodies."""
     if cell.bodies != "elastic" or attrs.astuple(cell)[:6] not in ELASTIC:
         return {}
     mesh = {"element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 12, "growth": 3.0, "patch": 0.5}
     return {
         "bearing": {"preset": "B7206C", "ball_count": 3},
         "bodies": {"kind": "elastic", "formulation": "one_point"},
-        "mesh": {"kind": "structured", "ball_load": 300.0, **mesh},
-        "load": {"axial": 500.0},
+        "mesh": {"kind": "structured", "ball_load": 3e4, **mesh},
+        "load": {"axial": 2500.0},
         "integrator": {"kind": cell.integrator, "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5},
     }
 
