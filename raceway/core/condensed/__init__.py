@@ -18,9 +18,12 @@ gather       sub-matrices of the compliance of both bodies, for chosen points
 factor       a Cholesky factor that follows a changing set of points
 unilateral   pressures without penetration, by an active set
 nodal_law    pressures by a contact law at every point, by Newton
+friction     stick and slip of a contact's points along the groove
+gyroscopic   moments of balls as tangential resultants
 contact      one ball against one race: forces, tangent, pressure field
 field        the pressures of a contact over its points
 balls        all balls between both races: places and resultants that are in equilibrium
+history      what contacts and balls remember between accepted steps
 pool         patches and solvers, shared by all copies of a system
 patch_system the ring on such balls, with the interface of ``raceway.core.system.System``
 

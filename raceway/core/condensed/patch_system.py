@@ -26,7 +26,6 @@ from raceway.core.bodies.ring import (
     place,
 )
 from raceway.core.condensed.balls import Balls, Given, Linear
-from raceway.core.condensed.contact import BeyondPatch
 from raceway.core.condensed.gyroscopic import Gyroscopic
 from raceway.core.condensed.history import History
 from raceway.core.condensed.pool import STEP, Pool, Row
@@ -52,9 +51,9 @@ class PatchSystem(System):
 
     Notes
     -----
-    ``memory`` (2 Z, 4 + points) is empty at first.  Columns: energy that friction has taken [J]; how many velocities of
+    ``memory`` (2 Z, 5 + points) is empty at first.  Columns: energy that friction has taken [J]; how many velocities of
     the balls are known; the last one and the one before, axial in the inner races' rows and radial in the outer ones'
-    [m/s]; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
+    [m/s]; number of the patches; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
     """
 
     pool: Pool = attrs.field(kw_only=True)
@@ -106,13 +105,6 @@ class PatchSystem(System):
         q = np.asarray(q, dtype=float)
         v = np.zeros(5) if v is None else np.asarray(v, dtype=float)
         history = History.of(self.law_state if memory is None else memory, self.ball_count)
-        if history.slip.size and self.rubbing:
-            try:
-                return self._evaluate(q, v, ball, ball_rate, t, ball_gain, dt, history)
-            except BeyondPatch as left:
-                raise ConvergenceError(
-                    f"{left}, where friction remembers what it did: set a larger `mesh.ball_load`, for which points are laid out"
-                ) from left
         return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, ball_gain, dt, history))
 
     def _evaluate(
@@ -128,15 +120,16 @@ class PatchSystem(System):
         turning = self._turning(t)
         given = Given(turning @ q, gyroscopic=self.gyroscopic)
         if rubbing and ball is not None:
-            sizes = [patch.rows * patch.columns for patch in self.pool.patches for _ in range(self.ball_count)]
-            given = attrs.evolve(given, slip=history.slips(ball[:, 2:4].T.reshape(-1), sizes))
+            given = attrs.evolve(given, slip=history.slips(ball[:, 2:4].T.reshape(-1), self.pool.generations))
         if self.ball_mass > 0.0 and dt > 0.0 and ball_rate is not None:
             given = history.with_inertia(given, self.ball_mass, dt, gain, ball_rate[:, :2])
         where, now = row.settle(centre, where, rate, _BALLS, given)
         answer = self._answer(row.balls, centre, jacobian, turning, where, rate, now)
         known = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
         reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
-        after = history.after(known, [one.gripped for one in now.pressed], reference.T.reshape(-1))
+        after = history.after(
+            known, [one.gripped for one in now.pressed], reference.T.reshape(-1), len(self.pool.generations) - 1
+        )
         columns = where if self.conservative else np.concatenate([where, reference], axis=1)
         return attrs.evolve(answer, ball=columns, memory=after)
 

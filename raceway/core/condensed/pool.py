@@ -81,13 +81,13 @@ class Pool:
         wider: Callable[[BeyondPatch], tuple[Patch, Patch]] | None = None,
         friction: float = 0.0,
     ) -> None:
-        self.patches, self.laws, self._wider, self.friction = patches, laws, wider, friction
+        self.generations, self.laws, self._wider, self.friction = [patches], laws, wider, friction
         self._rows: dict[tuple[bool, tuple[float, ...]], Row] = {}
 
     @property
-    def points(self) -> int:
-        """Of the larger patch."""
-        return max(patch.rows * patch.columns for patch in self.patches)
+    def patches(self) -> tuple[Patch, Patch]:
+        """Of the inner and the outer race, the widest so far."""
+        return self.generations[-1]
 
     @property
     def diameter(self) -> float:
@@ -121,7 +121,7 @@ class Pool:
             except BeyondPatch as left:
                 if self._wider is None:
                     raise ConvergenceError(str(left)) from left
-                self.patches = self._wider(left)
+                self.generations.append(self._wider(left))
                 self._rows.clear()
         raise ConvergenceError("the contacts run away from every patch: there is no equilibrium near the first guess")
 
