@@ -161,13 +161,13 @@ def full_disk(limits: tuple[int, ...] = (20_000, 40_000, 80_000, 120_000), count
     return found
 
 
-def interrupted(count: int = 200) -> dict[str, Any]:
-    """Ctrl-C half-way: exit code 130, results.nc is there, and it goes on to the same rows."""
+def interrupted(count: int = 600) -> dict[str, Any]:
+    """Ctrl-C in the first tenth or soon after: exit code 130, results.nc is there, and it goes on to the same rows."""
     with tempfile.TemporaryDirectory() as folder:
         whole, store = Path(folder) / "whole", Path(folder) / "s"
         _finish(words(count, whole))
         with _running(words(count, store, "--executor", "joblib")) as process:
-            _until(store, process, count // 3)
+            _until(store, process, count // 10)
             os.killpg(process.pid, signal.SIGINT)
             code = process.wait(120)
         there = (store / "results.nc").is_file()

@@ -182,7 +182,7 @@ def test_continuation_saves_work_and_changes_nothing(speeds, force):
     excitation = {"kind": "bidirectional", "amplitude": "constant", "force": force, "speed_rpm": 1.0}
     tables = {**SCENE, "kinematics": {"ball_inertia": False}, "excitation": excitation}
     registry, before, work = default_registry(), None, [0, 0]
-    for speed in np.linspace(*speeds, 16):
+    for speed in np.linspace(*speeds, 25):
         scene = scene_from_dict(tables_at(tables, {"excitation.speed_rpm": float(speed)}, registry), registry)
         cold, warm = run(scene, registry), run(scene, registry, near=before)
         z, other = cold.identification.dynamic_stiffness, warm.identification.dynamic_stiffness

@@ -116,7 +116,13 @@ def _survives() -> list[Row]:
     good = stopped == {"code": 130, "results": True, "equal": True, "orphans": 0}
     value = "code 130, results.nc, same values after --resume" if good else str(stopped)
     out.append(
-        Row("Ctrl-C half-way, two processes", value, "code 130, results.nc, same values after --resume", good, command)
+        Row(
+            "Ctrl-C while it computes, two processes",
+            value,
+            "code 130, results.nc, same values after --resume",
+            good,
+            command,
+        )
     )
     disk, command = sweeps.full_disk(), f"{_COMMAND} full_disk"
     good = disk["told"] == disk["equal"] == disk["tried"]

@@ -4,7 +4,7 @@ Notes
 -----
 The linear response of the new problem about its own equilibrium, plus the nonlinear part of its neighbour's motion, is where
 Newton's iteration begins.  Where that part is large, several motions may exist under one force, and a neighbour could lead
-to another one than the search from rest: it is left alone then.
+to another one than the search from rest: it is left alone then, and so is what it led to when that is far from linear.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from raceway.core.periodic.sampling import motion_at
 
 #: Nonlinear part over the motion's size, up to which a neighbour is followed.  A Duffing oscillator has one motion only as
 #: long as its amplitude stays within a third of the linear one (with some damping); far below that nothing can fold.
-MOST_NONLINEAR = 0.2
+MOST_NONLINEAR = 0.1
 
 
 @attrs.frozen(eq=False)
@@ -43,12 +43,17 @@ class Neighbour:
         ----------
         q : (5,) static equilibrium of ``problem``;  tangent : (5, 5) of its contacts
         """
-        if self.share > MOST_NONLINEAR or not self._alike(problem):
+        if not self.near_linear or not self._alike(problem):
             return None
         first = guess(problem, q, tangent, nodes)
         dq, dv, _, _, _ = motion_at(self.problem, self.excess, nodes)
         _, _, da, ball, rate = motion_at(self.problem, self.excess, problem.angles(nodes))
         return Path(nodes, first.q + dq, first.v + dv, first.a + da, np.ascontiguousarray(ball), np.ascontiguousarray(rate))
+
+    @property
+    def near_linear(self) -> bool:
+        """Whether the motion is so close to its linear response that no other one is near."""
+        return self.share <= MOST_NONLINEAR
 
     def _alike(self, problem: Problem) -> bool:
         mine, other = self.problem, problem

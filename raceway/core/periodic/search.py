@@ -11,7 +11,7 @@ from raceway.core.bodies.ring import CAGE
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Path, Problem, Solved, solve
 from raceway.core.periodic.first_guess import guess, response, standing
-from raceway.core.periodic.neighbour import Neighbour
+from raceway.core.periodic.neighbour import Neighbour, neighbour_of
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.symmetry import one_pitch, one_turn
@@ -94,9 +94,12 @@ def find(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float,
     followed = None if near is None else near.first_guess(problem, q, tangent, nodes)
     for first in ([] if followed is None else [followed]) + [None]:
         try:
-            return Found(_direct(problem, q, tangent, tolerance, highest, first), highest, "directly")
+            refined = _direct(problem, q, tangent, tolerance, highest, first)
         except ConvergenceError:
-            pass
+            continue
+        # Far from the linear response there may be other motions: then the search without a neighbour decides.
+        if first is None or neighbour_of(refined.solved, q, tangent).near_linear:
+            return Found(refined, highest, "directly")
     try:
         return Found(_grown(problem, q, tangent, tolerance), highest, "from rest")
     except ConvergenceError:
