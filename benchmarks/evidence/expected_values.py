@@ -10,10 +10,10 @@ import numpy as np
 
 from benchmarks.evidence import Row, near
 from benchmarks.evidence._scenes import rig_force, settled, static
+from raceway.studies.article.expected import SPEEDS, TRENDS
 
 TITLE = "B7206C against the values expected of an independent solver"
 COMMAND = "python -m benchmarks.evidence expected_values"
-SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)
 
 #: Axial load [N]: axial displacement [um], contact angle [deg], ball load [N], p inner, outer [MPa], k axial, k radial
 #: with tilt locked, with tilt free [N/um].
@@ -32,21 +32,6 @@ _NAMES = (
     "radial stiffness, tilt locked [N/um]",
     "radial stiffness, tilt free [N/um]",
 )
-#: (tilt, axial load [N], centrifugal force): k at 10 980 r/min [N/um], k / that at the other speeds.
-TRENDS = {
-    ("locked", 400.0, False): (180.1, (0.991, 0.979, 0.960, 0.926)),
-    ("locked", 400.0, True): (163.0, (0.932, 0.848, 0.756, 0.668)),
-    ("locked", 1000.0, False): (237.5, (0.999, 0.997, 0.995, 0.992)),
-    ("locked", 1000.0, True): (235.3, (0.994, 0.987, 0.976, 0.962)),
-    ("locked", 2000.0, False): (286.4, (1.000, 0.999, 0.999, 0.998)),
-    ("locked", 2000.0, True): (285.8, (0.999, 0.997, 0.995, 0.993)),
-    ("free", 400.0, False): (24.47, (1.084, 1.172, 1.266, 1.365)),
-    ("free", 400.0, True): (24.32, (1.081, 1.167, 1.259, 1.356)),
-    ("free", 1000.0, False): (34.34, (1.035, 1.075, 1.120, 1.169)),
-    ("free", 1000.0, True): (34.30, (1.034, 1.074, 1.118, 1.167)),
-    ("free", 2000.0, False): (48.39, (1.012, 1.026, 1.044, 1.064)),
-    ("free", 2000.0, True): (48.37, (1.012, 1.026, 1.043, 1.063)),
-}
 
 
 def axial_row(axial: float) -> np.ndarray:

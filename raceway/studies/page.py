@@ -35,10 +35,11 @@ _SENTENCE = 40
 
 @attrs.frozen
 class Cell:
-    """A table's cell with a colour, which its words must say, too."""
+    """A table's cell with a colour, which its words must say, too; ``more``: further words without colour."""
 
     text: str
     tone: str = attrs.field(default="", validator=attrs.validators.in_(("", *TONES)))
+    more: str = ""
 
 
 class Page:
@@ -82,13 +83,13 @@ class Page:
         """
         body = [[cell if isinstance(cell, Cell) else Cell(_shown(cell)) for cell in row] for row in rows]
         columns = list(columns)
-        right = [bool(body) and all(_NUMBER.fullmatch(row[k].text.strip()) for row in body) for k in range(len(columns))]
+        right = [_numbers([row[k] for row in body]) for k in range(len(columns))]
         head = "".join(f'<th scope="col"{_class(number=right[k])}>{_inline(name)}</th>' for k, name in enumerate(columns))
         lines = []
         for row in body:
             first = f'<th scope="row"{_class(number=right[0])}>{_toned(row[0])}</th>'
             cells = [
-                f"<td{_class(number=right[k], words=len(cell.text) > _SENTENCE)}>{_toned(cell)}</td>"
+                f"<td{_class(number=right[k], words=len(cell.text + cell.more) > _SENTENCE)}>{_toned(cell)}</td>"
                 for k, cell in enumerate(row[1:], start=1)
             ]
             lines.append(f"<tr>{first}{''.join(cells)}</tr>")
@@ -97,6 +98,13 @@ class Page:
         self._blocks.append(
             f'<div class="scroll" tabindex="0" role="region" aria-label="{label}"><table>{title}'
             f"<thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table></div>"
+        )
+
+    def card(self, heading: str, badge: Cell, parts: Iterable[tuple[str, str]]) -> None:
+        """A box about one thing: what it is, a coloured word on it, and named paragraphs."""
+        lines = "".join(f"<dt>{_inline(name)}</dt><dd>{_inline(words)}</dd>" for name, words in parts)
+        self._blocks.append(
+            f'<section class="card"><h3>{_inline(heading)}</h3><p class="badge">{_toned(badge)}</p><dl>{lines}</dl></section>'
         )
 
     def figures(self, items: Iterable[tuple[Figure | bytes, str, str]], wide: bool = False) -> None:
@@ -167,9 +175,16 @@ def _inline(words: str) -> str:
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(words, quote=False))
 
 
+def _numbers(column: Sequence[Cell]) -> bool:
+    """Whether a column stands to the right: half of its cells, or more, are numbers and none is a sentence."""
+    count = sum(bool(_NUMBER.fullmatch(cell.text.strip())) and bool(cell.text.strip()) for cell in column)
+    return count > 0 and 2 * count >= len(column) and all(len(cell.text) <= _SENTENCE // 2 for cell in column)
+
+
 def _toned(cell: Cell) -> str:
     words = _inline(cell.text)
-    return f'<span class="tone {cell.tone}">{words}</span>' if cell.tone else words
+    words = f'<span class="tone {cell.tone}">{words}</span>' if cell.tone else words
+    return f"{words} {_inline(cell.more)}" if cell.more else words
 
 
 def _shown(value: Any) -> str:

@@ -1,0 +1,14 @@
+"""The article's figures 9 to 12 and a verdict on each of its claims, from this program's own runs.
+
+design       what is run: settings, speeds, axial loads, the shaft's tilt stiffness; scenes of single points
+runs         one curve over speed, and all curves in processes of their own, finished ones kept
+curves       the numbers by setting: K and |Z| over speed and axial load, with what failed or is in doubt
+rules        what a claim asks of a curve or a surface, as plain functions of numbers
+regions      where a rule holds, in words
+claims       the six claims, each with its rule, what was computed and the verdict
+expected     the quasi-static trends of an independent solver and the same numbers computed here
+causes       direction, amplitude law, ball inertia and bodies swapped one at a time
+figures      figures 9 to 12
+report       the page
+study        all of it: ``article()``
+"""

@@ -1,0 +1,87 @@
+"""The numbers of the study by setting: K and |Z| over speed and axial load, and what failed or is in doubt."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.studies.article.design import BODIES, CLAIMED, TILTS, Design, Setting
+
+#: What may be called k: name -> key of a row.
+MEASURES = {"K": "k", "|Z|": "abs_z"}
+
+
+@attrs.frozen(eq=False)
+class Curves:
+    """All rows.
+
+    Attributes
+    ----------
+    rows : (setting, axial load) -> one row a speed, in the design's order
+    """
+
+    design: Design
+    rows: dict[tuple[Setting, float], list[dict[str, Any]]]
+
+    def values(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
+        """(speeds,) [N/m]; nan where the run failed or its motion is unstable."""
+        key = MEASURES[measure]
+        return np.array([row[key] if row["status"] == "completed" else np.nan for row in self.rows[setting, load]])
+
+    def errors(self, setting: Setting, load: float) -> np.ndarray:
+        """(speeds,) each run's own relative error, its mesh's apart: that is the same at all speeds."""
+        return np.array([row.get("error") or 0.0 for row in self.rows[setting, load]])
+
+    def unstable(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
+        """(speeds,) [N/m] of unstable motions, nan elsewhere."""
+        key = MEASURES[measure]
+        return np.array([row[key] if row["status"] == "unstable" else np.nan for row in self.rows[setting, load]])
+
+    def surface(self, setting: Setting, measure: str = "K") -> tuple[np.ndarray, np.ndarray]:
+        """Values [N/m] and errors, (loads, speeds) each."""
+        loads = self.design.loads
+        values = np.array([self.values(setting, load, measure) for load in loads])
+        return values, np.array([self.errors(setting, load) for load in loads])
+
+    def normalised(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
+        """k* = k / k(w_min), (speeds,)."""
+        found = self.values(setting, load, measure)
+        return np.asarray(found / found[0])
+
+    def why_not(self, setting: Setting, load: float) -> str:
+        """What is missing in a curve, in words; "" where nothing is."""
+        return told(self.rows[setting, load])
+
+    def faults(self) -> Iterator[dict[str, Any]]:
+        """Every run that gave no number to judge with."""
+        for (setting, _), rows in self.rows.items():
+            for row in rows:
+                if row["status"] != "completed":
+                    yield {**attrs.asdict(setting), **row}
+
+
+def told(rows: list[dict[str, Any]]) -> str:
+    """Runs without a number, counted by what became of them, with the first reason of each kind."""
+    bad = [row for row in rows if row["status"] != "completed"]
+    parts = []
+    for status, count in Counter(row["status"] for row in bad).items():
+        reason = next(row["reason"] for row in bad if row["status"] == status)
+        speeds = ", ".join(f"{row['speed_rpm']:g}" for row in bad if row["status"] == status)
+        parts.append(f"{count} {status} ({speeds} r/min: {reason})")
+    return "; ".join(parts)
+
+
+def modelled(bodies: tuple[str, ...]) -> Iterator[dict[str, Any]]:
+    """Every way to model the bearing, apart from its excitation, in the order of the tables."""
+    for tilt in TILTS:
+        for inertia in (True, False):
+            for kind in [one for one in BODIES if one in bodies]:
+                yield {"tilt": tilt, "inertia": inertia, "bodies": kind}
+
+
+_PAIRS: list[dict[str, Any]] = [{"direction": direction, "amplitude": amplitude} for direction, amplitude in CLAIMED]
+ONE_WAY, ROTATING = _PAIRS

@@ -1,0 +1,249 @@
+"""The page of the study: verdicts first, then figures, causes, and everything that they were checked with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.studies.article import causes, expected
+from raceway.studies.article.claims import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
+from raceway.studies.article.curves import told
+from raceway.studies.article.design import TILT_WORDS, TILTS
+from raceway.studies.article.figures import Picture, shown_load
+from raceway.studies.page import Cell, Page
+
+if TYPE_CHECKING:
+    from raceway.studies.article.study import Article
+
+TONES = {HOLDS: "good", PARTLY: "partly", NOT: "bad", FAILED: "failed", UNTESTED: "partly"}
+ARTICLE = "“Dynamic Stiffness Characteristics of Bearings Under Combined Loads with Rotor Excitation” (Lubricants 2026, 14(3), 128)"
+
+
+def page(study: Article, pictures: Sequence[Picture], command: str) -> Page:
+    """The page; ``command`` is what makes it again."""
+    from raceway import __version__
+
+    footer = f"Made by `{command}`, Raceway {__version__}, in {study.cpu_s:.0f} s of processor time. "
+    footer += "Numbers of all runs: article.json and curves.csv beside this page."
+    out = Page("The article’s claims, computed again", study.title, footer)
+    _opening(out, study)
+    _verdicts(out, study)
+    _setting(out, study)
+    _figures(out, study, {one.name: one for one in pictures})
+    _static(out, study)
+    _trends(out, study)
+    _rig(out, study)
+    _faults(out, study)
+    return out
+
+
+def _opening(out: Page, study: Article) -> None:
+    counts = {kind: sum(one.kind == kind for one in study.verdicts) for kind in TONES}
+    words = {
+        HOLDS: "hold",
+        PARTLY: "hold only in a region",
+        NOT: "do not hold",
+        FAILED: "failed",
+        UNTESTED: "cannot be tested",
+    }
+    told_counts = ", ".join(f"{count} {words[kind]}" for kind, count in counts.items() if count)
+    out.text(
+        f"The claims of {ARTICLE} are put to {sum(len(rows) for rows in study.curves.rows.values())} steady orbits of this "
+        f"program, each claim in every reading that its words allow. Of {len(study.verdicts)} readings {told_counts}. No claim "
+        "is fitted: each verdict follows from a rule that is printed beside it.",
+        kind="lead",
+    )
+    out.listing(in_short(study))
+    _swaps(out, study, shown_load(study.curves))
+
+
+def in_short(study: Article) -> list[str]:
+    """What the numbers say, in two sentences."""
+    load = shown_load(study.curves)
+    row = causes.one_at_a_time(study.curves, load)[0][1]
+    out = [f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {_each(row)}."]
+    turns = {load: causes.turning_point(causes.hardening(rows)) for load, rows in study.scan.items()}
+    known = [f"{_round(value)} N m/rad at {load:g} N" for load, value in turns.items() if value is not None]
+    if known:
+        out.append(
+            f"What turns hardening into softening is the tilt stiffness of the shaft: K stops rising with speed above "
+            f"{', '.join(known)}. The shaft is taken with {_round(study.curves.design.shaft)} N m/rad."
+        )
+    return out
+
+
+def _swaps(out: Page, study: Article, load: float) -> None:
+    columns = ["one choice swapped at a time", *(TILT_WORDS[tilt] for tilt in TILTS)]
+    rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in causes.one_at_a_time(study.curves, load)]
+    out.table(columns, rows, f"Change of K from the lowest to the highest speed, k*(1) − 1, at {load:g} N")
+
+
+def _each(row: dict[str, float | str]) -> str:
+    return ", ".join(f"{_percent(row[tilt])} ({TILT_WORDS[tilt]})" for tilt in TILTS)
+
+
+def _round(value: float) -> str:
+    """Three significant digits without an exponent."""
+    return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u202f")
+
+
+def _percent(change: float | str) -> str:
+    return change if isinstance(change, str) else f"{100.0 * change:+.2f}\u202f%".replace("-", "−")
+
+
+def _verdicts(out: Page, study: Article) -> None:
+    out.section("Verdicts")
+    rows = [[one.number, one.claim, Cell(one.kind, TONES[one.kind], one.region)] for one in study.verdicts]
+    out.table(["", "claim", "verdict"], rows, "The article’s claims; how each was decided stands below")
+    for one in study.verdicts:
+        parts = [("Rule", one.rule), ("Computed", one.computed)]
+        if one.failed:
+            parts.append(("Failed", f"runs failed or have no stable motion: {one.failed}"))
+        out.card(f"{one.number}  {one.claim}", _badge(one), parts)
+
+
+def _badge(one: Verdict) -> Cell:
+    return Cell(one.kind, TONES[one.kind], one.region)
+
+
+def _setting(out: Page, study: Article) -> None:
+    made = study.curves.design
+    tables: Any = made.tables
+    mass = tables.get("rotor", {}).get("mass", 0.0)
+    given = tables["excitation"]
+    constant = f"{given['force']:g} N" if "force" in given else f"that at {given['reference_speed_rpm']:g} r/min"
+    out.section("What is computed")
+    out.text(
+        f"The steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(made.speeds)} speeds from "
+        f"{made.speeds[0]:g} to {made.speeds[-1]:g} r/min and {len(made.loads)} axial loads from {made.loads[0]:g} to "
+        f"{made.loads[-1]:g} N. Its 1x line gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
+        f"said; the mass m is the ring’s and {mass:g} kg of the rotor. w* = (w − w_min) / (w_max − w_min), k* = k / k(w_min).",
+        "Rotating: a force that turns with the rotor (the article’s bidirectional model). Unidirectional: a force along one fixed "
+        f"line. Its amplitude is m e w², or constant: {constant}. The article changes both at once; here each is varied alone, "
+        f"too ({made.bodies[0]} bodies).",
+        f"Tilt of the inner ring: locked, free, or against the shaft with {_round(made.shaft)} N m/rad (2 E I / L of a shaft of "
+        "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
+        "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
+        "contacts.",
+    )
+    out.text(
+        "The article’s Table 1 is lost: the geometry of B7206C is inferred from makers’ load ratings. Oil film, cage and heat are "
+        "not modelled, neither here nor in the article.",
+        kind="note",
+    )
+
+
+def _figures(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
+    parts = (
+        ("Figure 9: excitation", ("figure-9", "figure-9-newton-per-metre", "figure-9-with-inertia")),
+        ("Figure 10: speed", ("figure-10", "figure-10-newton-per-metre")),
+        ("Figure 11: axial load", ("figure-11", "figure-11-newton-per-metre")),
+        ("Figure 12: both", ("figure-12", "figure-12-weightless-balls", "figure-12-newton-per-metre")),
+    )
+    for heading, names in parts:
+        out.section(heading)
+        for name in names:
+            _picture(out, pictures[name])
+    out.section("What causes the trend")
+    out.text("One choice is swapped at a time; everything else stays.")
+    curves = study.curves
+    for load in dict.fromkeys((curves.design.loads[0], shown_load(curves), curves.design.loads[-1])):
+        _swaps(out, study, load)
+    _picture(out, pictures["tilt-stiffness"])
+    if "bodies" in pictures:
+        out.section("Rigid and condensed bodies")
+        _picture(out, pictures["bodies"])
+
+
+def _picture(out: Page, picture: Picture) -> None:
+    out.heading(picture.title)
+    out.figures([(panel.figure(), panel.alternative, panel.caption) for panel in picture.panels])
+
+
+def _static(out: Page, study: Article) -> None:
+    out.section("Static verification")
+    out.text(
+        "Section 3.2 of the article: peak pressures of its finite-element model against exact Hertz in the rigid equilibrium. "
+        "Here: nodal contact on condensed bodies, the pressure at surface points, no penalty. The article’s load cases are lost; "
+        "these four span its range. The bearing is the article’s, whatever scene the study is given."
+    )
+    rows = [
+        [one["quantity"], _digits(one["reference"]), _digits(one["computed"]), _share(one["error"]), _share(one["tolerance"]),
+         _kept(one["ok"], one["note"])]
+        for one in study.static
+    ]  # fmt: skip
+    out.table(["quantity", "exact Hertz", "computed", "deviation", "at most", ""], rows)
+
+
+def _trends(out: Page, study: Article) -> None:
+    out.section("Against an independent solver")
+    out.text(
+        "Quasi-static secant stiffness under the rig’s force as a radial load towards ball 0: numbers of an independent "
+        "rigid-ring solver (docs/physics.md, section 7) and of this program. A row holds when every number rounds to the printed "
+        "digits."
+    )
+    columns = ["", "", "k(10 980) N/µm", *(f"k* {speed:g}" for speed in expected.SPEEDS[1:]), "off, last digit", ""]
+    rows: list[list[Any]] = []
+    for one in study.trends:
+        balls = "ball inertia" if one.inertia else "weightless balls"
+        rows.append([f"tilt {one.tilt}, {one.load:g} N, {balls}", "expected", f"{one.expected[0]:.4g}",
+                     *(f"{ratio:.3f}" for ratio in one.expected[1:]), "", ""])  # fmt: skip
+        found = one.computed or (None,) * len(one.expected)
+        rows.append(
+            ["", "computed", *(_digits(value, 5) for value in found), _digits(one.off, 2), _kept(one.holds, one.why)]
+        )
+    out.table(columns, rows)
+
+
+def _rig(out: Page, study: Article) -> None:
+    out.section("At the rig’s speeds and loads")
+    out.text(
+        "What claim 2 would be held against the rig with: K under the rotating force m e w² with ball inertia. The article’s "
+        "measured values are lost, so nothing is compared."
+    )
+    speeds = list(dict.fromkeys(row["speed_rpm"] for row in study.rig))
+    table: dict[tuple[Any, ...], list[str]] = {}
+    for row in study.rig:
+        text = f"{row['k'] / 1e6:.4g}" if row["status"] == "completed" else row["status"]
+        table.setdefault((row["axial_n"], row["tilt"], row["bodies"]), []).append(text)
+    rows = [[f"{load:g} N, {TILT_WORDS[tilt]}, {bodies}", *found] for (load, tilt, bodies), found in table.items()]
+    out.table(["", *(f"{speed:g} r/min" for speed in speeds)], rows, "K [N/µm]")
+
+
+def _faults(out: Page, study: Article) -> None:
+    out.section("Failed runs and unstable motions")
+    total = sum(len(rows) for rows in study.curves.rows.values())
+    bad = {key: words for key, rows in study.curves.rows.items() if (words := told(rows))}
+    unstable = sum(row["status"] == "unstable" for row in study.curves.faults())
+    out.text(
+        f"{len(study.failed)} of {total} runs failed. {unstable} steady motions are unstable: they satisfy the equations, but a "
+        "ring does not stay on them; they are crosses in the figures and count for no verdict. Unidirectional forces meet resonances "
+        "of the contacts’ higher harmonics with the ring’s vibrations (docs/periodic.md)."
+    )
+    if bad:
+        rows = [[setting.name, f"{load:g}", words] for (setting, load), words in bad.items()]
+        out.table(["setting", "axial load N", "what became of it"], rows)
+
+
+def _digits(value: float | None, count: int = 5) -> str:
+    return "–" if value is None else f"{value:.{count}g}"
+
+
+def _share(value: float | None) -> str:
+    return "–" if value is None else f"{100.0 * value:.2f} %"
+
+
+def _kept(holds: bool, why: str) -> Cell:
+    if why:
+        return Cell("failed", "failed", why)
+    return Cell("holds", "good") if holds else Cell("does not hold", "bad")
+
+
+def verdict_rows(study: Article) -> list[dict[str, Any]]:
+    """The verdicts as a flat table."""
+    skip = ("findings",)
+    return [
+        {**attrs.asdict(one, filter=lambda field, _: field.name not in skip), "verdict": one.words} for one in study.verdicts
+    ]

@@ -1,0 +1,126 @@
+"""What the claims ask of numbers.  Plain functions: arrays in, answers out; None where numbers are missing.
+
+A number that is missing is nan.
+"""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.studies.effects import trend
+
+#: A change below this over the whole range neither rises nor falls.
+LEVEL = 0.005
+#: "about" a percentage: within this share of it.
+ABOUT = 0.25
+#: A parabola describes a curve when it leaves at most this share of its rise.
+MISFIT = 0.05
+
+
+def course(values: np.ndarray, errors: np.ndarray) -> str | None:
+    """ "rises" or "falls" at every step, "level", "not monotonic"; None without both ends or with fewer than three numbers.
+
+    Parameters
+    ----------
+    values : (n,);  errors : (n,) relative; a step within its ends' errors is no step
+    """
+    known = np.isfinite(values)
+    if not (known[0] and known[-1] and known.sum() >= 3):
+        return None
+    y = values[known]
+    if np.ptp(y) < LEVEL * abs(y[0]):
+        return "level"
+    found = trend(y, errors[known])
+    return found if found == "not monotonic" or abs(y[-1] / y[0] - 1.0) >= LEVEL else "level"
+
+
+@attrs.frozen
+class Parabola:
+    """k* = 1 + slope w* + bend w*^2 by least squares; ``misfit``: largest rest over the change from w* = 0 to 1."""
+
+    slope: float
+    bend: float
+    misfit: float
+
+    @property
+    def bend_share(self) -> float:
+        """Part of the change at w* = 1 that is quadratic."""
+        whole = self.slope + self.bend
+        return self.bend / whole if whole else 0.0
+
+
+def parabola(relative_speed: np.ndarray, normalised: np.ndarray) -> Parabola:
+    """Fit through k*(0) = 1; numbers that are missing are left out."""
+    known = np.isfinite(normalised)
+    w, change = relative_speed[known], normalised[known] - 1.0
+    matrix = np.stack([w, w**2], axis=1)
+    (slope, bend), *_ = np.linalg.lstsq(matrix, change, rcond=None)
+    rest = np.abs(matrix @ np.array([slope, bend]) - change).max()
+    size = abs(change[-1])
+    return Parabola(float(slope), float(bend), float(rest / size) if size > 0.0 else np.inf)
+
+
+def rises_quadratically(relative_speed: np.ndarray, values: np.ndarray, errors: np.ndarray) -> bool | None:
+    """Rises at every step, bends upwards, and a parabola describes it."""
+    found = course(values, errors)
+    if found is None:
+        return None
+    if found != "rises":
+        return False
+    fit = parabola(relative_speed, values / values[0])
+    return fit.bend > 0.0 and fit.misfit <= MISFIT
+
+
+def about(value: float, target: float) -> bool:
+    return abs(value - target) <= ABOUT * target
+
+
+def change_within(relative_speed: np.ndarray, values: np.ndarray, first: float, last: float) -> float | None:
+    """|k(last) / k(first) - 1|, between neighbours by straight lines; None where numbers around them are missing."""
+    known = np.isfinite(values)
+    w, k = relative_speed[known], values[known]
+    if len(w) < 2 or first < w[0] or last > w[-1]:
+        return None
+    ends = np.interp([first, last], w, k)
+    return float(abs(ends[1] / ends[0] - 1.0))
+
+
+def spread(relative_speed: np.ndarray, surface: np.ndarray, first: float, last: float) -> float | None:
+    """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it.
+
+    Between neighbours by straight lines; None where numbers around the zone's ends are missing.
+
+    Parameters
+    ----------
+    surface : (loads, speeds), positive
+    """
+    inside = (relative_speed > first) & (relative_speed < last)
+    places = np.array([first, *relative_speed[inside], last])
+    zone = []
+    for values in surface:
+        known = np.isfinite(values)
+        w = relative_speed[known]
+        if len(w) < 2 or first < w[0] or last > w[-1]:
+            return None
+        zone.append(np.interp(places, w, values[known]))
+    return float((np.max(zone, axis=0) / np.min(zone, axis=0) - 1.0).max())
+
+
+def rises_with_load(surface: np.ndarray, errors: np.ndarray) -> list[bool | None]:
+    """At each speed: whether k rises at every step of the axial load; (loads, speeds) each."""
+    found = [course(surface[:, k], errors[:, k]) for k in range(surface.shape[1])]
+    return [None if one is None else one == "rises" for one in found]
+
+
+def influence(surface: np.ndarray) -> np.ndarray:
+    """(loads,) |k*(1) - 1|, the size of the speed's influence."""
+    return np.asarray(np.abs(surface[:, -1] / surface[:, 0] - 1.0))
+
+
+def influence_grows(surface: np.ndarray) -> bool | None:
+    """Whether the size of the speed's influence rises at every step of the axial load; (loads, speeds)."""
+    found = influence(surface)
+    if not np.isfinite(found).all():
+        return None
+    return bool((np.diff(found) > 0.0).all())

@@ -1,0 +1,196 @@
+"""``raceway study article``: everything that is run, judged and written."""
+
+from __future__ import annotations
+
+import resource
+import time
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import RacewayError
+from raceway.registry import Registry, default_registry
+from raceway.result import without_nan
+from raceway.scene_file import scene_from_dict
+from raceway.simulate import OnProgress
+from raceway.studies import verify as verification
+from raceway.studies.article import causes, expected
+from raceway.studies.article.claims import Verdict, verdicts
+from raceway.studies.article.curves import ROTATING, Curves
+from raceway.studies.article.design import BODIES, LOADS, SPEEDS, TILTS, Design, Setting, article_tables, design
+from raceway.studies.article.runs import Row, Task, curve, work
+from raceway.studies.reference import reference_cases
+from raceway.studies.row_store import RowStore
+
+PROCESSES = 2
+#: Speeds [r/min] and axial loads [N] of the rig, section 3.3 of the article.
+RIG_SPEEDS, RIG_LOADS = (11000.0, 13000.0, 15000.0), (400.0, 2000.0)
+_STATIC = "seed-static-pressures"
+
+
+@attrs.frozen(eq=False, slots=False)
+class Article:
+    """The study's numbers, with verdicts, page, pictures and tables made from them.
+
+    Attributes
+    ----------
+    curves : K and |Z| of every setting;  rig : rows at the rig's speeds and loads, with their tilt boundary
+    static : rows of the static verification;  trends : quasi-static trends against an independent solver
+    scan : axial load -> rows over the shaft's tilt stiffness at the lowest and highest speed
+    seconds, cpu_s : wall and processor time, of which ``own_cpu_s`` in this process;  reused : tasks that were taken from the folder, of ``tasks``
+    """
+
+    title: str
+    curves: Curves
+    rig: tuple[Row, ...]
+    static: tuple[Row, ...]
+    trends: tuple[expected.Trend, ...]
+    scan: dict[float, list[Row]]
+    seconds: float
+    cpu_s: float
+    own_cpu_s: float
+    tasks: int
+    reused: int
+    fault: RacewayError | None = None
+
+    @cached_property
+    def verdicts(self) -> list[Verdict]:
+        return verdicts(self.curves, self.static)
+
+    @property
+    def failed(self) -> list[dict[str, Any]]:
+        """Runs that failed or were refused; unstable motions are not among them."""
+        return [row for row in self.curves.faults() if row["status"] != "unstable"]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything, as plain tables for JSON."""
+        made = self.curves.design
+        rows = [
+            {**attrs.asdict(setting), **row, "relative_speed": w}
+            for (setting, _), found in self.curves.rows.items()
+            for row, w in zip(found, made.relative_speeds, strict=True)
+        ]
+        content: dict[str, Any] = without_nan(
+            {
+                "title": self.title,
+                "scene": made.tables,
+                "speeds_rpm": made.speeds,
+                "axial_n": made.loads,
+                "shaft_tilt_stiffness": made.shaft,
+                "bodies": made.bodies,
+                "verdicts": [one.as_dict() for one in self.verdicts],
+                "quasi_static": [one.as_dict() for one in self.trends],
+                "static": self.static,
+                "rig": self.rig,
+                "causes": {f"{load:g}": dict(causes.one_at_a_time(self.curves, load)) for load in made.loads},
+                "tilt_stiffness": [
+                    {"axial_n": load, "stiffness": causes.STIFFNESSES, "ratio": causes.hardening(rows).tolist(),
+                     "turning_point": causes.turning_point(causes.hardening(rows))}
+                    for load, rows in self.scan.items()
+                ],
+                "rows": rows,
+                "failed": len(self.failed),
+                "cost": {"wall_s": self.seconds, "cpu_s": self.cpu_s, "own_cpu_s": self.own_cpu_s, "tasks": self.tasks, "reused": self.reused},
+            }
+        )  # fmt: skip
+        return content
+
+    def write(self, folder: Path, pictures: bool = True) -> list[Path]:
+        """article.html with its figures as PNG files, article.json and CSV files; without pictures no page.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder or disk that cannot be written.
+        """
+        from raceway.studies.article.files import write
+
+        return write(self, folder, pictures)
+
+
+def article(
+    tables: Mapping[str, Any] | None = None,
+    speeds: str = SPEEDS,
+    loads: str = LOADS,
+    shaft: float | None = None,
+    bodies: Sequence[str] = BODIES,
+    processes: int = PROCESSES,
+    store: Path | None = None,
+    registry: Registry | None = None,
+    plugins: Sequence[Path] = (),
+    on_progress: OnProgress | None = None,
+) -> Article:
+    """Run the study.
+
+    Parameters
+    ----------
+    tables : plain tables of a scene; the article's when None
+    speeds, loads : "a,b,c" or "start:stop:count" [r/min], [N]
+    shaft : tilt stiffness of the setting "against the shaft" [N m/rad]
+    processes : how many work at a time; 0 works in this one
+    store : file that finished curves are kept in and taken from
+    plugins : one-off plug-in files, which each process loads
+    on_progress : called as ``on_progress(what, done, total)``; an exception stops the study
+
+    Raises
+    ------
+    SceneError
+        A mistake in the scene or in a range; nothing has been run.
+    KeyboardInterrupt
+        Finished curves are in ``store``.
+    """
+    begun, cpu, own = time.monotonic(), _processor_time(), time.process_time()
+    registry = registry or default_registry()
+    made = design(tables if tables is not None else article_tables(), speeds, loads, shaft, bodies)
+    settings = [(setting, load) for setting in made.settings() for load in made.loads]
+    title = _checked(made, registry)
+    tasks = _tasks(made, settings, registry)
+    kept = RowStore(store)
+    found, reused = work(tasks, processes, kept, registry, plugins, on_progress)
+    results = iter(found)
+    static = next(results)
+    trends = [expected.trend(given, next(results)) for given in expected.TRENDS]
+    scan = {load: next(results) for load in causes.scan_loads(made)}
+    rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(made) for row in next(results)]
+    curves = Curves(made, dict(zip(settings, results, strict=True)))
+    taken = time.monotonic() - begun, _processor_time() - cpu, time.process_time() - own
+    return Article(title, curves, tuple(rig), tuple(static), tuple(trends), scan, *taken, len(tasks), reused, kept.fault)
+
+
+def _checked(made: Design, registry: Registry) -> str:
+    """Refuse mistakes before anything is run; the scene's title."""
+    title = ""
+    for setting in made.settings():
+        title = scene_from_dict(made.point(setting, made.loads[0], made.speeds[0], registry), registry).title
+    return title
+
+
+def _tasks(made: Design, settings: Sequence[tuple[Setting, float]], registry: Registry) -> list[Task]:
+    tasks = [Task("static verification", static_pressures, _STATIC)]
+    tasks += [Task("quasi-static trends", expected.secants, list(given)) for given in expected.TRENDS]
+    tasks += causes.scan_tasks(made, registry)
+    for setting in _rig_settings(made):
+        points = [made.point(setting, load, speed, registry) for load in RIG_LOADS for speed in RIG_SPEEDS]
+        tasks.append(Task("the rig's speeds", curve, points))
+    for setting, load in settings:
+        points = [made.point(setting, load, speed, registry) for speed in made.speeds]
+        tasks.append(Task("curves over speed", curve, points))
+    return tasks
+
+
+def _rig_settings(made: Design) -> list[Setting]:
+    return [Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind) for kind in made.bodies for tilt in TILTS]
+
+
+def static_pressures(case: str, registry: Registry) -> list[Row]:
+    """The article's static verification, as ``raceway verify`` computes it; a task of ``runs.work``."""
+    return [attrs.asdict(row) for row in verification.compute(reference_cases()[case], registry)]
+
+
+def _processor_time() -> float:
+    """Of this process and of those that it has ended [s]."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)

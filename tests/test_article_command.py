@@ -1,0 +1,164 @@
+"""``raceway study article``: files, resumption, failures and bad input, on small grids."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+
+import pytest
+
+from raceway.errors import ConvergenceError
+from raceway.scene_file import read_toml
+from raceway.studies.article import causes, runs
+from raceway.studies.article import expected as trends
+from raceway.studies.article import study as driver
+from raceway.studies.article.design import ARTICLE, shaft_tilt_stiffness
+from raceway.studies.article.figures import Picture, pictures
+from raceway.studies.article.report import page
+from tests.article_study import curves, study
+from tests.command_line import EXAMPLES, invoke
+
+#: Far from resonances, so that a run takes milliseconds.
+SMALL = ("--bodies", "rigid", "--speeds", "11000,13000,15000", "--axial", "1600,1800,2000", "--processes", "0")
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Leave out what other tests compute: static pressures, and all but two tilt stiffnesses and one trend."""
+    monkeypatch.setattr(driver, "static_pressures", lambda *_: [])
+    monkeypatch.setattr(causes, "STIFFNESSES", (1e3, 1e6))
+    monkeypatch.setattr(trends, "TRENDS", dict(list(trends.TRENDS.items())[-1:]))
+
+
+def _page(k, monkeypatch) -> str:
+    """The page of invented numbers; figures are drawn, but not turned into pictures."""
+    monkeypatch.setattr("raceway.studies.page.svg", lambda figure: b"<svg/>")
+    found = study(curves(k, ("rigid", "condensed")))
+    return page(found, pictures(found), "raceway study article").html()
+
+
+def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, quick, monkeypatch):
+    done = []
+    real = runs.curve
+
+    def stop(points, registry):
+        if len(done) == 30:
+            raise KeyboardInterrupt
+        done.append(1)
+        return real(points, registry)
+
+    stop.__qualname__ = real.__qualname__  # a part of the key of finished work
+    monkeypatch.setattr(driver, "curve", stop)
+    monkeypatch.setattr(causes, "curve", stop)
+    words = ("study", "article", *SMALL, "--no-pictures", "--out", tmp_path)
+    found = invoke(*words)
+    assert found.exit_code == 130
+    assert "go on" in found.stderr or "goes on from there" in found.stderr
+    monkeypatch.setattr(driver, "curve", real)
+    monkeypatch.setattr(causes, "curve", real)
+    found = invoke(*words, "--json")
+    assert found.exit_code == 0
+    content = json.loads(found.stdout)
+    assert content["cost"]["reused"] >= len(done)
+    assert content == json.loads((tmp_path / "article.json").read_text(encoding="utf-8"))
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "article.json", "article-rows.jsonl", "curves.csv", "verdicts.csv", "quasi-static.csv", "static.csv", "rig.csv",
+        "tilt-stiffness.csv",
+    }  # fmt: skip
+    with (tmp_path / "curves.csv").open(encoding="utf-8") as file:
+        table = list(csv.DictReader(file))
+    assert len(table) == len(content["rows"]) == 24 * 9
+    assert all(row["status"] == "completed" and float(row["k"]) > 0.0 for row in table)
+    verdicts = {one["number"]: one for one in content["verdicts"]}
+    assert verdicts["1a"]["kind"] == "failed"  # its rows were left out here: not shown as anything else
+    assert verdicts["4"]["verdict"] == "holds only for tilt free" and verdicts["6a"]["kind"] == "holds"
+    assert all(one["holds"] for one in content["quasi_static"])
+    # |Z| lies below K by the inertia of the mass: 2 kg and the ring's.
+    row = next(one for one in content["rows"] if one["tilt"] == "locked" and one["speed_rpm"] == 15000.0)
+    assert row["k"] - row["abs_z"] == pytest.approx(2.06 * 1570.8**2, rel=0.01)  # the ring's mass to 1 %
+
+
+def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
+    def fail(*_):
+        raise ConvergenceError("no motion was found")
+
+    monkeypatch.setattr(runs, "run", fail)
+    found = invoke("study", "article", *SMALL, "--no-pictures", "--out", tmp_path)
+    assert found.exit_code == 1
+    assert "every run failed" in found.stderr and "no motion was found" in found.stderr
+    verdicts = json.loads((tmp_path / "article.json").read_text(encoding="utf-8"))["verdicts"]
+    assert {one["kind"] for one in verdicts} == {"failed", "cannot be tested"}
+
+
+def test_page_of_invented_numbers_has_every_figure_and_every_verdict(monkeypatch):
+    text = _page(lambda s, load, w: 1e8 * (1.0 + 0.2 * w * (s.tilt == "free")), monkeypatch)
+    images = re.findall(r'<img alt="([^"]+)"', text)
+    assert len(images) == 37 and all(len(words) > 40 for words in images)
+    for number in ("1a", "1b", "2", "3a", "3b", "4", "5a", "5b", "5c", "5d", "5e", "6a", "6b", "6c", "6"):
+        assert f'<th scope="row">{number}</th>' in text or f'<th scope="row" class="number">{number}</th>' in text
+    assert not re.search(r"\bnan\b", re.sub(r'src="[^"]+"', "", text))
+
+
+def test_page_says_what_failed(monkeypatch):
+    text = _page(lambda s, load, w: None if s.tilt == "locked" else (1e8,) if w == 1.0 else 1e8, monkeypatch)
+    assert "no motion was found" in text and "the steady motion is unstable" in text
+    assert '<span class="tone failed">failed</span>' in text
+
+
+def test_a_picture_is_drawn():
+    found = study(curves(lambda s, load, w: 1e8 * (1.0 + w)))
+    drawn = next(one for one in pictures(found) if one.name == "tilt-stiffness")
+    assert isinstance(drawn, Picture) and drawn.figure().axes[0].get_xscale() == "log"
+
+
+def test_the_scene_that_comes_along_is_the_examples():
+    """Only the title and the integrator differ: the study solves for the steady orbit."""
+    own, example = read_toml(ARTICLE), read_toml(EXAMPLES / "b7206.toml")
+    assert own.pop("integrator") == {"kind": "periodic"}
+    assert example.pop("integrator")["kind"] == "newmark"
+    assert own.pop("title") != example.pop("title")
+    assert own == example
+
+
+def test_shaft_of_a_known_beam():
+    # 2 E I / L with I = pi d^4 / 64: 2 * 212e9 * 3.9761e-8 / 0.175, by hand.
+    assert shaft_tilt_stiffness() == pytest.approx(9.6335e4, rel=1e-4)
+    assert shaft_tilt_stiffness(diameter=0.060) == pytest.approx(16.0 * shaft_tilt_stiffness())
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--speeds", "15000,10980"), "`--speeds`"),
+        (("--speeds", "10980:15000"), "`--speeds`"),
+        (("--axial", "400,800"), "at least three"),
+        (("--axial", "0,400,800"), "above 0"),
+        (("--axial", "a,b,c"), "above 0"),
+        (("--shaft", "-1"), "`--shaft`"),
+        (("--set", "bearing.prest=1"), "preset"),
+        (("--plugin", "missing.py"), "missing.py"),
+        (("no-such.toml",), "no such file"),
+        (("--bodies", "elastic"), "elastic"),
+    ],
+)
+def test_bad_input_is_told_before_anything_is_run(tmp_path, monkeypatch, words, told):
+    monkeypatch.setattr(driver, "work", lambda *_: pytest.fail("something was run"))
+    found = invoke("study", "article", *words, "--out", tmp_path)
+    assert found.exit_code == 2
+    assert told in found.stderr
+
+
+def test_a_scene_without_unbalance_is_refused(tmp_path):
+    text = (EXAMPLES / "b7206.toml").read_text(encoding="utf-8")
+    scene = tmp_path / "static.toml"
+    scene.write_text(re.sub(r"\[excitation\].*?(?=\n\[)", "", text, flags=re.DOTALL), encoding="utf-8")
+    found = invoke("study", "article", scene, "--out", tmp_path / "out")
+    assert found.exit_code == 2 and "`excitation.unbalance`" in found.stderr
+
+
+def test_help_teaches_with_an_example_and_an_unknown_study_is_named():
+    assert "Example:" in invoke("study", "article", "--help").stdout
+    found = invoke("study", "artcle")
+    assert found.exit_code == 2 and "did you mean 'article'" in found.stderr
+    assert "article" in invoke("study", "--help").stdout

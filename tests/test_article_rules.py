@@ -1,0 +1,140 @@
+"""Rules and verdicts of the article's claims on invented numbers: every verdict can be reached."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.studies.article import rules
+from raceway.studies.article.claims import FAILED, HOLDS, NOT, PARTLY, UNTESTED, judge, verdicts
+from raceway.studies.article.regions import Finding, where
+from tests.article_study import curves, static
+
+W = np.linspace(0.0, 1.0, 9)
+SMALL = np.full(9, 1e-9)
+
+
+def _verdicts(k, deviation=0.001, **words):
+    return {one.number: one for one in verdicts(curves(k, **words), static(deviation))}
+
+
+def _as_the_article_says(setting, load, w):
+    """k that makes all of claims 3, 4 and 6 true: hardening by a parabola, more of it with axial load."""
+    if setting.direction == "unidirectional":
+        return 1e8 * (load / 400.0) ** 0.3 * (1.0 - 0.1 * w)
+    return 1e8 * (load / 400.0) ** 0.3 * (1.0 + load / 2000.0 * (0.1 * w + 0.2 * w * w))
+
+
+def test_all_claims_that_can_hold_do_where_the_numbers_are_the_articles():
+    found = _verdicts(_as_the_article_says)
+    assert {number: found[number].kind for number in ("1a", "1b", "3a", "3b", "4", "6a", "6b", "6c", "6")} == dict.fromkeys(
+        ("1a", "1b", "3a", "3b", "4", "6a", "6b", "6c", "6"), HOLDS
+    )
+    assert found["2"].kind == UNTESTED
+    assert not any(one.failed or one.region for one in found.values())
+
+
+def test_the_reverse_of_every_claim_does_not_hold():
+    found = _verdicts(
+        lambda s, load, w: 1e8 * (load / 400.0) ** -0.3 * (1.0 - 0.2 * w) ** (1 if s.direction == "bidirectional" else -1),
+        0.05,
+    )
+    for number in ("1a", "1b", "3a", "3b", "4", "5a", "5b", "5d", "6a", "6b", "6c", "6"):
+        assert found[number].kind == NOT, number
+
+
+def test_a_claim_that_holds_in_a_region_names_it_and_mentions_nothing_else():
+    def k(setting, load, w):
+        rises = setting.tilt == "free" and load < 1500.0
+        return 1e8 * (1.0 + (0.1 * w + 0.2 * w * w) * (1.0 if rises else -1.0))
+
+    found = _verdicts(k, bodies=("rigid", "condensed"))
+    assert found["4"].kind == PARTLY
+    assert found["4"].region == "tilt free, 400 to 1000 N"
+
+
+@pytest.mark.parametrize("lost", ["failed", "unstable"])
+def test_a_failed_run_is_shown_as_failed_and_never_counts_as_holding(lost):
+    def k(setting, load, w):
+        value = _as_the_article_says(setting, load, w)
+        if setting.tilt == "locked" and setting.inertia and load == 400.0 and w == 1.0:
+            return None if lost == "failed" else (value,)
+        return value
+
+    found = _verdicts(k)
+    for number in ("3a", "4", "6b"):
+        assert found[number].kind == PARTLY, number
+        assert found[number].failed.startswith("tilt locked, with ball inertia"), number
+        assert "15000 r/min" in found[number].failed
+    assert "400 N" in found["4"].failed
+
+
+def test_a_claim_without_a_single_number_has_failed():
+    found = _verdicts(lambda *_: None, None)
+    for number in ("1a", "1b", "3a", "3b", "4", "5a", "5b", "5c", "5d", "5e", "6a", "6b", "6c", "6"):
+        assert found[number].kind == FAILED, number
+        assert found[number].failed.startswith("everywhere"), number
+
+
+@pytest.mark.parametrize(("number", "k"), {
+    "5a": lambda load, w: np.interp(w, [0.0, 0.25, 0.75, 1.0], [1.0, 1.08, 1.1, 1.1 * 1.34]),
+    "5b": lambda load, w: np.interp(w, [0.0, 0.25, 1.0], [1.0, 1.08, 1.34]),
+    "5c": lambda load, w: 1.0 + (load - 400.0) / 1600.0 * np.interp(w, [0.0, 0.25, 0.75, 1.0], [0.08, 0.08, 0.34, 0.34]),
+    "5d": lambda load, w: (load / 400.0) * (1.0 + (load - 400.0) / 1600.0 * np.interp(w, [0.0, 0.25, 1.0], [0.0, 0.08, 0.34])),
+}.items())  # fmt: skip
+def test_each_reading_of_claim_5_can_hold(number, k):
+    found = _verdicts(lambda setting, load, w: 1e8 * float(k(load, w)))
+    assert found[number].kind == HOLDS
+
+
+def test_about_takes_a_quarter_and_no_more():
+    assert rules.about(0.0601, 0.08) and rules.about(0.0999, 0.08)
+    assert not rules.about(0.0599, 0.08) and not rules.about(0.1001, 0.08)
+
+
+def test_courses():
+    for expected, values in {
+        "rises": 1.0 + W, "falls": 2.0 - W, "level": 1.0 + 0.004 * W, "not monotonic": 1.0 + 0.1 * np.sin(6.0 * W)
+    }.items():  # fmt: skip
+        assert rules.course(values, SMALL) == expected
+    # A dent within the runs' own errors is none.
+    dent = 1.0 + W + np.where(np.arange(9) == 4, -0.2, 0.0)
+    assert rules.course(dent, SMALL) == "not monotonic" and rules.course(dent, np.full(9, 0.1)) == "rises"
+
+
+def test_numbers_missing_at_an_end_leave_no_judgement_and_those_between_are_skipped():
+    values = 1.0 + W
+    between, end = values.copy(), values.copy()
+    between[3], end[-1] = np.nan, np.nan
+    assert rules.course(between, SMALL) == "rises"
+    assert rules.course(end, SMALL) is None and rules.rises_quadratically(W, end, SMALL) is None
+    assert rules.change_within(W, end, 0.75, 1.0) is None and rules.spread(W, np.stack([values, end]), 0.75, 1.0) is None
+
+
+def test_a_parabola_is_found_again_and_a_root_or_a_jump_is_none():
+    fit = rules.parabola(W, 1.0 + 0.1 * W + 0.3 * W**2)
+    assert (fit.slope, fit.bend) == pytest.approx((0.1, 0.3), abs=1e-12)  # an exact parabola: rounding only
+    assert fit.bend_share == pytest.approx(0.75) and fit.misfit < 1e-12
+    assert rules.rises_quadratically(W, 1.0 + 0.1 * W + 0.3 * W**2, SMALL)
+    assert rules.rises_quadratically(W, 1.0 + np.sqrt(W), SMALL) is False
+    assert rules.rises_quadratically(W, np.where(W > 0.5, 2.0, 1.0) + 0.01 * W, SMALL) is False
+
+
+def test_regions_in_words():
+    def findings(chosen):
+        return [
+            Finding({"tilt": tilt, "inertia": inertia, "load": load}, chosen(tilt, inertia, load))
+            for tilt in ("locked", "shaft", "free") for inertia in (True, False) for load in (400.0, 600.0, 800.0)
+        ]  # fmt: skip
+
+    assert where(findings(lambda *_: True), True) == "everywhere"
+    assert where(findings(lambda *_: False), True) == "nowhere"
+    assert where(findings(lambda tilt, *_: tilt != "free"), True) == "tilt locked or against the shaft"
+    assert where(findings(lambda t, inertia, load: inertia), True) == "with ball inertia"
+    assert where(findings(lambda t, i, load: load != 600.0), True) == "400 and 800 N"
+    mixed = where(findings(lambda tilt, i, load: tilt == "free" or (tilt == "shaft" and load < 700.0)), True)
+    assert mixed == "tilt against the shaft, 400 to 600 N; tilt free"
+
+
+def test_a_verdict_of_nothing_has_failed():
+    assert judge("0", "claim", "rule", "text", []).kind == FAILED
