@@ -18,6 +18,7 @@ import attrs
 
 from raceway.registry import Registry
 from raceway.scene import TABLES
+from raceway.scene_file import STUDY_TABLES
 from raceway.schema import keys
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -60,6 +61,7 @@ _NOTES = {
     "bodies": "What deforms; `formulation` and `hourglass` belong to `elastic` bodies ([how they move](elastic_dynamics.md)).",
     "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh, elastic bodies need one; meshing by itself needs no other table than "
     "[bearing] and this one.",
+    "rig": "Read by `raceway study rig` and `raceway identify` ([the rig](rig.md)); a run takes no notice of it.",
     "contact": "`discretisation` is `resultant` for rigid bodies, `nodal` for elastic ones; condensed bodies take both.",
 }
 
@@ -80,6 +82,8 @@ def scene_page() -> str:
             sentence = (entry.plugin.__doc__ or "").strip().partition("\n\n")[0].replace("\n    ", " ")
             parts.append(f'### {name}.kind = "{entry.name}"\n\n{sentence}\n')
             parts += _tables(entry.plugin, name)
+    for name, cls in STUDY_TABLES.items():
+        parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(cls, name)]
     return "\n".join(parts)
 
 

@@ -20,6 +20,7 @@ from raceway.console import Commands, print_json
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.mesh_commands import mesh
 from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
+from raceway.rig_commands import identify
 from raceway.studies_group import study
 from raceway.study_commands import precision, stability
 from raceway.view_commands import view
@@ -240,5 +241,5 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 
 
-for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, study, view):
+for _command in (cache, mesh, plugins, check_plugin, new_plugin, schema, precision, stability, study, identify, view):
     main.add_command(_command)

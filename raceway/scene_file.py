@@ -15,6 +15,7 @@ from raceway.errors import Mistake, PluginError, SceneError
 from raceway.options import nearest
 from raceway.registry import Registry, default_registry
 from raceway.requires import check_requires
+from raceway.rig import Rig
 from raceway.scene import TABLES, Scene
 from raceway.structure import structure
 
@@ -28,6 +29,8 @@ PLUGIN_TABLES = {
 }
 #: Those of them that may be absent, which means something.
 OPTIONAL_TABLES = ("excitation", "mesh")
+#: Tables that a study reads beside the scene, which keeps them in ``source``.
+STUDY_TABLES: dict[str, type] = {"rig": Rig}
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
@@ -130,7 +133,7 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    known = [*TABLES, "excitation", "mesh", "requires", "title"]
+    known = [*TABLES, "excitation", "mesh", *STUDY_TABLES, "requires", "title"]
     for name in tables:
         if name not in known:
             mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
@@ -157,9 +160,31 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
         parts[name] = None
         if name in plain or name not in OPTIONAL_TABLES:
             parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)
+    for name, cls in STUDY_TABLES.items():
+        if name in plain:
+            structure(plain[name], cls, name, mistakes)
     if mistakes:
         raise SceneError(mistakes)
     return Scene(title=title, source=plain, **parts)
+
+
+def rig_of(scene: Scene) -> Rig:
+    """The table ``[rig]`` of a scene.
+
+    Raises
+    ------
+    SceneError
+        There is none.
+    """
+    if "rig" not in scene.source:
+        raise SceneError.at(
+            "rig", None, "is required: a table [rig] with shaft, disc and sensor (see examples/test_rig.toml)"
+        )
+    mistakes: list[Mistake] = []
+    rig = structure(scene.source["rig"], Rig, "rig", mistakes)
+    if rig is None:
+        raise SceneError(mistakes)
+    return rig
 
 
 def _with_preset(table: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from raceway.catalogue import catalogue
 from raceway.registry import Registry, default_registry
 from raceway.scene import TABLES
 from raceway.scene_file import PLUGIN_TABLES as PLUGIN_TABLES
+from raceway.scene_file import STUDY_TABLES
 
 _TYPES = {float: "number", int: "integer", str: "string", bool: "boolean"}
 _LIMITS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
@@ -29,6 +30,8 @@ def scene_schema(registry: Registry | None = None) -> dict[str, Any]:
             tables[name] = _bearing(cls) if name == "bearing" else _table(cls)
     for name, (kind, default) in PLUGIN_TABLES.items():
         tables[name] = _plugin_table(name, kind, default, registry)
+    for name, cls in STUDY_TABLES.items():
+        tables[name] = _table(cls)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Raceway scene",

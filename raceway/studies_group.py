@@ -13,6 +13,7 @@ from raceway.console import Commands
 STUDIES = {
     "article": "raceway.article_command:article",
     "map": "raceway.map_command:study_map",
+    "rig": "raceway.rig_commands:rig",
 }
 
 

@@ -1,0 +1,183 @@
+"""The shaft's angle at every sample: from the marks of a once-per-turn probe, or from a measured speed."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import RacewayError
+from raceway.studies.measured.recording import Recording
+
+#: Change of speed from one turn to the next, and over a record, that the 1x line is followed through.
+MOST_PER_TURN, MOST_RANGE = 0.01, 0.10
+#: Samples a turn: lines up to 3x are told apart.
+LEAST_PER_TURN = 8
+#: A mark counts once the probe was below the lower and is above the upper of these parts of its range.
+_LOW, _HIGH = 0.4, 0.6
+#: Turns between two knots of the angle's spline: a mark is known to a sample only.
+_TURNS_PER_KNOT = 12
+#: Largest relative difference of the marks' speed and that of a column.
+_AGREE = 0.05
+#: The speed of a column is taken as the mean over this many turns.
+_SMOOTH_TURNS = 1.0
+
+
+@attrs.frozen(eq=False)
+class Turning:
+    """A record of whole turns with its angles.
+
+    Attributes
+    ----------
+    recording : the samples from the first to the last mark
+    angle : (n,) from the first mark [rad];  speed : (n,) [rad/s]
+    turns : whole turns;  marked : whether angle 0 is the mark, or just where the record begins
+    doubt : by which the angle of all marks together may be off [rad], at most
+    """
+
+    recording: Recording
+    angle: np.ndarray
+    speed: np.ndarray
+    turns: int
+    marked: bool
+    doubt: float = 0.0
+
+
+def turning(recording: Recording) -> Turning:
+    """Angles of a record.
+
+    Raises
+    ------
+    RacewayError
+        Fewer than two turns, marks that are missing, or a speed that changes too much.
+    """
+    found = _by_marks(recording) if recording.key is not None else _by_speed(recording)
+    per_turn = len(found.angle) / found.turns
+    if per_turn < LEAST_PER_TURN:
+        raise RacewayError(f"{per_turn:.1f} samples a turn; at least {LEAST_PER_TURN} are needed: sample faster")
+    _refuse_change(found)
+    return found
+
+
+def _by_marks(recording: Recording) -> Turning:
+    assert recording.key is not None
+    marks, jump = marks_of(recording.time, recording.key)
+    if len(marks) < 3:
+        raise RacewayError(f"{max(len(marks) - 1, 0)} whole turns between the marks of `key`; at least two are needed")
+    lengths = np.diff(marks)
+    ratio = lengths / np.median(lengths)
+    for place in np.flatnonzero((ratio > 1.6) | (ratio < 0.6))[:1]:
+        what = "missing" if ratio[place] > 1.0 else "double"
+        raise RacewayError(
+            f"a mark of `key` is {what} at {marks[place]:.6g} s: that turn takes {ratio[place]:.2f} of the usual time. "
+            "Cut the record there"
+        )
+    mean = 2.0 * pi * (len(marks) - 1) / float(marks[-1] - marks[0])
+    if recording.speed is not None and abs(mean / float(recording.speed.mean()) - 1.0) > _AGREE:
+        raise RacewayError(
+            f"the marks of `key` come at {mean * 30.0 / pi:.6g} r/min, the speed column says "
+            f"{recording.speed.mean() * 30.0 / pi:.6g}: marks between samples are missed, or there are several a turn. "
+            "Sample faster, or leave one of the columns out"
+        )
+    inside = (recording.time >= marks[0]) & (recording.time < marks[-1])
+    spline = _smooth_angle(marks)
+    part = recording.part(inside)
+    # The ends of the smooth angle miss their marks by as much as the samples do; whole turns are counted from zero.
+    angle = np.clip(spline(part.time), 0.0, np.nextafter(2.0 * pi * (len(marks) - 1), 0.0))
+    speed = spline(part.time, 1)
+    return Turning(part, angle, speed, len(marks) - 1, True, _doubt(recording.time, marks, spline, jump))
+
+
+def _doubt(time: np.ndarray, marks: np.ndarray, spline: Any, jump: float) -> float:
+    """By which all marks together may be off [rad].
+
+    Notes
+    -----
+    A flank that is steeper than the samples are apart tells a mark to half an interval; one that takes n samples to about
+    1 / n^2 of that.  It averages out where marks fall anywhere between samples; where sampling keeps step with the shaft they
+    all fall on the same place, and the doubt stays: it is weighed with their mean direction on a circle of one interval.
+    """
+    smooth = marks - (spline(marks) - 2.0 * pi * np.arange(len(marks))) / spline(marks, 1)
+    after = np.clip(np.searchsorted(time, smooth), 1, len(time) - 1)
+    places = (smooth - time[after - 1]) / (time[after] - time[after - 1])
+    together = max(float(abs(np.exp(2j * pi * places).mean())), len(marks) ** -0.5)
+    speed = 2.0 * pi * (len(marks) - 1) / float(marks[-1] - marks[0])
+    return 0.5 * speed * float(np.median(np.diff(time))) * jump**2 * together
+
+
+def _smooth_angle(marks: np.ndarray) -> Any:
+    """The angle over time [rad]: cubic splines with a knot every few turns, through the scatter of marks between samples."""
+    from scipy.interpolate import make_lsq_spline
+
+    count = len(marks)
+    degree = min(3, count - 1) if count >= 8 else 1 if count < 5 else 2
+    pieces = max((count - 1) // _TURNS_PER_KNOT, 1)
+    inner = np.interp(np.linspace(0, count - 1, pieces + 1)[1:-1], np.arange(count), marks)
+    knots = np.concatenate([[marks[0]] * (degree + 1), inner, [marks[-1]] * (degree + 1)])
+    return make_lsq_spline(marks, 2.0 * pi * np.arange(count), knots, degree)
+
+
+def marks_of(time: np.ndarray, key: np.ndarray) -> tuple[np.ndarray, float]:
+    """Times [s] at which a probe's voltage (n,) rises through the middle of its range, between samples by a straight line,
+    and the mean rise from the sample before to the sample after, over the range."""
+    low, high = float(key.min()), float(key.max())
+    if high - low <= 0.0:
+        raise RacewayError("`key` never changes: no mark is seen")
+    level = (key - low) / (high - low)
+    state = np.where(level > _HIGH, 1, np.where(level < _LOW, -1, 0))
+    known = np.flatnonzero(state)
+    rises = np.flatnonzero((state[known][:-1] < 0) & (state[known][1:] > 0))
+    found, jumps = [], []
+    for before, after in zip(known[rises], known[rises + 1], strict=True):
+        k = before + int(np.argmax(level[before : after + 1] >= 0.5))
+        part = (0.5 - level[k - 1]) / (level[k] - level[k - 1])
+        found.append(time[k - 1] + part * (time[k] - time[k - 1]))
+        jumps.append(level[k] - level[k - 1])
+    return np.array(found), float(np.mean(jumps)) if jumps else 0.0
+
+
+def _by_speed(recording: Recording) -> Turning:
+    assert recording.speed is not None
+    speed, time = recording.speed, recording.time
+    if speed.min() <= 0.0:
+        place = int(np.argmin(speed))
+        raise RacewayError(f"`speed` is {speed[place] * 30 / pi:g} r/min at {time[place]:.6g} s: it must be greater than 0")
+    turn = 2.0 * pi / float(np.median(speed)) * _SMOOTH_TURNS
+    width = max(int(turn / np.median(np.diff(time))), 1)
+    smooth = _smooth(speed, width)
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (smooth[1:] + smooth[:-1]) * np.diff(time))])
+    turns = int(angle[-1] / (2.0 * pi) + 1e-6)
+    if turns < 2:
+        raise RacewayError(f"{angle[-1] / (2 * pi):.2f} turns in the record; at least two are needed")
+    inside = angle < 2.0 * pi * turns
+    return Turning(recording.part(inside), angle[inside], smooth[inside], turns, False)
+
+
+def _smooth(values: np.ndarray, width: int) -> np.ndarray:
+    """Mean over ``width`` samples, over fewer at the ends."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    first = np.maximum(np.arange(len(values)) - width // 2, 0)
+    last = np.minimum(np.arange(len(values)) + width // 2 + 1, len(values))
+    return (total[last] - total[first]) / (last - first)
+
+
+def _refuse_change(found: Turning) -> None:
+    turn = np.minimum((found.angle / (2.0 * pi)).astype(int), found.turns - 1)
+    counts = np.maximum(np.bincount(turn, minlength=found.turns), 1)
+    speeds = np.bincount(turn, found.speed, minlength=found.turns) / counts
+    begins = np.bincount(turn, found.recording.time, minlength=found.turns) / counts
+    change = np.abs(np.diff(speeds)) / speeds[1:]
+    if change.max() > MOST_PER_TURN:
+        k = int(np.argmax(change))
+        raise RacewayError(
+            f"the speed is not constant: it changes by {100 * change[k]:.2g} % from one turn to the next at {begins[k + 1]:.6g} s; "
+            f"order tracking follows up to {100 * MOST_PER_TURN:g} %"
+        )
+    span = (speeds.max() - speeds.min()) / speeds.mean()
+    if span > MOST_RANGE:
+        raise RacewayError(
+            f"the speed is not constant: it changes by {100 * span:.3g} % over the record; up to {100 * MOST_RANGE:g} % is one "
+            "operating point. Cut the record into parts"
+        )

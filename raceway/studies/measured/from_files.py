@@ -1,0 +1,71 @@
+"""``identify`` from files: the record, and the slow roll or the run-out that is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from raceway.errors import RacewayError, SceneError
+from raceway.registry import Registry
+from raceway.rig import Rig
+from raceway.scene import Scene
+from raceway.studies.measured.identify import Found, identify
+from raceway.studies.measured.recording import read_recording
+from raceway.studies.measured.run_out import given, slow_roll
+from raceway.studies.shaft.bearing import bearing
+
+OnProgress = Callable[[str, int, int], None]
+
+
+def from_files(
+    signals: Path,
+    scene: Scene,
+    rig: Rig,
+    registry: Registry,
+    slow: Path | None = None,
+    run_out: tuple[float, float] | None = None,
+    on_progress: OnProgress | None = None,
+) -> Found:
+    """K and C from a record's file.
+
+    Parameters
+    ----------
+    slow : file of a slow roll;  run_out : instead of it, its amplitude [m] and angle from the mark [deg]
+
+    Raises
+    ------
+    SceneError
+        What is wrong with a file or the scene.
+    ConvergenceError
+        Signals that no bearing of the scene's kind gives.
+    """
+
+    def tell(what: str, done: int) -> None:
+        if on_progress is not None:
+            on_progress(what, done, 3)
+
+    if scene.load.axial <= 0.0:
+        raise SceneError.at(
+            "load.axial",
+            scene.load.axial,
+            "must be the axial load of the measurement, greater than 0: add --set load.axial=...",
+        )
+    tell("reading signals", 0)
+    recording = read_recording(signals)
+    roll = None
+    if slow is not None:
+        still = read_recording(slow)
+        try:
+            roll = slow_roll(still)
+        except RacewayError as why:
+            raise SceneError.at(str(slow), None, str(why)) from None
+    tell("bearing at rest", 1)
+    held = bearing(scene, scene.load.axial, registry)
+    tell("identifying", 2)
+    known = None if run_out is None else given(*run_out)
+    try:
+        return identify(recording, rig, held, known, roll)
+    except RacewayError as why:
+        if why.exit_code != 2 or isinstance(why, SceneError):
+            raise
+        raise SceneError.at(str(signals), None, str(why)) from None

@@ -1,0 +1,228 @@
+"""``raceway identify``: K and C of a bearing in a rig, from the signals of the sensor beside it."""
+
+from __future__ import annotations
+
+from cmath import exp
+from math import pi, radians
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import ConvergenceError, RacewayError
+from raceway.result import without_nan
+from raceway.rig import Rig
+from raceway.studies.measured.angle import Turning, turning
+from raceway.studies.measured.inversion import invert, scatter, sensitivities, values, with_tilt_of
+from raceway.studies.measured.orders import Order, order
+from raceway.studies.measured.recording import Recording
+from raceway.studies.measured.run_out import RunOut, less_response
+from raceway.studies.shaft.balance import State
+from raceway.studies.shaft.bearing import Bearing
+from raceway.studies.shaft.rotor import Rotor, rotor
+
+#: Half-width of an interval of 95 % over the standard error.
+_COVERAGE = 1.96
+#: Deflection of the bearing below this part of the sensor's line is a small difference of large numbers.
+_SMALL = 0.1
+#: K off the scene's by more than this is told.
+_UNLIKE = 0.3
+
+
+@attrs.frozen(eq=False)
+class Found:
+    """What signals say of the bearing.
+
+    Attributes
+    ----------
+    turning, order : of the record;  run_out : that was subtracted;  state : of the bearing
+    scene : K of the scene's bearing under the same force and moment [N/m]
+    parts : half-widths at 95 % by cause, (4,) like ``inversion.values``
+    changes : ``sensitivities``
+    """
+
+    turning: Turning
+    order: Order
+    run_out: RunOut
+    state: State
+    scene: float
+    parts: dict[str, np.ndarray]
+    changes: list[dict[str, float | str]]
+
+    @property
+    def uncertainty(self) -> np.ndarray:
+        """Half-widths at 95 %, all causes together (4,): K [N/m] and C [N s/m] with the rig's tilt, then with it locked."""
+        return np.sqrt(sum(part**2 for part in self.parts.values()))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Tables for JSON."""
+        state, found, marked = self.state, self.order, self.order.marked
+        z, rest = state.dynamic_stiffness, self.uncertainty
+        time, locked = self.turning.recording.time, state.locked
+        return without_nan(
+            {
+                "signals": {
+                    "samples": len(time),
+                    "duration_s": float(time[-1] - time[0]),
+                    "turns": found.turns,
+                    "speed_rpm": {name: value * 30.0 / pi for name, value in _speeds(found).items()},
+                    "angle_from": "marks of key" if marked else "integrated speed, no mark: the phase is not known",
+                },
+                "line": {
+                    "forward_m": abs(found.line),
+                    "angle_deg": float(np.degrees(np.angle(found.line))) if marked else None,
+                    "backward_m": found.backward,
+                    "error_m": found.error,
+                    "residual": found.residual,
+                    "fourier_m": abs(found.fourier),
+                },
+                "run_out": {
+                    "amplitude_m": abs(self.run_out.vector),
+                    "angle_deg": float(np.degrees(np.angle(self.run_out.vector))),
+                    "error_m": self.run_out.error,
+                    "how": self.run_out.how,
+                },
+                "bearing": {
+                    "force_n": abs(state.force),
+                    "moment_nm": abs(state.moment),
+                    "deflection_m": abs(state.deflection),
+                    "slope_rad": abs(state.slope),
+                    "sensor_m": abs(state.sensor),
+                    "runs": state.runs,
+                },
+                "identification": {
+                    "definition": "secant: force of the shaft on the inner ring over its deflection, 1x forward, tilt as in the rig",
+                    "speed_rpm": state.speed * 30.0 / pi,
+                    "dynamic_stiffness": {"real": z.real, "imag": z.imag if marked else None, "abs": abs(z)},
+                    "equivalent_stiffness": state.stiffness,
+                    "equivalent_stiffness_error": rest[0],
+                    "equivalent_damping": state.damping if marked else None,
+                    "equivalent_damping_error": rest[1] if marked else None,
+                    "mass_used_kg": state.mass,
+                    "scene_stiffness": self.scene,
+                    "tilt_locked": {
+                        "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
+                        "equivalent_stiffness": locked[0],
+                        "equivalent_stiffness_error": rest[2],
+                        "equivalent_damping": locked[1] if marked else None,
+                        "equivalent_damping_error": rest[3] if marked else None,
+                    },
+                },
+                "uncertainty": {
+                    "how": "half-widths at 95 %: scatter of the blocks of turns, slow roll, marks between samples, least squares against "
+                    "whole-turn Fourier; what is taken as known of the rig is in `sensitivities`",
+                    "parts": {
+                        name: {"stiffness": part[0], "damping": part[1] if marked else None}
+                        for name, part in self.parts.items()
+                    },
+                },
+                "sensitivities": self.changes,
+                "warnings": self.warnings(),
+            }
+        )
+
+    def warnings(self) -> list[str]:
+        """What a user should know."""
+        state, k, out = self.state, self.uncertainty[0], []
+        if not self.order.marked:
+            out.append("no mark (`key`): the phase is taken as zero, so that C is not identified")
+        if not self.run_out.vector:
+            out.append("no run-out was subtracted: give --slow-roll or --run-out")
+        if abs(state.stiffness / self.scene - 1.0) > _UNLIKE:
+            out.append(
+                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene:.4g} N/um: is it the bearing "
+                "of the rig, in the rig's arrangement? Its tilt enters the result"
+            )
+        if abs(state.deflection) < _SMALL * abs(state.sensor):
+            part = 100.0 * abs(state.deflection) / abs(state.sensor)
+            out.append(f"the bearing moves by {part:.2g} % of what the sensor sees; the rest is the shaft's bow")
+        if k > 0.1 * abs(state.stiffness):
+            out.append(f"K is known to {100.0 * k / abs(state.stiffness):.2g} % only")
+        if self.order.backward > 0.1 * abs(self.order.line):
+            part = 100.0 * self.order.backward / abs(self.order.line)
+            out.append(f"the orbit is no circle (backward line {part:.2g} %): the rig is taken to be the same in y and z")
+        return out
+
+
+def _speeds(found: Order) -> dict[str, float]:
+    return {"mean": found.speed, "lowest": found.lowest, "highest": found.highest}
+
+
+def identify(
+    recording: Recording, rig: Rig, held: Bearing, run_out: RunOut | None = None, slow: Order | None = None
+) -> Found:
+    """K and C from a record.
+
+    Parameters
+    ----------
+    held : the scene's bearing under the record's axial load
+    run_out : known run-out;  slow : instead of it, the 1x line of a slow roll
+
+    Raises
+    ------
+    RacewayError
+        A record that cannot be used.
+    ConvergenceError
+        Signals that no bearing of the scene's kind gives.
+    """
+    turned = turning(recording)
+    found = order(turned)
+    if found.backward > abs(found.line):
+        raise RacewayError(
+            f"the orbit turns from z towards y, against the shaft ({1e6 * found.backward:.3g} um backward, "
+            f"{1e6 * abs(found.line):.3g} um forward): change the sign of one column, or swap y and z"
+        )
+    angle = radians(rig.unbalance_angle_deg)
+    run_out = run_out or RunOut()
+    if slow is not None:
+        run_out = less_response(slow, held, rotor(rig, slow.speed), angle)
+    if run_out.vector and not found.marked:
+        raise RacewayError("no `key`: without a mark the run-out cannot be subtracted; leave it out, or record the mark")
+    if found.marked:
+        line_at, fourier = ((value - run_out.vector) * exp(-1j * angle) for value in (found.line, found.fourier))
+    else:
+        line_at, fourier = abs(found.line) + 0j, abs(found.fourier) + 0j
+    line = rotor(rig, found.speed)
+    try:
+        state = invert(line, held, line_at)
+    except ConvergenceError as why:
+        raise ConvergenceError(
+            f"no bearing like the scene's moves the sensor by {1e6 * abs(line_at):.4g} um at {found.speed * 30 / pi:.0f} r/min "
+            f"({why}). Are unbalance, sensor's place and run-out right?"
+        ) from None
+    other = with_tilt_of(line, state, fourier)
+    parts = {
+        "spread": _COVERAGE * scatter(line, state, found.error),
+        "slow roll": _COVERAGE * scatter(line, state, run_out.error),
+        "marks": _turned(line, state, found.line * exp(-1j * angle), found.doubt),
+        "window": np.abs(values(other) - values(state)),
+    }
+    x = held.answer(state.speed, state.force, state.moment)[0]
+    scene = (state.force / x).real + state.mass * state.speed**2
+    return Found(
+        turned, found, run_out, state, float(scene), parts, sensitivities(changed_rotors(rig, found.speed), line, state)
+    )
+
+
+def _turned(line: Rotor, state: State, seen: complex, angle: float) -> np.ndarray:
+    """Largest change of ``values`` (4,) when the line that is seen, run-out and all, turns by an angle [rad] either way."""
+    moved = [state.sensor + seen * (exp(1j * turn) - 1.0) for turn in (-angle, angle)]
+    return np.max([np.abs(values(with_tilt_of(line, state, other)) - values(state)) for other in moved], axis=0)
+
+
+def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
+    """The rotor with one thing changed that is taken as known."""
+    farther = rig.sensor_distance + 5e-4
+    rigs: dict[str, Rig] = {
+        "shaft's diameter +1 %": attrs.evolve(rig, shaft_diameter=1.01 * rig.shaft_diameter),
+        "Young's modulus of the shaft +1 %": attrs.evolve(rig, young=1.01 * rig.young),
+        "density of shaft and disc +1 %": attrs.evolve(rig, density=1.01 * rig.density),
+    }
+    hub = 2.0 * (rig.hub_diameter or rig.shaft_diameter)
+    if hub <= 2.0 * rig.disc_radius:
+        rigs["disc stiffens the shaft (hub twice as thick)"] = attrs.evolve(rig, hub_diameter=hub)
+    try:
+        rigs["sensor 0.5 mm farther from the bearing"] = attrs.evolve(rig, sensor_distance=farther)
+    except ValueError:  # it sits at the end already
+        rigs["sensor 0.5 mm nearer to the bearing"] = attrs.evolve(rig, sensor_distance=rig.sensor_distance - 5e-4)
+    return {what: rotor(other, speed) for what, other in rigs.items()}

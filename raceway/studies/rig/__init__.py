@@ -1,0 +1,7 @@
+"""``raceway study rig``: the article's test rig, its signals, and what can be read back from them.
+
+sensors         the signals: noise, drift, run-out, changing speed
+as_printed      the article's procedure, and other corrections for the shaft
+error_split     one cause of error at a time
+study           all speeds and loads; figures, page: what is shown of them
+"""

@@ -1,0 +1,178 @@
+"""``raceway study rig``: the rig's signals at every speed and load, read by the article's procedure and by the beam's inversion."""
+
+from __future__ import annotations
+
+from cmath import exp
+from collections.abc import Callable
+from math import pi, radians
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import ConvergenceError
+from raceway.registry import Registry
+from raceway.result import without_nan
+from raceway.rig import Rig
+from raceway.scene import Scene
+from raceway.studies.measured.angle import turning
+from raceway.studies.measured.identify import Found, identify
+from raceway.studies.measured.recording import Recording, write_recording
+from raceway.studies.measured.run_out import slow_roll
+from raceway.studies.rig.as_printed import Reading, amplitude, critical_speed, readings
+from raceway.studies.rig.error_split import Cause, split
+from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
+from raceway.studies.shaft.balance import State, balance
+from raceway.studies.shaft.bearing import Bearing, bearing
+from raceway.studies.shaft.rotor import rotor
+
+OnProgress = Callable[[str, int, int], None]
+
+
+@attrs.frozen(eq=False)
+class Point:
+    """One speed under one axial load.
+
+    Attributes
+    ----------
+    state : what the bearing truly does;  unbalance_force : of the whole rotor [N]
+    signals, slow : the records;  found : what ``identify`` makes of them
+    readings : by the article's procedure, on the same signals
+    causes : ``error_split``
+    """
+
+    axial: float
+    state: State
+    unbalance_force: float
+    signals: Recording
+    slow: Recording
+    found: Found
+    readings: list[Reading]
+    causes: list[Cause]
+
+    @property
+    def name(self) -> str:
+        return f"{self.state.speed * 30.0 / pi:.0f}rpm-{self.axial:.0f}N"
+
+    def as_dict(self) -> dict[str, Any]:
+        state, true = self.state, self.state.stiffness
+        return {
+            "speed_rpm": state.speed * 30.0 / pi,
+            "axial_n": self.axial,
+            "true": {
+                "equivalent_stiffness": true,
+                "equivalent_damping": state.damping,
+                "tilt_locked_stiffness": state.locked[0],
+                "tilt_locked_damping": state.locked[1],
+                "force_n": abs(state.force),
+                "force_over_half_unbalance": 2.0 * abs(state.force) / self.unbalance_force,
+                "moment_nm": abs(state.moment),
+                "deflection_m": abs(state.deflection),
+                "slope_rad": abs(state.slope),
+                "sensor_m": abs(state.sensor),
+                "runs": state.runs,
+            },
+            "printed": [
+                {
+                    "correction": one.correction,
+                    "equivalent_stiffness": one.stiffness,
+                    "over_true": one.stiffness / true,
+                }
+                for one in self.readings
+            ],
+            "identified": {**self.found.as_dict(), "error": self.found.state.stiffness / true - 1.0},
+            "split": [attrs.asdict(cause) for cause in self.causes],
+        }
+
+
+@attrs.frozen(eq=False)
+class RigStudy:
+    """All points, with the rig and its critical speeds [r/min] by axial load; ``failed``: points without a motion, and why."""
+
+    title: str
+    scene: Scene
+    rig: Rig
+    critical: dict[str, float]
+    points: list[Point]
+    failed: list[dict[str, Any]]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything but the signals, as plain tables for JSON."""
+        return without_nan(
+            {
+                "title": self.title,
+                "scene": self.scene.as_dict(),
+                "rig": {**attrs.asdict(self.rig), "mass_kg": self.rig.mass, "disc_mass_kg": self.rig.disc_mass},
+                "critical_speed_rpm": self.critical,
+                "rows": [point.as_dict() for point in self.points],
+                "failed": self.failed,
+                "worst": self.worst,
+            }
+        )
+
+    @property
+    def worst(self) -> dict[str, float]:
+        """Largest errors of K over all points: clean signals, and signals with all that disturbs them."""
+        clean = max(abs(cause.error) for point in self.points for cause in point.causes if cause.kind == "none")
+        noisy = max(abs(point.found.state.stiffness / point.state.stiffness - 1.0) for point in self.points)
+        return {"clean": clean, "disturbed": noisy}
+
+    def write_signals(self, folder: Path) -> list[Path]:
+        """The records as CSV files.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        files = []
+        for point in self.points:
+            files.append(write_recording(point.signals, folder / f"signals-{point.name}.csv"))
+            files.append(write_recording(point.slow, folder / f"slow-roll-{point.name}.csv"))
+        return files
+
+
+def study(scene: Scene, rig: Rig, registry: Registry, on_progress: OnProgress | None = None) -> RigStudy:
+    """Simulate the rig and read its signals.
+
+    Raises
+    ------
+    SceneError
+        A scene that is no bearing of such a rig.
+    ConvergenceError
+        No point at which shaft and bearing find a common motion.
+    """
+    grid = [(axial, speed) for axial in rig.axial_loads for speed in rig.speeds_rpm]
+    critical = {"rigid supports": critical_speed(rig, None) * 30.0 / pi}
+    points: list[Point] = []
+    failed: list[dict[str, Any]] = []
+    held = None
+    for done, (axial, rpm) in enumerate(grid):
+        if on_progress is not None:
+            on_progress(f"{rpm:.0f} r/min, {axial:.0f} N", done, len(grid))
+        if held is None or held.scene.load.axial != axial:
+            held = bearing(scene, axial, registry)
+            critical[f"bearings under {axial:g} N"] = critical_speed(rig, held) * 30.0 / pi
+        try:
+            points.append(_point(rig, held, rpm * pi / 30.0, rig.signals.seed + 2 * done))
+        except ConvergenceError as why:
+            if len(failed) + 1 == len(grid):
+                raise
+            failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": str(why)})
+    if on_progress is not None:
+        on_progress("done", len(grid), len(grid))
+    return RigStudy(scene.title, scene, rig, critical, points, failed)
+
+
+def _point(rig: Rig, held: Bearing, speed: float, seed: int) -> Point:
+    """One speed [rad/s]: the true motion, its signals, and what is read from them."""
+    line = rotor(rig, speed)
+    state = balance(line, held)
+    answer = response(rig, held, state, rig.signals)
+    signals = record(rig, answer, rig.signals, seed)
+    slow = slow_roll_record(rig, held, rig.signals, seed + 1, white_noise(answer, rig.signals))
+    found = identify(signals, rig, held, slow=slow_roll(slow))
+    seen = amplitude(turning(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
+    by_article = readings(rig, held, speed, seen)
+    causes = split(rig, held, state)
+    return Point(held.scene.load.axial, state, line.unbalance_force, signals, slow, found, by_article, causes)

@@ -1,0 +1,37 @@
+"""One rig and its bearing under 2000 N, shared by the tests: linear enough to be solved in a few runs."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+
+from raceway.registry import default_registry
+from raceway.rig import Rig
+from raceway.scene_file import load_scene
+from raceway.studies.shaft.balance import balance
+from raceway.studies.shaft.bearing import bearing
+from raceway.studies.shaft.rotor import rotor
+from tests.command_line import EXAMPLES
+
+SPEED = 13000.0 * pi / 30.0
+
+
+@pytest.fixture(scope="session")
+def rig():
+    return Rig()
+
+
+@pytest.fixture(scope="session")
+def scene():
+    return load_scene(EXAMPLES / "test_rig.toml")
+
+
+@pytest.fixture(scope="session")
+def held(scene):
+    return bearing(scene, 2000.0, default_registry())
+
+
+@pytest.fixture(scope="session")
+def state(rig, held):
+    return balance(rotor(rig, SPEED), held)

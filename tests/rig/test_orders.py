@@ -1,0 +1,107 @@
+"""Angles and 1x lines of made-up records."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.errors import RacewayError
+from raceway.studies.measured.angle import turning
+from raceway.studies.measured.orders import order
+from raceway.studies.measured.recording import Recording
+
+LINE = 3e-6 * np.exp(0.7j)
+HZ = 183.3
+
+
+def made(rate=10e3, duration=0.5, drift=0.0, uneven=0.0, noise=0.0, marked=True, line=LINE, sharp=1.0):
+    """A record with a forward line, a backward one, 2x, 3x and a wandering mean; the speed drifts by ``drift``."""
+    random = np.random.default_rng(5)
+    time = np.arange(int(rate * duration)) / rate
+    time = time + uneven / rate * random.uniform(-0.5, 0.5, len(time))
+    part = time / duration
+    angle = 2.0 * np.pi * HZ * (time + 0.5 * drift * duration * (part**2 - part)) + 1.0
+    speed = 2.0 * np.pi * HZ * (1.0 + drift * (part - 0.5))
+    turn = np.exp(1j * angle)
+    plane = line * turn + 0.1e-6 / turn + 0.2e-6 * turn**2 + 0.1e-6j * turn**3 + 4e-6 * part**2
+    plane = plane + noise * (random.standard_normal(len(time)) + 1j * random.standard_normal(len(time)))
+    key = 0.5 + 0.5 * np.tanh(6.0 * sharp * np.sin(angle))
+    return Recording(time, plane.real, plane.imag, key if marked else None, speed)
+
+
+@pytest.mark.parametrize("case", [{}, {"uneven": 0.8}, {"drift": 0.01}, {"drift": 0.01, "uneven": 0.8}])
+def test_the_line_is_found(case):
+    found = order(turning(made(**case)))
+    # Marks are known to a part of a sample, which is 2 % of a turn.
+    assert abs(found.line) == pytest.approx(abs(LINE), rel=2e-3)
+    assert np.angle(found.line / LINE) == pytest.approx(0.0, abs=5e-3)
+    assert found.backward == pytest.approx(0.1e-6, rel=0.1)
+    assert found.speed == pytest.approx(2.0 * np.pi * HZ, rel=1e-3)
+    assert abs(found.fourier) == pytest.approx(abs(LINE), rel=5e-3)
+
+
+def test_three_turns_will_do():
+    found = order(turning(made(duration=0.0215)))
+    # The mean wanders by more than the line's amplitude in them, along a parabola: blocks of one turn know straight lines.
+    assert (found.turns, found.blocks) == (3, 3)
+    assert abs(found.line - LINE) < 0.02 * abs(LINE)
+
+
+def test_without_marks_the_amplitude_is_found_though_the_speed_is_a_little_off():
+    record = made(marked=False)
+    wrong = Recording(record.time, record.y, record.z, None, 1.001 * record.speed)
+    found = order(turning(wrong))
+    assert not found.marked
+    assert abs(found.line) == pytest.approx(abs(LINE), rel=2e-3)
+
+
+def test_the_standard_error_is_that_of_white_noise():
+    noise = 0.1e-6
+    found = order(turning(made(noise=noise, duration=1.0)))
+    # Least squares of n samples with noise in two channels: noise * sqrt(2 / n); 16 blocks know it to some 20 %.
+    assert found.error == pytest.approx(noise * np.sqrt(2.0 / 1e4), rel=0.6)
+    assert abs(found.line - LINE) < 4.0 * found.error + 5e-3 * abs(LINE)
+    assert found.residual == pytest.approx(np.sqrt(2.0) * noise / abs(LINE), rel=0.05)
+
+
+def test_the_doubt_of_marks_stays_where_sampling_keeps_step():
+    apart = turning(made(rate=10e3, sharp=100.0)).doubt
+    in_step = turning(made(rate=50 * HZ, sharp=100.0)).doubt
+    # Flanks within one sample: half of it, 1/50 of a turn.
+    assert in_step == pytest.approx(np.pi / 50, rel=0.1)
+    assert apart < 0.2 * in_step
+
+
+BAD = {
+    "one turn": ({"duration": 1.5 / HZ}, "0 whole turns|1 whole turns"),
+    "one turn by the speed": ({"duration": 1.5 / HZ, "marked": False}, "1.4. turns in the record; at least two"),
+    "few samples": ({"rate": 1000.0, "marked": False}, "5.5 samples a turn; at least 8"),
+    "a run-up": ({"drift": 0.3}, "the speed is not constant: it changes by 2.* % over the record"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_records_that_cannot_be_used(case):
+    options, words = BAD[case]
+    with pytest.raises(RacewayError, match=words):
+        turning(made(**options))
+
+
+def test_a_mark_that_is_missing():
+    record = made()
+    gone = (record.time > 0.2) & (record.time < 0.2 + 1.0 / HZ)
+    with pytest.raises(RacewayError, match="a mark of `key` is missing at 0.195.* s"):
+        turning(Recording(record.time, record.y, record.z, np.where(gone, 0.0, record.key)))
+
+
+def test_a_speed_that_jumps():
+    record = made(marked=False)
+    jumped = record.speed * np.where(record.time > 0.25, 1.05, 1.0)
+    with pytest.raises(RacewayError, match="% from one turn to the next at 0.2.* s"):
+        turning(Recording(record.time, record.y, record.z, None, jumped))
+
+
+def test_a_probe_that_sees_nothing():
+    record = made()
+    with pytest.raises(RacewayError, match="no mark is seen"):
+        turning(Recording(record.time, record.y, record.z, 0.0 * record.time))
