@@ -33,7 +33,15 @@ _POINT = ("rig.speeds_rpm=[13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.d
 PAGES: dict[str, Callable[[Path], Path]] = {
     "view": _command("view.html", "view", ARTICLE, "--html", "--animate", "--frames", "2"),
     "study map": _command(
-        "map.html", "study", "map", "--vary", "load.axial=400,2000", "--vary", "excitation.speed_rpm=10000,15000,60000"
+        "map.html",
+        "study",
+        "map",
+        "--vary",
+        "load.axial=400,2000",
+        "--vary",
+        "excitation.speed_rpm=10000,15000,60000",
+        "--vary",
+        "bearing.contact_angle_deg=15",
     ),
     "study article": _article,
     "study rig": _command(
