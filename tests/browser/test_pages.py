@@ -9,16 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.browser.chromium import WIDTHS, Browser
-from tests.command_line import ARTICLE, invoke
-
-#: Name -> the command that writes it, without --out, and its file.
-PAGES = {
-    "view": (("view", ARTICLE, "--html", "--animate", "--frames", "2"), "view.html"),
-    "map": (
-        ("study", "map", "--vary", "load.axial=400,2000", "--vary", "excitation.speed_rpm=10000,15000,60000"),
-        "map.html",
-    ),
-}
+from tests.browser.pages import PAGES
 
 
 @pytest.fixture(scope="module")
@@ -35,11 +26,7 @@ def page(tmp_path_factory):
 
     def write(name: str) -> Path:
         if name not in written:
-            words, file = PAGES[name]
-            folder = tmp_path_factory.mktemp(name)
-            found = invoke(*words, "--out", folder)
-            assert found.exit_code == 0, found.output
-            written[name] = folder / file
+            written[name] = PAGES[name](tmp_path_factory.mktemp(name.replace(" ", "-")))
         return written[name]
 
     return write

@@ -1,0 +1,70 @@
+"""Pages of the program in a real browser: what `raceway view` and `raceway study map` write, at two widths, from a file."""
+
+from __future__ import annotations
+
+import resource
+import tempfile
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from benchmarks.evidence import Row, below
+from raceway.cli import main
+from tests.browser.chromium import WIDTHS, Browser
+
+TITLE = "Pages in headless chromium: whole, readable, without a network"
+PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "view"
+#: Words of the command, its page.
+PAGES = {
+    "view": (("view", "examples/b7206.toml", "--html", "--animate"), "view.html"),
+    "map": (("study", "map"), "map.html"),
+}
+#: Pictures of ``raceway view`` that its document shows.
+SHOWN = ("bearing-peak.png", "contacts.png")
+
+
+def rows() -> list[Row]:
+    out: list[Row] = []
+    browser = Browser()
+    try:
+        for name, (words, file) in PAGES.items():
+            with tempfile.TemporaryDirectory() as place:
+                out += _page(name, words, Path(place) / name, file, browser)
+    finally:
+        browser.close()
+    return out
+
+
+def _page(name: str, words: tuple[str, ...], folder: Path, file: str, browser: Browser) -> list[Row]:
+    command = f"raceway {' '.join(words)}"
+    before = _cpu()
+    done = CliRunner().invoke(main, [*words, "--out", str(folder)])
+    seconds = _cpu() - before
+    out = [Row(f"{name}: exit code", float(done.exit_code), "0", done.exit_code == 0, command)]
+    path = folder / file
+    out.append(below(f"{name}: size of {file}, MB", path.stat().st_size / 1e6, 5.0, command))
+    out.append(Row(f"{name}: processor time of the command, s", round(seconds, 1), "reported", True, command))
+    for width in WIDTHS:
+        look = browser.look(path, width)
+        faults = look.faults()
+        figures = len(look.found["images"]) + len(look.found["drawings"])
+        out += [
+            below(f"{name} at {width} px: requests to anything but the file", len(look.asked), 0, command),
+            below(f"{name} at {width} px: lines on the console", len(look.console), 0, command),
+            Row(f"{name} at {width} px: figures with a size", f"{figures - _missing(faults)} of {figures}", "all", not faults, command, "; ".join(faults)),
+            below(f"{name} at {width} px: width of the content over the window's", look.found["scroll"] / look.found["width"], 1.0, command),
+        ]  # fmt: skip
+    if name == "view":
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        for shown in SHOWN:
+            (PICTURES / shown).write_bytes((folder / shown).read_bytes())
+    return out
+
+
+def _missing(faults: list[str]) -> int:
+    return sum("is not there" in text or "has no size" in text for text in faults)
+
+
+def _cpu() -> float:
+    """Processor time of this process and of those that have ended [s]."""
+    return sum(u.ru_utime + u.ru_stime for u in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
