@@ -90,7 +90,7 @@ def impact_system(
         kernel=impact,
         base_kernel=impact,
         law=law,
-        law_params=np.array(np.broadcast_to(params[:2], (2, params.shape[1]))),
+        law_params=np.array(np.broadcast_to(params[:2], (2, params.shape[1])), order="C"),
         law_state=np.zeros((2, state_size)),
         scalars=scalars,
         table=np.zeros((1, COLUMNS)),
