@@ -170,7 +170,7 @@ def history() -> Rule:
     from raceway.core.start import at_rest
     from raceway.model import build_model
     from raceway.plan import make_plan
-    from raceway.recording import recorded_per_turn
+    from raceway.planning.recording import recorded_per_turn
     from raceway.statics import settle
 
     per_turn, many = 2880, 50

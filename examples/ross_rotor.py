@@ -31,11 +31,11 @@ from scipy.optimize import brentq
 from raceway import scene_from_dict
 from raceway.plugins.executors.serial import Serial
 from raceway.run import run
-from raceway.studies.coefficients import Coefficients, coefficients
-from raceway.studies.ross_file import NAMES, RossFile, ross_file
-from raceway.studies.ross_reading import through_points
-from raceway.studies.selection import select
+from raceway.studies.ross.coefficients import Coefficients, coefficients
+from raceway.studies.ross.file import NAMES, RossFile, ross_file
+from raceway.studies.ross.reading import through_points
 from raceway.studies.sweep import grid, prepare, sweep
+from raceway.studies.sweep.selection import select
 
 AXIAL = 1000.0  # N
 #: Of the sweep [N]: small, so that the coefficients are those of small motions.

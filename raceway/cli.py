@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway import __version__
-from raceway.cache_command import cache
-from raceway.command_frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
-from raceway.command_inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
-from raceway.console import Commands, print_json
+from raceway.commands.cache import cache
+from raceway.commands.console import Commands, print_json
+from raceway.commands.frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
+from raceway.commands.mesh import mesh
+from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
+from raceway.commands.precision_stability import precision, stability
+from raceway.commands.rig import identify
+from raceway.commands.store import export, plot
+from raceway.commands.study_group import study
+from raceway.commands.sweep import sweep
+from raceway.commands.view import view
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.mesh_commands import mesh
-from raceway.plugin_commands import check_plugin, new_plugin, plugins, schema
-from raceway.rig_commands import identify
-from raceway.store_commands import export, plot
-from raceway.studies_group import study
-from raceway.study_commands import precision, stability
-from raceway.sweep_command import sweep
-from raceway.view_commands import view
 
 if TYPE_CHECKING:
     from raceway.scene import Scene
@@ -188,7 +188,7 @@ def compare(
     tell_faults(registry)
     with show_progress() as progress:
         from raceway.result import write_json
-        from raceway.studies.compare import compare as study
+        from raceway.studies.compare.study import compare as study
 
         stopped = None
         try:
@@ -221,7 +221,7 @@ def verify(only: str | None, every: bool, as_json: bool) -> int:
       raceway verify --only harris-table-6.1 --all
     """
     with show_progress() as progress:
-        from raceway.studies.verify import verify as study
+        from raceway.studies.verify.study import verify as study
 
         verification = study(only, progress)
     content = verification.as_dict()
@@ -231,7 +231,7 @@ def verify(only: str | None, every: bool, as_json: bool) -> int:
 
 def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     """Write the last good state of a run that failed, and say so in the error."""
-    from raceway.failure import save_failure
+    from raceway.commands.failure import save_failure
 
     try:
         paths = save_failure(error, scene, folder)

@@ -12,16 +12,16 @@ from typing import Any
 
 import attrs
 
-from raceway.combinations import refuse_what_cannot_run
-from raceway.elastic_plan import elastic_cost
-from raceway.mesh_plan import predicted_mesh
-from raceway.module_plan import Module, as_dicts, optional_modules
-from raceway.part_plan import decide_balls, decide_bodies, decide_motion, decide_output, decide_tilts
-from raceway.parts import Decisions, Part
-from raceway.patch_plan import patch_cost
-from raceway.recording import refuse_memory
+from raceway.planning.combinations import refuse_what_cannot_run
+from raceway.planning.decisions import decide_balls, decide_bodies, decide_motion, decide_output, decide_tilts
+from raceway.planning.elastic import elastic_cost
+from raceway.planning.mesh import predicted_mesh
+from raceway.planning.modules import Module, as_dicts, optional_modules
+from raceway.planning.parts import Decisions, Part
+from raceway.planning.patches import patch_cost
+from raceway.planning.recording import refuse_memory
+from raceway.planning.wall_time import predicted_wall
 from raceway.scene import Scene
-from raceway.wall_plan import predicted_wall
 
 
 @attrs.frozen

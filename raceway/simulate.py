@@ -14,7 +14,7 @@ from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
-from raceway.recording import STEPS_PER_TURN, recorded_per_turn
+from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn
 from raceway.statics import Equilibrium, settle
 
 OnProgress = Callable[[str, int, int], None]

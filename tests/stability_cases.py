@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 
-from raceway.studies.stability_case import Near, judged
+from raceway.studies.stability.case import Near, judged
 
 
 def hang(case, registry):

@@ -18,7 +18,7 @@ import click
 import pytest
 
 from raceway.cli import main
-from raceway.command_inputs import slug
+from raceway.commands.inputs import slug
 from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, python, raceway
 
 COMMANDS = sorted(main.commands)
@@ -104,7 +104,7 @@ assert "matplotlib.pyplot" not in sys.modules
 
 
 def test_pictures_without_matplotlib_name_the_extra(monkeypatch, tmp_path):
-    monkeypatch.setattr("raceway.command_inputs.find_spec", lambda name: None if name == "matplotlib" else find_spec(name))
+    monkeypatch.setattr("raceway.commands.inputs.find_spec", lambda name: None if name == "matplotlib" else find_spec(name))
     found = invoke("run", ARTICLE, "--pictures", "--out", tmp_path)
     assert found.exit_code == 2
     assert 'pip install "raceway[pictures]"' in found.stderr
@@ -228,7 +228,7 @@ def test_verify_passes_and_prints_its_rows():
 
 
 def test_verify_fails_with_code_1(monkeypatch):
-    from raceway.studies import verify as module
+    from raceway.studies.verify import study as module
 
     true = module.verify
 
@@ -363,7 +363,7 @@ def test_a_reader_that_goes_away_is_no_error():
 def test_progress_is_drawn_on_a_terminal_after_a_second_and_never_elsewhere():
     from rich.console import Console
 
-    from raceway.progress import ProgressBar
+    from raceway.commands.progress import ProgressBar
 
     terminal, file = Console(file=io.StringIO(), force_terminal=True, width=80), Console(file=io.StringIO())
     for console, patience in ((terminal, 0.01), (file, 0.01)):

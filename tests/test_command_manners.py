@@ -25,7 +25,7 @@ def test_ctrl_c_before_the_commands_are_loaded(monkeypatch, capsys):
 
 @pytest.mark.parametrize("as_json", [False, True])
 def test_ctrl_c_in_a_comparison_keeps_the_finished_rows(tmp_path, monkeypatch, as_json):
-    from raceway.studies import compare
+    from raceway.studies.compare import study as compare
 
     run, done = compare.run, []
 
@@ -58,7 +58,7 @@ def test_ctrl_c_before_the_first_row_writes_nothing(tmp_path, monkeypatch):
     def stop(*_given):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("raceway.studies.compare.run", stop)
+    monkeypatch.setattr("raceway.studies.compare.study.run", stop)
     found = invoke("compare", MINIMAL, "--vary", "load.axial=400,500", "--out", tmp_path)
     assert found.exit_code == 130
     assert not list(tmp_path.iterdir())

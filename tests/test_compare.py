@@ -13,12 +13,12 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.registry import default_registry
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
-from raceway.studies import compare as study
 from raceway.studies.axes import MOST_POINTS, parse_axes, points
-from raceway.studies.compare import compare, tables_at
-from raceway.studies.comparison import Comparison
-from raceway.studies.findings import Row
-from raceway.studies.phrases import percent
+from raceway.studies.compare import study
+from raceway.studies.compare.comparison import Comparison
+from raceway.studies.compare.findings import Row
+from raceway.studies.compare.phrases import percent
+from raceway.studies.compare.study import compare, tables_at
 
 SCENE = {
     "title": "test",

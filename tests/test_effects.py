@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from raceway.studies.effects import Factorial, corners_from_effects, factorial_effects, trend, whole_part
+from raceway.studies.compare.effects import Factorial, corners_from_effects, factorial_effects, trend, whole_part
 
 ROUNDING = 1e-13  # a few additions of numbers of order 1
 

@@ -162,7 +162,7 @@ def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path,
 
 
 def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
-    monkeypatch.setattr("raceway.elastic_plan.machine_bytes", lambda: 2.0**24)
+    monkeypatch.setattr("raceway.planning.elastic.machine_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
 

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from raceway.interrupt import Interrupts
+from raceway.commands.interrupt import Interrupts
 
 
 class Finalized:

@@ -10,7 +10,7 @@ import pytest
 from benchmarks import leave_out
 from raceway import load_scene
 from raceway.plan import make_plan
-from raceway.recording import recorded_per_turn
+from raceway.planning.recording import recorded_per_turn
 from raceway.run import run as compute
 from tests.command_line import ARTICLE, invoke, python
 

@@ -11,12 +11,12 @@ from raceway.errors import SceneError
 from raceway.registry import default_registry
 from raceway.run import run
 from raceway.scene_file import read_toml
-from raceway.studies import map as study_module
-from raceway.studies import map_workers
-from raceway.studies.map import study_map
-from raceway.studies.map_curves import SATURATED, curves, trend
-from raceway.studies.map_design import ANGLE, AXIAL, METHODS, SPEED, TILT, design
-from raceway.studies.map_point import small_signal
+from raceway.studies.map import study as study_module
+from raceway.studies.map import workers as map_workers
+from raceway.studies.map.curves import SATURATED, curves, trend
+from raceway.studies.map.design import ANGLE, AXIAL, METHODS, SPEED, TILT, design
+from raceway.studies.map.point import small_signal
+from raceway.studies.map.study import study_map
 from tests.command_line import EXAMPLES, invoke, raceway
 
 REGISTRY = default_registry()

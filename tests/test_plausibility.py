@@ -9,7 +9,7 @@ import pytest
 
 from raceway.errors import ConvergenceError
 from raceway.options import nearest
-from raceway.recording import samples_per_turn
+from raceway.planning.recording import samples_per_turn
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
 from raceway.simulate import _stride

@@ -7,8 +7,8 @@ import pytest
 
 from raceway.errors import RacewayError, SceneError
 from raceway.plugins.reports.store_picture import draw
-from raceway.studies.plotting import layout
-from raceway.studies.selection import select
+from raceway.studies.sweep.plotting import layout
+from raceway.studies.sweep.selection import select
 from tests.stores import SPEEDS, as_list, made, stiffness
 
 SPEED, LOAD = "excitation.speed_rpm", "load.axial"

@@ -14,11 +14,11 @@ from raceway.free_vibration import hann_line
 from raceway.motion import peak
 from raceway.registry import default_registry
 from raceway.scene_file import read_toml, scene_from_dict
-from raceway.studies import precision as module
 from raceway.studies.measured_run import measured
-from raceway.studies.precision import precision
-from raceway.studies.precision_design import make_design
-from raceway.studies.precision_result import THRESHOLDS
+from raceway.studies.precision import study as module
+from raceway.studies.precision.design import make_design
+from raceway.studies.precision.result import THRESHOLDS
+from raceway.studies.precision.study import precision
 from raceway.studies.row_store import RowStore, row_key
 from tests.command_line import ARTICLE, invoke
 

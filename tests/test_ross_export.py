@@ -13,11 +13,11 @@ import pytest
 
 from raceway.errors import RacewayError, SceneError
 from raceway.plugins.executors.serial import Serial
-from raceway.studies.coefficients import coefficients
-from raceway.studies.ross_file import NAMES, ross_file
-from raceway.studies.ross_reading import smoothed, through_points
-from raceway.studies.selection import select
+from raceway.studies.ross.coefficients import coefficients
+from raceway.studies.ross.file import NAMES, ross_file
+from raceway.studies.ross.reading import smoothed, through_points
 from raceway.studies.sweep import grid, prepare, sweep
+from raceway.studies.sweep.selection import select
 from tests.conftest import b7206c
 from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.errors import RacewayError, SceneError
-from raceway.studies.selection import LIST, keys_of, parse_at, select
+from raceway.studies.sweep.selection import LIST, keys_of, parse_at, select
 from tests.stores import SPEEDS, as_list, made, stiffness
 
 AXES = {"excitation.speed_rpm": SPEEDS, "load.axial": [2000.0, 400.0, 1000.0]}

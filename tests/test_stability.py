@@ -10,12 +10,12 @@ import pytest
 
 from raceway.errors import ConvergenceError, SceneError
 from raceway.registry import default_registry
-from raceway.studies import stability as study_module
-from raceway.studies.stability import stability
-from raceway.studies.stability_case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
-from raceway.studies.stability_catalogue import SCENES, catalogue
-from raceway.studies.stability_systems import pair_laws, transient
-from raceway.studies.stability_workers import in_parallel, rows_of
+from raceway.studies.stability import study as study_module
+from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
+from raceway.studies.stability.catalogue import SCENES, catalogue
+from raceway.studies.stability.study import stability
+from raceway.studies.stability.systems import pair_laws, transient
+from raceway.studies.stability.workers import in_parallel, rows_of
 from tests.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()

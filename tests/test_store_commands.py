@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError
 import numpy as np
 import pytest
 
-from raceway.studies import ross_file
+from raceway.studies.ross import file as ross_file
 from tests.command_line import invoke
 
 SCENE = """
@@ -109,7 +109,7 @@ def test_mistakes_end_with_one_message_and_exit_code_2(store, words, told):
 
 
 def test_a_missing_extra_is_named(store, monkeypatch):
-    from raceway import command_inputs
+    from raceway.commands import inputs as command_inputs
 
     monkeypatch.setattr(command_inputs, "find_spec", lambda _name: None)
     found = invoke("plot", store)

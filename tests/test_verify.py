@@ -12,9 +12,9 @@ from raceway import hookimpl
 from raceway.errors import ConvergenceError, SceneError
 from raceway.integrators.newmark import Newmark
 from raceway.registry import Registry
-from raceway.studies import verify as module
 from raceway.studies.reference import reference_cases
-from raceway.studies.verify import COMPUTED, Verification, verify
+from raceway.studies.verify import study as module
+from raceway.studies.verify.study import COMPUTED, Verification, verify
 
 
 def test_every_case_to_be_checked_is_computed_and_no_other():

@@ -14,7 +14,7 @@ from raceway.plugins.reports.pictures import ball_loads
 from raceway.plugins.reports.view import surfaces
 from raceway.plugins.reports.view.bearing import Bearing
 from raceway.run import run
-from raceway.studies.view_states import at_peak, at_rest, last_turn
+from raceway.studies.view.states import at_peak, at_rest, last_turn
 from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
 from tests.conftest import b7206c
 
@@ -147,7 +147,7 @@ def test_the_command_draws_without_a_display_and_in_silence(tmp_path):
 @pytest.mark.parametrize("package", ["pyvista", "matplotlib"])
 def test_a_missing_package_is_named_before_anything_is_computed(tmp_path, monkeypatch, package):
     real = importlib.util.find_spec
-    monkeypatch.setattr("raceway.view_commands.find_spec", lambda name: None if name == package else real(name))
+    monkeypatch.setattr("raceway.commands.view.find_spec", lambda name: None if name == package else real(name))
     found = invoke("view", MINIMAL, "--out", tmp_path)
     assert found.exit_code == 2
     assert package in found.output and "raceway[view]" in found.output

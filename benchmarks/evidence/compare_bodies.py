@@ -6,7 +6,7 @@ from pathlib import Path
 
 from benchmarks.evidence import Row
 from raceway.scene_file import read_toml
-from raceway.studies.compare import Comparison, compare
+from raceway.studies.compare.study import Comparison, compare
 
 TITLE = "What elastic rings and balls change: dynamic stiffness over speed, tilt and seat"
 SCENE = "examples/b7206_condensed.toml"

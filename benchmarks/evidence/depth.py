@@ -14,7 +14,7 @@ from raceway.core.lines import phasors, sharpest
 from raceway.model import Model
 from raceway.simulate import simulate
 from raceway.statics import settle
-from raceway.studies.verify import verify
+from raceway.studies.verify.study import verify
 
 TITLE = "The rigid model in full depth"
 BALLS, RUBBING = "python -m pytest tests/depth/test_orbiting.py", "python -m pytest tests/depth/test_friction.py"

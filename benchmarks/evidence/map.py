@@ -9,9 +9,9 @@ from typing import Any
 from benchmarks.evidence import Row, below, near
 from raceway.registry import default_registry
 from raceway.scene_file import read_toml
-from raceway.studies.map import Map, study_map
-from raceway.studies.map_design import ANGLE, AXIAL, SPEED, TILT, design
-from raceway.studies.map_page import write_data, write_pictures
+from raceway.studies.map.design import ANGLE, AXIAL, SPEED, TILT, design
+from raceway.studies.map.page import write_data, write_pictures
+from raceway.studies.map.study import Map, study_map
 
 TITLE = "Hardening or softening of k(speed): axial load, speed, tilt, contact angle"
 ROOT = Path(__file__).resolve().parents[2]

@@ -9,8 +9,8 @@ from typing import Any
 
 from benchmarks.evidence import Row, below
 from raceway.scene_file import read_toml
-from raceway.studies.precision import precision
-from raceway.studies.precision_result import EXACT, words_of
+from raceway.studies.precision.result import EXACT, words_of
+from raceway.studies.precision.study import precision
 
 TITLE = "Error against run time: the article's scene, rigid bodies"
 SCENE = "examples/b7206.toml"

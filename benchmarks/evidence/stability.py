@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.evidence import Row, below
-from raceway.studies.stability import stability
+from raceway.studies.stability.study import stability
 
 TITLE = "Stability: stiff and extreme cases"
 COMMAND = "raceway stability"

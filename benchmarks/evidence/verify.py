@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.evidence import Row
-from raceway.studies.verify import verify
+from raceway.studies.verify.study import verify
 
 TITLE = "Published reference cases"
 COMMAND = "raceway verify --all"

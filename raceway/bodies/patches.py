@@ -31,8 +31,8 @@ from raceway.core.plugin_kernel import plugin_kernel
 from raceway.core.signatures import LAW
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
-from raceway.patch_plan import nodes_of
 from raceway.plan import Plan
+from raceway.planning.patches import nodes_of
 from raceway.scene import Scene
 
 #: Size of elements far from the contacts [m] where the scene says nothing.

@@ -8,7 +8,7 @@ import pytest
 from raceway import SceneError
 from raceway.core.system import System
 from raceway.scene_file import scene_from_dict
-from raceway.studies.verify import verify
+from raceway.studies.verify.study import verify
 
 DISTANCE = 16e-3
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import attrs
 
-from raceway.combinations import BODIES
 from raceway.errors import RacewayError, SceneError
+from raceway.planning.combinations import BODIES
 from raceway.registry import default_registry
 from raceway.run import run
 from raceway.scene_file import scene_from_dict

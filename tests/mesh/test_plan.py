@@ -9,15 +9,15 @@ import attrs
 import pytest
 
 from raceway import load_scene, scene_from_dict
-from raceway.combinations import BODIES
+from raceway.commands.screen import plan_screen
 from raceway.errors import MeshError, PluginError, SceneError
-from raceway.mesh_plan import predicted_mesh
 from raceway.meshing import mesh_scene
 from raceway.plan import make_plan
+from raceway.planning.combinations import BODIES
+from raceway.planning.mesh import predicted_mesh
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.plugins.meshers.structured import Structured
-from raceway.screen import plan_screen
 from tests.command_line import EXAMPLES, MINIMAL, invoke
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
@@ -67,7 +67,7 @@ def test_rigid_bodies_have_no_mesh():
 
 
 def test_the_plan_shows_the_mesh(monkeypatch):
-    monkeypatch.setattr("raceway.elastic_plan.machine_bytes", lambda: float("inf"))
+    monkeypatch.setattr("raceway.planning.elastic.machine_bytes", lambda: float("inf"))
     found = json.loads(invoke("plan", EXAMPLES / "b7206_article_mesh.toml", "--json").stdout)
     assert found["mesh"]["cells"] == sum(body["cells"] for body in found["mesh"]["bodies"]) > 1_000_000
     shown = invoke("plan", EXAMPLES / "b7206_article_mesh.toml").stdout

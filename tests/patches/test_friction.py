@@ -12,7 +12,7 @@ from raceway.core.condensed.balls import Given
 from raceway.core.condensed.contact import Contact, Held
 from raceway.core.condensed.friction import Friction, Gripped
 from raceway.core.condensed.history import History
-from raceway.patch_plan import patch_cost
+from raceway.planning.patches import patch_cost
 from raceway.run import run
 from raceway.statics import settle
 from raceway.unused import unused

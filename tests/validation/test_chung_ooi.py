@@ -13,8 +13,8 @@ import pytest
 from raceway.core.bodies.impact import impact_system
 from raceway.registry import default_registry
 from raceway.studies.reference import reference_cases
-from raceway.studies.verify import verify
-from raceway.studies.verify_impacts import impact_of, measure, transient_integrators
+from raceway.studies.verify.impacts import impact_of, measure, transient_integrators
+from raceway.studies.verify.study import verify
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
 INTEGRATORS = [entry.name for entry in transient_integrators(default_registry())]

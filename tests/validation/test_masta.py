@@ -13,7 +13,7 @@ import pytest
 
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
-from raceway.studies.verify import verify
+from raceway.studies.verify.study import verify
 
 CASES = ("masta-dgbb-1", "masta-dgbb-3", "masta-dgbb-5")
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import pytest
 
-from raceway.studies.verify import verify
+from raceway.studies.verify.study import verify
 
 
 @pytest.mark.parametrize(

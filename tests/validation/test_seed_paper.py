@@ -6,7 +6,7 @@ each of two bearings.  Tolerance 1e-5: six printed digits.
 
 from __future__ import annotations
 
-from raceway.studies.verify import verify
+from raceway.studies.verify.study import verify
 
 
 def test_force_and_frequency_of_both_excitations():

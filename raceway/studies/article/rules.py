@@ -8,7 +8,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.studies.effects import trend
+from raceway.studies.compare.effects import trend
 
 #: A change below this over the whole range neither rises nor falls.
 LEVEL = 0.005

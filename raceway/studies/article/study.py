@@ -16,7 +16,6 @@ from raceway.registry import Registry, default_registry
 from raceway.result import without_nan
 from raceway.scene_file import scene_from_dict
 from raceway.simulate import OnProgress
-from raceway.studies import verify as verification
 from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import Verdict, verdicts
 from raceway.studies.article.curves import ROTATING, Curves
@@ -24,6 +23,7 @@ from raceway.studies.article.design import BODIES, LOADS, SPEEDS, TILTS, Design,
 from raceway.studies.article.runs import Row, Task, curve, work
 from raceway.studies.reference import reference_cases
 from raceway.studies.row_store import RowStore
+from raceway.studies.verify import study as verification
 
 PROCESSES = 2
 #: Speeds [r/min] and axial loads [N] of the rig, section 3.3 of the article.

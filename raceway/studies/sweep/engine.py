@@ -12,14 +12,14 @@ import attrs
 from raceway.contracts import Lost, Refused
 from raceway.errors import PluginError, RacewayError
 from raceway.plan import make_plan
-from raceway.section_plan import section_cost
+from raceway.planning.sections import section_cost
+from raceway.planning.wall_time import START_S
 from raceway.simulate import OnProgress
 from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.identity import differences, identity
 from raceway.studies.sweep.store import Store, exists, open_store, written
 from raceway.studies.sweep.survey import Survey, survey
 from raceway.studies.sweep.work import Work, registry_of
-from raceway.wall_plan import START_S
 
 #: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
 _LONGEST, _CHAIN_S = 16, 1.0

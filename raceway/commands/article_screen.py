@@ -1,0 +1,45 @@
+"""What a person sees of ``raceway study article``.  Prints nothing by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from raceway.commands.screen import written
+
+_COLOURS = {"holds": "green", "holds only for": "yellow", "does not hold": "red"}
+
+
+def article_screen(content: Mapping[str, Any], files: Sequence[str]) -> RenderableType:
+    """Verdicts, the check against an independent solver, failures and cost.
+
+    Parameters
+    ----------
+    content : what ``--json`` prints;  files : what was written
+    """
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for name in ("", "claim", "verdict"):
+        table.add_column(name, overflow="fold")
+    for one in content["verdicts"]:
+        words = Text(one["kind"], style=_COLOURS.get(one["kind"], "magenta"))
+        if one["region"]:
+            words.append(f" {one['region']}", style="default")
+        if one["failed"]:
+            words.append("; some runs failed or are unstable", style="magenta")
+        table.add_row(one["number"], escape(one["claim"]), words)
+    trends = content["quasi_static"]
+    good = sum(row["holds"] for row in trends)
+    cost = content["cost"]
+    lines = [
+        f"quasi-static trends equal to an independent solver's printed digits: {good} of {len(trends)}",
+        f"{len(content['rows'])} points, {content['failed']} failed; {cost['wall_s']:.0f} s, "
+        f"{cost['cpu_s']:.0f} s of processor time"
+        + (f"; {cost['reused']} of {cost['tasks']} pieces taken from earlier" if cost["reused"] else ""),
+    ]
+    return Group(Text(content["title"], style="bold"), table, *(Text(line, style="dim") for line in lines), *written(files))

@@ -1,0 +1,88 @@
+"""What commands share: options, progress, writing and showing results.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from raceway.commands.console import described, print_json
+from raceway.errors import RacewayError
+from raceway.registry import default_registry
+
+if TYPE_CHECKING:
+    from raceway.registry import Registry
+
+_scene = click.argument("scene", type=click.Path(path_type=Path, readable=False))
+_set = click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+
+out_folder = click.option(
+    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR",
+    help="Folder of the results [raceway-out/TITLE].",
+)  # fmt: skip
+
+plugin_files = click.option(
+    "--plugin", "plugins", multiple=True, type=click.Path(path_type=Path), metavar="FILE.py",
+    help="A one-off plug-in file, not installed; repeat for more.",
+)  # fmt: skip
+
+
+def registry_with(files: tuple[Path, ...]) -> Registry:
+    """The plug-ins of this process and those of one-off files.
+
+    Raises
+    ------
+    PluginError
+        A file that is missing, fails to import or adds nothing.
+    """
+    registry = default_registry()
+    for file in files:
+        registry.load_file(file)
+    return registry
+
+
+def on_scene(command: Callable[..., Any]) -> Callable[..., Any]:
+    """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
+    return _scene(_set(command))
+
+
+def common(command: Callable[..., Any]) -> Callable[..., Any]:
+    """--json and --debug, which every command takes; ``console`` reads both from the command line, too."""
+    command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
+    return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
+
+
+def show_progress(remaining: bool = False) -> Any:
+    from raceway.cache_folder import current_folder
+    from raceway.commands.progress import ProgressBar
+
+    folder = current_folder()
+    warm = folder.is_dir() and any(folder.iterdir())
+    return ProgressBar("starting" if warm else "compiling kernels (first run only)", remaining=remaining)
+
+
+def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:
+    """Write files; hand a failure back, so that what was computed is shown before it is reported."""
+    try:
+        files += [str(path) for path in write()]
+    except RacewayError as error:
+        return error
+    return None
+
+
+def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[Any], Any]) -> None:
+    """JSON or tables on standard output; then the failure of writing them, if there was one."""
+    if as_json:
+        print_json(content if failed is None else {**content, "errors": described(failed)[1]})
+        if failed is not None:
+            raise click.exceptions.Exit(failed.exit_code)
+        return
+    from rich.console import Console
+
+    from raceway.commands import screen as tables
+
+    Console(highlight=False).print(screen(tables), crop=False)
+    if failed is not None:
+        raise failed

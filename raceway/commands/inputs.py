@@ -1,0 +1,122 @@
+"""What commands start from: scenes, result folders, plug-ins.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+import os
+import re
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from raceway.commands.console import warn
+from raceway.errors import Mistake, RacewayError, SceneError
+
+if TYPE_CHECKING:
+    from raceway.registry import Registry
+    from raceway.scene import Scene
+
+
+def slug(title: str) -> str:
+    """A folder's name from a title: letters, digits, dots and dashes, at most 80."""
+    return re.sub(r"[^A-Za-z0-9._]+", "-", title)[:80].strip("-._") or "scene"
+
+
+def faults(registry: Registry) -> list[str]:
+    """Plug-ins that could not be loaded, and names that two of them claim; a sentence each."""
+    found = [str(fault) for fault in registry.faults]
+    for kind, name in registry.shadowed():
+        owners = " and ".join(f"{e.plugin.__qualname__} of {e.distribution}" for e in registry.entries[kind, name])
+        found.append(
+            f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}. Remove one, or name it in "
+            "RACEWAY_DISABLE"
+        )
+    return found
+
+
+def tell_faults(registry: Registry) -> None:
+    """Plug-ins that the scene does not use are no reason to stop."""
+    for text in faults(registry):
+        warn(f"{text} (not used here)")
+
+
+def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[dict[str, Any], list[Mistake]]:
+    """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
+    from raceway.scene_file import parse_change, read_toml, with_paths, with_value
+
+    if scene.is_dir():
+        inside = sorted(str(p) for p in scene.glob("*.toml"))
+        hint = f"; scenes in it: {', '.join(inside[:5])}" if inside else " without a scene (*.toml) in it"
+        raise SceneError.at(str(scene), None, f"is a folder{hint}")
+    tables = read_toml(scene)
+    mistakes: list[Mistake] = []
+    for change in changes:
+        try:
+            tables = with_value(tables, *parse_change(change))
+        except SceneError as error:
+            mistakes += [Mistake(f"--set {m.path}", m.value, m.message) for m in error.mistakes]
+    tables.setdefault("title", scene.stem)
+    return with_paths(tables, scene.parent, registry), mistakes
+
+
+def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
+    """A scene from its file and the changes.
+
+    Raises
+    ------
+    SceneError
+        With the mistakes of both.
+    """
+    from raceway.scene_file import scene_from_dict
+
+    tables, mistakes = changed_tables(scene, changes, registry)
+    try:
+        loaded = scene_from_dict(tables, registry)
+    except SceneError as error:
+        raise SceneError([*mistakes, *error.mistakes]) from None
+    if mistakes:
+        raise SceneError(mistakes)
+    return loaded
+
+
+def writable(folder: Path) -> Path:
+    """Refuse a folder that cannot be written before anything is computed; make nothing yet."""
+    place = folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    if not place.is_dir():
+        raise RacewayError(
+            f"`{folder}` cannot be the folder of the results: `{place}` is a file. Choose another with --out."
+        )
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise RacewayError(f"`{folder}` cannot be written: no permission in `{place}`. Choose another folder with --out.")
+    if not folder.exists():
+        # A folder that cannot be made is refused now; an empty one is taken away again.
+        try:
+            folder.mkdir(parents=True)
+            folder.rmdir()
+        except OSError as why:
+            raise RacewayError(
+                f"`{folder}` cannot be made: {why.strerror or why}. Choose another folder with --out."
+            ) from None
+    return folder
+
+
+def require_matplotlib(otherwise: str) -> None:
+    if find_spec("matplotlib") is None:
+        raise RacewayError(f'pictures need matplotlib: pip install "raceway[pictures]", or {otherwise}.')
+
+
+def has_netcdf() -> bool:
+    """Whether labelled results can be written; says what is missing."""
+    missing = [name for name in ("xarray", "h5netcdf", "h5py") if find_spec(name) is None]
+    if missing:
+        warn(f'no results.nc: it needs {", ".join(missing)}, pip install "raceway[sweep]"; points.sqlite holds everything')
+    return not missing
+
+
+def has_matplotlib() -> bool:
+    """Whether pictures can be drawn; says what is missing where they are no more than the default."""
+    there = find_spec("matplotlib") is not None
+    if not there:
+        warn('no picture: it needs matplotlib, pip install "raceway[pictures]"')
+    return there

@@ -1,0 +1,156 @@
+"""Commands of the studies: ``raceway precision``, ``raceway stability``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from raceway.commands.console import warn
+from raceway.commands.frame import attempt, common, plugin_files, registry_with, show, show_progress
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
+from raceway.errors import ConvergenceError, SceneError
+
+_RESULTS = Path("raceway-out")
+
+
+@click.command(short_help="Error against run time: which setting is good enough.")
+@click.argument("scene", type=click.Path(path_type=Path, readable=False))
+@click.option("--vary", multiple=True, metavar="A.B=X,Y", help="Axis; all combinations are run. Without: a default design.")
+@click.option("--reference", multiple=True, metavar="A.B=C", help="Key of the reference; found by itself without.")
+@click.option("--repeats", type=click.IntRange(1, 1000), default=3, show_default=True, help="Runs of each setting.")
+@click.option(
+    "--limit", type=click.FloatRange(min=0.0, min_open=True), default=30.0, show_default=True, metavar="SECONDS",
+    help="Leave out what is predicted to take longer.",
+)  # fmt: skip
+@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+@click.option(
+    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/TITLE-precision]."
+)
+@click.option("--pictures/--no-pictures", default=True, help="Draw error against run time as PNG (default).")
+@plugin_files
+@common
+def precision(
+    scene: Path,
+    vary: tuple[str, ...],
+    reference: tuple[str, ...],
+    repeats: int,
+    limit: float,
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Run a scene with many settings and say what each costs and how far it is from a reference with a known bound.
+
+    Writes precision.json, precision.md and precision.png. Finished rows are kept in DIR/precision-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway precision examples/b7206.toml --vary integrator.kind=newmark,central_difference \\
+          --vary integrator.steps_per_turn=45,90,180,360
+    """
+    registry = registry_with(plugins)
+    tables, mistakes = changed_tables(scene, changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    folder = writable(out or _RESULTS / f"{slug(str(tables['title']))}-precision")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    kept = folder / "precision-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.studies.precision.study import precision as study
+
+        try:
+            found = study(tables, vary, reference, repeats, limit, kept, registry, progress)
+        except KeyboardInterrupt:
+            tell_kept("rows", kept)
+            raise
+    content, files = found.as_dict(), list[str]()
+    failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
+    if failed is None:
+        failed = verdict(content, found.converged, bool(reference))
+    show(content, as_json, failed, lambda s: s.precision_screen(content["title"], found.table(), content["words"], files))
+    return 0
+
+
+@click.command(short_help="Stiff and extreme cases: what must hold, holds.")
+@click.argument("scene", type=click.Path(path_type=Path, readable=False), required=False)
+@click.option("--only", metavar="WORDS", help="Cases whose name holds these words, instead of all.")
+@click.option(
+    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
+)
+@click.option("--all", "every", is_flag=True, help="Show every row, not only a line a case.")
+@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+@click.option(
+    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/stability]."
+)
+@plugin_files
+@common
+def stability(
+    scene: Path | None,
+    only: str | None,
+    processes: int,
+    every: bool,
+    changes: tuple[str, ...],
+    out: Path | None,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
+
+    With SCENE, that scene is put through the cases that suit any scene. Writes stability.json and stability.md. Finished
+    cases are kept in DIR/stability-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway stability --only chatter --all
+    """
+    registry = registry_with(plugins)
+    tables = None
+    if scene is not None:
+        from raceway.scene_file import scene_from_dict
+
+        tables, mistakes = changed_tables(scene, changes, registry)
+        if mistakes:
+            raise SceneError(mistakes)
+        scene_from_dict(tables, registry)
+    elif changes:
+        raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
+    name = "stability" if tables is None else f"{slug(str(tables['title']))}-stability"
+    folder = writable(out or _RESULTS / name)
+    tell_faults(registry)
+    kept = folder / "stability-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.studies.stability.study import stability as study
+
+        try:
+            found = study(tables, only, processes, kept, registry, plugins, progress)
+        except KeyboardInterrupt:
+            tell_kept("cases", kept)
+            raise
+    content, files = found.as_dict(), list[str]()
+    failed = attempt(lambda: found.write(folder), files) or found.fault
+    show(content, as_json, failed, lambda s: s.stability_screen(content, every, files))
+    return 1 if found.failed else 0
+
+
+def tell_kept(what: str, file: Path) -> None:
+    """Where a study that was stopped goes on, if anything was finished."""
+    if file.is_file():
+        warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")
+
+
+def verdict(content: dict, converged: bool, given: bool) -> ConvergenceError | SceneError | None:
+    """What makes a finished study worthless, after it has been shown."""
+    rows = content["rows"]
+    known = [row for row in rows if row["error"] is not None]
+    if given and known and all(row["at_bound"] for row in known):
+        message = "is not more accurate than the rows: make it finer, or leave it out and let the study find one"
+        return SceneError.at("--reference", None, message)
+    if not converged:
+        reasons = [row["reason"] for row in rows if row["reason"]]
+        why = f"; the first reason: {reasons[0]}" if reasons else ": all errors are above 1 %"
+        return ConvergenceError(f"no setting converged{why}")
+    return None

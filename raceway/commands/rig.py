@@ -1,0 +1,149 @@
+"""``raceway study rig`` and ``raceway identify``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from raceway.commands.frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, writable
+from raceway.errors import SceneError
+
+_RESULTS = Path("raceway-out")
+
+
+@click.command(short_help="A test rig's signals, and the bearing read back from them.")
+@on_scene
+@out_folder
+@click.option("--signals/--no-signals", default=True, help="Write the signals as CSV (default).")
+@click.option("--pictures/--no-pictures", default=True, help="Write figures as PNG and the page rig.html (default).")
+@plugin_files
+@common
+def rig(
+    scene: Path,
+    changes: tuple[str, ...],
+    out: Path | None,
+    signals: bool,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
+
+    The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
+    Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads. Exit code 1 when a point has no motion.
+
+    \b
+    Example:
+      raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03
+    """
+    from raceway.scene_file import rig_of
+
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    own = rig_of(loaded)
+    folder = writable(out or _RESULTS / f"{slug(loaded.title)}-rig")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.result import write_json
+        from raceway.studies.rig.study import study
+
+        found = study(loaded, own, registry, progress)
+    content, files = found.as_dict(), list[str]()
+    failed = attempt(lambda: [write_json(content, folder / "rig.json")], files)
+    if pictures and failed is None:
+        from raceway.studies.rig.page import write_page
+
+        failed = attempt(lambda: write_page(found, folder), files)
+    if signals and failed is None:
+        written = list[str]()
+        failed = attempt(lambda: found.write_signals(folder), written)
+        files += [f"{len(written)} records, signals-*.csv and slow-roll-*.csv"] if written else []
+    from raceway.commands.rig_screen import rig_screen
+
+    show(content, as_json, failed, lambda _: rig_screen(content, files))
+    return 1 if found.failed else 0
+
+
+@click.command(short_help="K and C of a bearing from measured signals.")
+@click.argument("signals", type=click.Path(path_type=Path, readable=False))
+@click.option(
+    "--scene", required=True, type=click.Path(path_type=Path, readable=False), metavar="SCENE",
+    help="The rig: a scene with a table [rig]; load.axial as in the measurement.",
+)  # fmt: skip
+@click.option(
+    "--slow-roll", type=click.Path(path_type=Path, readable=False), metavar="FILE.csv",
+    help="Signals at a low speed, whose run-out is subtracted.",
+)  # fmt: skip
+@click.option("--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [um] and angle from the mark [deg].")
+@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+@click.option("--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/SIGNALS].")
+@click.option("--pictures", is_flag=True, help="Also draw signals, spectrum and orbits as PNG.")
+@plugin_files
+@common
+def identify(
+    signals: Path,
+    scene: Path,
+    slow_roll: Path | None,
+    run_out: str | None,
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Identify a bearing's K and C, with their uncertainty, from the signals of a sensor beside it.
+
+    SIGNALS is a CSV file whose first line names its columns: time_s, y_um, z_um and key (once-per-turn probe) or speed_rpm.
+    Samples may be uneven and the speed may change by some per cent. Writes identify.json.
+
+    \b
+    Example:
+      raceway study rig examples/test_rig.toml --out rig
+      raceway identify rig/signals-13000rpm-400N.csv --scene examples/test_rig.toml \\
+          --set load.axial=400 --slow-roll rig/slow-roll-13000rpm-400N.csv
+    """
+    from raceway.scene_file import rig_of
+
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    own, vector = rig_of(loaded), _vector(run_out)
+    if vector is not None and slow_roll is not None:
+        raise SceneError.at("--run-out", run_out, "the slow roll tells it already: leave one of them out")
+    folder = writable(out or _RESULTS / f"{slug(signals.stem)}-identified")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.result import write_json
+        from raceway.studies.measured.from_files import from_files
+
+        found = from_files(signals, loaded, own, registry, slow_roll, vector, progress)
+    content, files = {"title": loaded.title, "file": str(signals), **found.as_dict()}, list[str]()
+    failed = attempt(lambda: [write_json(content, folder / "identify.json")], files)
+    if pictures and failed is None:
+        from raceway.studies.measured.figures import write_figures
+
+        failed = attempt(lambda: write_figures(found, folder), files)
+    from raceway.commands.rig_screen import identify_screen
+
+    show(content, as_json, failed, lambda _: identify_screen(content, files))
+    return 0
+
+
+def _vector(text: str | None) -> tuple[float, float] | None:
+    """Amplitude [m] and angle [deg] from ``UM,DEG``."""
+    if text is None:
+        return None
+    from math import isfinite
+
+    try:
+        amplitude, angle = (float(word) for word in text.split(","))
+    except ValueError:
+        amplitude, angle = float("nan"), 0.0
+    if not (isfinite(amplitude) and isfinite(angle) and amplitude >= 0.0):
+        raise SceneError.at(
+            "--run-out", text, "must be an amplitude of at least 0 um and an angle in deg, for instance 5.0,70"
+        )
+    return 1e-6 * amplitude, angle

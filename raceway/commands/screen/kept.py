@@ -1,0 +1,29 @@
+"""What ``raceway cache`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any
+
+from rich.console import RenderableType
+
+from raceway.commands.screen.text import sections
+
+
+def cache_screen(found: Mapping[str, Any]) -> RenderableType:
+    rows = [("Compiled kernels", "", f"in {found['root']}")]
+    for folder in found["folders"]:
+        size = f"{folder['bytes'] / 2**20:.1f} MiB"
+        rows.append((folder["name"], size, f"{folder['kernels']} kernels{', current' if folder['current'] else ''}"))
+    if not any(folder["current"] for folder in found["folders"]):
+        rows.append((found["current"], "empty", "current: the next run compiles, which takes some ten seconds"))
+    total, most = found["arrays_bytes"] / 2**20, found["arrays_limit_bytes"] / 2**20
+    rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {found['arrays_root']}"))
+    for entry in found["arrays"]:
+        used = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
+        remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {used}"
+        rows.append((entry["kind"], f"{entry['bytes'] / 2**20:.2f} MiB", remark))
+    if not found["arrays"]:
+        rows.append(("none", "empty", "a condensed bearing makes them in seconds"))
+    return sections(rows)

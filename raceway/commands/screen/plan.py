@@ -1,0 +1,56 @@
+"""What ``raceway plan`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from raceway.commands.screen.text import Row, grouped, number, sections
+
+
+def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
+    """What would be built, what not, and the predictions."""
+    step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
+    rows = [
+        ("Size and cost, predicted", "", ""),
+        ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
+        ("time step", step, f"{plan['predicted_steps']} steps"),
+        ("wall time", number(plan["predicted_wall_s"], "s", 2), "with compiled kernels in the cache"),
+    ]
+    if plan["mesh"] is not None:
+        rows += _mesh_rows(plan["mesh"])
+    unused = [
+        {"part": one["module"].removeprefix("raceway.core."), "why": one["why"]}
+        for one in plan["modules"]
+        if not one["needed"]
+    ]
+    parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"])]
+    parts += [_reasons("Modules not imported, hence not compiled", unused), sections(rows)]
+    return Group(Text(title, style="bold"), *parts)
+
+
+def _mesh_rows(mesh: Mapping[str, Any]) -> list[Row]:
+    """Predicted cells and memory of all bodies and of each; balls in one line."""
+    rows: list[Row] = [
+        ("Mesh, predicted", "", ""),
+        ("hexahedra", str(mesh["cells"]), f"{mesh['bytes'] / 2**20:.4g} MiB at the peak while they are made"),
+    ]
+    for name, bodies in grouped({body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}):
+        cells, size = bodies
+        rows.append((name, str(cells), f"{size / 2**20:.3g} MiB" + (" each" if name.startswith("balls (") else "")))
+    return rows
+
+
+def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(width=32)
+    table.add_column(style="dim", overflow="fold")
+    for item in items:
+        table.add_row(escape(item["part"]), escape(item["why"]))
+    return Group(Text(heading, style="bold"), Padding(table, (0, 0, 0, 2)))

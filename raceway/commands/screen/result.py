@@ -1,0 +1,219 @@
+"""One run: what ``raceway run`` prints, from the content of result.json."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import acos, degrees, pi
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from raceway.commands.screen.text import Row, number, sections, tilt_words, written
+
+_LEFT_OUT_SHOWN = 3
+#: Columns of numbers in the table of ``verify`` and their significant digits.
+_VERIFIED = (("reference", 5), ("computed", 5), ("error", 2), ("tolerance", 2))
+
+
+def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableType:
+    """One run.
+
+    Parameters
+    ----------
+    result : content of result.json;  files : what was written
+    """
+    rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_bodies(result.get("model"))]
+    rows += _cost(result["cost"])
+    rows += _stability(result["stability"])
+    parts: list[RenderableType] = [
+        Text(result["title"], style="bold"),
+        Text(_bearing(result["scene"]), style="dim"),
+        sections(rows),
+    ]
+    left_out = result["plan"]["left_out"]
+    shown = "; ".join(f"{p['part']} ({p['why']})" for p in left_out[:_LEFT_OUT_SHOWN])
+    more = len(left_out) - _LEFT_OUT_SHOWN
+    parts.append(Text(f"left out: {shown}{f'; and {more} more, see raceway plan' if more > 0 else ''}", style="dim"))
+    parts += [Text(f"warning: {text}", style="yellow") for text in result["warnings"]]
+    parts += written(files)
+    return Group(*parts)
+
+
+def _bearing(scene: Mapping[str, Any]) -> str:
+    b, load = scene["bearing"], scene["load"]
+    angle = f"{b['contact_angle_deg']:g} deg" if b.get("contact_angle_deg") else _angle_of_clearance(b)
+    balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
+    words = [
+        f"{b.get('preset', 'own geometry')}: {balls}, contact angle {angle}",
+        f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}",
+        f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",
+    ]
+    if any(load["moment"]):
+        words[-1] += f", moment {load['moment'][0]:g}, {load['moment'][1]:g} N m"
+    return "\n".join(words)
+
+
+def _angle_of_clearance(b: Mapping[str, Any]) -> str:
+    distance = (b["conformity_inner"] + b["conformity_outer"] - 1.0) * b["ball_diameter"]
+    clearance = b.get("radial_clearance") or 0.0
+    return f"{degrees(acos(1.0 - clearance / (2.0 * distance))):.2f} deg, from the clearance" if clearance else "0 deg"
+
+
+def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
+    found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
+    moved, k = found["displacement"], found["stiffness"]
+    balls = list(enumerate(found["balls"]))
+    rows = [
+        ("Equilibrium under the constant loads", "", ""),
+        ("displacement x", number(1e6 * moved["x"], "µm"), "axial, seats the bearing"),
+        ("displacement y, z", f"{_small(moved['y'])}, {_small(moved['z'])} µm", "radial"),
+    ]
+    if tilt != "locked":
+        tilts = ", ".join(_small(moved[name]) for name in ("tilt_y", "tilt_z"))
+        rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
+    for word, pick in (("most", max), ("least", min)):
+        index, ball = pick(balls, key=lambda item: item[1]["load_inner_n"])
+        angle = ball["contact_angle_inner_deg"]
+        at = f"ball {index} at {ball['azimuth_deg']:.4g} deg"
+        pressure = f"{1e-6 * ball['peak_pressure_inner_pa']:.0f} MPa, {angle:.2f} deg" if angle is not None else "open"
+        rows.append((f"{word} loaded ball", number(ball["load_inner_n"], "N"), f"{at}; inner race {pressure}"))
+    rows.append(("tangent kxx", number(1e-6 * k[0][0], "N/µm"), "axial, all other motions held"))
+    rows.append(("tangent kyy", number(1e-6 * k[1][1], "N/µm"), "radial, tilt and all other motions held"))
+    if tilt != "locked":
+        rows.append((f"kyy, {tilt_words(tilt)}", number(1e-6 * _condensed(k, tilt), "N/µm"), "tilts follow, x and z held"))
+    return rows
+
+
+def _small(metres: float) -> str:
+    """Micro-units; rounding noise of a symmetric state is shown as 0."""
+    return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
+
+
+def _condensed(k: Sequence[Sequence[float]], tilt: float | str) -> float:
+    """Radial tangent with the tilts following: kyy - k_yt (k_tt + k_shaft)^-1 k_ty."""
+    shaft = tilt if isinstance(tilt, float) else 0.0
+    a, b, c, d = k[3][3] + shaft, k[3][4], k[4][3], k[4][4] + shaft
+    determinant = a * d - b * c
+    along = k[1][3] * (d * k[3][1] - b * k[4][1]) + k[1][4] * (a * k[4][1] - c * k[3][1])
+    return k[1][1] - along / determinant if determinant else k[1][1]
+
+
+def _identification(result: Mapping[str, Any]) -> list[Row]:
+    found = result["identification"]
+    if found is None:
+        return [("Dynamic stiffness", "", ""), ("none", "-", "static scene: add a table [excitation] to identify one")]
+    z, orbit = found["dynamic_stiffness"], found["orbit"]
+    excited = result["scene"]["excitation"]["kind"]
+    mass = found["mass_used_kg"]
+    return [
+        (f"Dynamic stiffness at {found['speed_rpm']:g} r/min, {tilt_words(found['tilt'])}", "", ""),
+        (f"  {found['definition']}", "", ""),
+        ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
+        ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
+        _resolved("Z imaginary", 1e-6 * z["imag"], _times(found, z), "N/µm", "w C"),
+        ("|Z|", number(1e-6 * z["abs"], "N/µm"), ""),
+        ("equivalent stiffness K", number(1e-6 * found["equivalent_stiffness"], "N/µm"), f"Re Z + m w^2, m = {mass:.4g} kg"),
+        _resolved(
+            "equivalent damping C", found["equivalent_damping"], found["equivalent_damping_error"], "N s/m", "Im Z / w"
+        ),
+        _resolved(
+            "phase lag", found["phase_lag_deg"], found["phase_lag_error_deg"], "deg", "of the displacement behind the force"
+        ),
+        ("orbit, semi-axes", f"{1e6 * orbit['major_m']:.4g} x {1e6 * orbit['minor_m']:.4g} µm", "of the 1x line"),
+    ]
+
+
+def _times(found: Mapping[str, Any], z: Mapping[str, float]) -> float | None:
+    """Absolute error of Z [N/um]."""
+    error = found["phase_lag_error_deg"]
+    return None if error is None else 1e-6 * z["abs"] * error * pi / 180.0
+
+
+def _resolved(name: str, value: float, error: float | None, unit: str, remark: str) -> Row:
+    """A small part of Z beside its absolute error; what is smaller than its error is not shown as a number."""
+    if error is None:
+        return name, number(value, unit, 3), remark
+    if abs(value) < error:
+        return name, "not resolved", f"below its error of {number(error, unit, 2)}; {remark}"
+    return name, number(value, unit, 3), f"+- {number(error, unit, 2)}; {remark}"
+
+
+def _error(error: Mapping[str, Any]) -> list[Row]:
+    how = error["how"]
+    rows = [("Relative error of Z", "", "")]
+    for name in ("total", "time_step", "transient", "identification", "mesh", "contact"):
+        value = error.get(name)
+        rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", how.get(name, "")))
+    return rows
+
+
+def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
+    """What elastic bodies change, how good their mesh is, and what their inertia would; each where it is told."""
+    if not model:
+        return []
+    rows = [("Elastic bodies", "", str(model.get("bodies", "")))]
+    elasticity = model.get("elasticity")
+    if elasticity is not None:
+        told = ", ".join("-" if elasticity[i][i] is None else f"{100 * elasticity[i][i]:+.1f} %" for i in (0, 1))
+        rows.append(("kxx, kyy changed by", told, "against rigid rings and balls under the same loads"))
+    taken = model.get("compliance")
+    if taken is not None:
+        values = ", ".join(f"{1e9 * taken[name]:.2f}" for name in ("inner_m_per_n", "outer_m_per_n"))
+        angle = f"inner, outer contact at {taken['contact_angle_deg']:.1f} deg, beyond Hertz"
+        rows.append(("structural compliance", f"{values} nm/N", angle))
+    mesh = model.get("mesh") or {}
+    along, change = mesh.get("nodes_per_semi_axis"), mesh.get("change_from_coarser")
+    if along is not None:
+        how = "not estimated" if change is None else f"{mesh['how']}: {change:.1e}"
+        rows.append(("nodes per semi-axis", number(along, digits=3), how))
+    inertia = model.get("inertia")
+    if inertia is not None:
+        rows += _inertia(inertia)
+    return rows
+
+
+def _inertia(inertia: Mapping[str, Any]) -> list[Row]:
+    """The slowest motion that is taken to follow at once."""
+    names = {
+        "inner_supported": "inner ring",
+        "outer_supported": "outer ring",
+        "ball_along_grooves": "ball along its grooves",
+    }
+    known = {word: name for name, word in names.items() if inertia.get(f"{name}_hz") is not None}
+    if not known:
+        return []
+    slowest = min(known, key=lambda word: inertia[f"{known[word]}_hz"])
+    error = inertia[f"{known[slowest]}_error"]
+    moves = " is part of the motion" if slowest.startswith("ball") and inertia.get("ball_along_grooves_in_motion") else ""
+    costs = moves if error is None else f" follows at once, which is off by (w / w1)^2 = {error:.1e}"
+    rings = min(inertia[f"{known[word]}_hz"] for word in known if word != "ball along its grooves")
+    remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
+    return [("slowest own motion", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
+
+
+def _cost(cost: Mapping[str, Any]) -> list[Row]:
+    memory = cost["peak_memory_bytes"] / 2**20
+    kept = (
+        "once: kept for the next run (raceway cache)" if cost["compile_s"] else "kernels were in the cache (raceway cache)"
+    )
+    return [
+        ("Cost", "", ""),
+        (
+            "wall time",
+            number(cost["wall_s"], "s", 3),
+            f"{cost['steps']} steps, {memory:.0f} MiB, {_threads(cost['threads'])}",
+        ),
+        ("compiling, apart", number(cost["compile_s"], "s", 3), kept),
+    ]
+
+
+def _threads(count: int) -> str:
+    return f"{count} thread{'' if count == 1 else 's'}"
+
+
+def _stability(found: Mapping[str, Any]) -> list[Row]:
+    limit, drift = found["critical_time_step_s"], found["energy_drift"]
+    words = [] if limit is None else [f"explicit limit {limit:.3g} s"]
+    words += [] if drift is None else [f"energy drift {drift:.1e}"]
+    return [("Stability", "", ""), ("status", found["status"], ", ".join(words) or "no motion was integrated")]

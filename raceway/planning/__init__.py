@@ -1,0 +1,1 @@
+"""What a scene needs, what is left out and why, and what it will cost; ``raceway.plan`` puts it together."""

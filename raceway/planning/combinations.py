@@ -1,0 +1,134 @@
+"""Combinations that cannot run, each with the reason and the remedy: all at once, before anything is built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+
+from raceway.errors import Mistake, SceneError
+from raceway.planning.elastic import elastic_faults, memory_faults
+from raceway.planning.mesh import mesh_faults
+from raceway.planning.patches import patch_faults
+from raceway.planning.sections import seat_faults, section_faults
+from raceway.ring import ring_inertia
+from raceway.scene import Scene
+
+#: Kinds of bodies that this version can compute.
+BODIES = ("rigid", "condensed", "elastic")
+
+
+def refuse_what_cannot_run(scene: Scene) -> None:
+    """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
+    faults: list[Mistake] = []
+
+    def refuse(bad: bool, path: str, value: Any, why: str) -> None:
+        if bad:
+            faults.append(Mistake(path, value, why))
+
+    kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
+    listed = " or ".join(f"'{kind}'" for kind in BODIES)
+    refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
+    if scene.bodies.kind == "elastic":
+        faults += elastic_faults(scene)
+    faults += mesh_faults(scene) or (memory_faults(scene) if scene.bodies.kind == "elastic" and not faults else [])
+    rigid, condensed = scene.bodies.kind == "rigid", scene.bodies.kind == "condensed"
+    if condensed:
+        _refuse_condensed(scene, refuse)
+        faults += seat_faults(scene)
+    law = contact.law
+    if contact.discretisation not in law.discretisations:
+        choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
+        faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
+    elif contact.discretisation == "nodal" and condensed:
+        faults += patch_faults(scene) or section_faults(scene)
+    elif condensed:
+        faults += section_faults(scene)
+    elif contact.discretisation == "nodal" and rigid:
+        why = "rigid bodies have no surface points: use 'resultant'"
+        faults.append(Mistake("contact.discretisation", "nodal", why))
+    need_bore = "needs the bearing's `bore`"
+    refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
+    alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
+    why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
+    refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
+    refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
+    for seat in ("outer_seat", "inner_seat"):
+        value = getattr(scene.supports, seat)
+        stiff = rigid and value != "rigid"
+        refuse(stiff, f"supports.{seat}", value, "rigid rings have rigid seats: leave it out, or bodies.kind = 'condensed'")
+    if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
+        faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
+    if scene.excitation is not None:
+        _refuse_identifier(scene, refuse)
+        if getattr(method, "steady", False) and "record" in scene.identifier.method.needs:
+            _refuse_steady(scene, refuse)
+    if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
+        mass, tilt = ring_inertia(scene)
+        if scene.rotor.mass + mass <= 0.0:
+            why = "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own"
+            faults.append(Mistake("rotor.mass", scene.rotor.mass, why))
+        if scene.supports.tilt != "locked" and scene.rotor.transverse_inertia + tilt <= 0.0:
+            why = "free tilts need an inertia: set it, or give bearing.bore and bearing.width"
+            faults.append(Mistake("rotor.transverse_inertia", scene.rotor.transverse_inertia, why))
+    if faults:
+        raise SceneError(faults)
+
+
+def _refuse_condensed(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+    """What condensed rings need: dimensions of bodies of revolution, and the elements of the structured mesher."""
+    if scene.mesh is not None:
+        why = "condensed bodies are bodies of revolution, swept from their sections: use mesh.kind = 'structured'"
+        refuse(scene.mesh.name != "structured", "mesh.kind", scene.mesh.name, why)
+    for key in ("bore", "outer_diameter", "width"):
+        value = getattr(scene.bearing, key)
+        refuse(value is None, f"bearing.{key}", value, "is needed by elastic rings: give it, or take bodies.kind = 'rigid'")
+
+
+def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+    """What the identifier needs of the excitation."""
+    needs, kind = scene.identifier.method.needs, scene.identifier.kind
+    name, excitation = scene.excitation.name, scene.excitation
+    changing = excitation.period_s is None and getattr(excitation, "first_speed_rpm", None) is not None
+    why = f"needs one frequency, but excitation '{name}' changes its speed: use 'order_tracking'"
+    refuse("period" in needs and changing, "identifier.kind", kind, why)
+    why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
+    refuse("phase" in needs and not hasattr(excitation, "phase"), "identifier.kind", kind, why)
+    why = f"runs several speeds, but excitation '{name}' has no key `speed_rpm` or changes its speed"
+    several = "speeds" in needs
+    unable = changing or not hasattr(excitation, "speed_rpm")
+    refuse(several and unable, "identifier.kind", kind, why)
+    if several and not unable:
+        for rpm in scene.identifier.method.speeds_rpm:
+            why = f"runs several speeds, but excitation '{name}' does not repeat every turn at {rpm:g} r/min"
+            bad = attrs.evolve(excitation, speed_rpm=float(rpm)).period_s is None
+            refuse(bad, "identifier.kind", kind, why)
+            if bad:
+                break
+
+
+def _refuse_steady(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+    """What has no motion that repeats itself every turn and depends on the force alone."""
+    kind, excitation = scene.integrator.kind, scene.excitation
+    other = "use 'newmark'"
+    why = f"needs a force that repeats every turn, which excitation '{excitation.name}' does not: {other}"
+    refuse(excitation.period_s is None, "integrator.kind", kind, why)
+    why = f"contact.friction: where a contact sticks depends on how the motion began, there is no single one: {other}"
+    refuse(scene.contact.friction > 0.0, "integrator.kind", kind, why)
+    why = f"contact law '{scene.contact.kind}' has a memory: its motion cannot be solved for by itself: {other}"
+    refuse(scene.contact.law.state_size > 0, "integrator.kind", kind, why)
+    large = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
+    what = "bodies.kind is elastic" if scene.bodies.kind == "elastic" else "contact.discretisation is nodal"
+    why = f"{what}: it linearises thousands of states and needs forces that are compiled, those of resultants: {other}"
+    refuse(large, "integrator.kind", kind, why)
+    alone = (
+        excitation.sense != 0
+        and not any(scene.load.radial)
+        and not (any(scene.load.moment) and scene.supports.tilt != "locked")
+    )
+    why = (
+        "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
+        f"force turns and no radial load acts: {other}"
+    )
+    refuse(scene.kinematics.orbiting and not alone, "integrator.kind", kind, why)

@@ -1,0 +1,149 @@
+"""What a plan says of elastic bodies: what they cannot do, how large they are, and what they cost."""
+
+from __future__ import annotations
+
+import os
+
+import attrs
+
+from raceway.errors import Mistake
+from raceway.estimate import axial_approach
+from raceway.planning.mesh import predicted_mesh
+from raceway.scene import Scene
+
+#: Bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory measured at 4500 and
+#: 17 000 cells with factors, at 60 000 with multigrid).
+_BYTES, _BYTES_A_CELL = 2.0e8, (7.5e4, 4.0e4)
+#: Share of the machine's memory that a run may take.
+_SHARE = 0.8
+#: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
+_FACTORS = 60_000
+#: Processor seconds a cell on one core of a small server: meshing and first forces; factors or multigrid; a linear solve with
+#: the forces that follow it.  Measured with factors at 1900 and 12 000 cells (settling and stiffness: 4.7e-4 and 5.0e-4 s a cell),
+#: with multigrid at 63 000.
+_BUILD_S, _SETUP_S, _SOLVE_S = 2.0e-5, (2.0e-4, 1.5e-4), (4.0e-5, 2.2e-4)
+#: Processor seconds a cell of an explicit step, hexahedra of one point and others, and of its Python beside.
+_FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
+#: Linear solves of an equilibrium from rigid bodies with its stiffness, of one from its neighbour, of a time step.
+_EQUILIBRIUM, _NEIGHBOUR, _STEP = 10, 5, 5
+#: Imports of what solves [s].
+_IMPORTS_S = 1.5
+
+
+@attrs.frozen
+class ElasticCost:
+    """Predictions.
+
+    Attributes
+    ----------
+    cells : hexahedra;  unknowns : of all nodes;  bytes : at the peak
+    stable_step_s : of explicit steps, by elements and contacts [s]
+    equilibrium_s : processor time to the equilibrium and its stiffness, meshing included [s]
+    start_s : of the equilibria that a motion starts with [s];  step_s : of a step [s]
+    """
+
+    cells: int
+    unknowns: int
+    bytes: int
+    stable_step_s: float
+    equilibrium_s: float
+    start_s: float
+    step_s: float
+
+
+def elastic_cost(scene: Scene) -> ElasticCost | None:
+    """What the bodies of a scene will take; None where the mesher cannot tell before it meshes."""
+    mesh = predicted_mesh(scene)
+    if mesh is None:
+        return None
+    cells, method = int(mesh["cells"]), scene.integrator.method
+    unknowns = int(3.4 * cells)  # nodes of coarse bodies are more than their cells
+    large = int(unknowns > _FACTORS)
+    setup, solve = cells * _SETUP_S[large], cells * _SOLVE_S[large]
+    memory = int(_BYTES + _BYTES_A_CELL[large] * cells)
+    first = _IMPORTS_S + cells * _BUILD_S + setup + _EQUILIBRIUM * solve
+    neighbour = _NEIGHBOUR * solve
+    if not method.inertial:
+        return ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
+    plain = int(scene.bodies.formulation != "one_point")
+    step = _STEP * solve + 0.2 * setup if method.implicit else cells * _FORCE_S[plain] + _PYTHON_S
+    start = 4.0 * neighbour + setup if scene.integrator.start == "orbit" else 0.0
+    return ElasticCost(cells, unknowns, memory, _stable_step(scene), first, start, step)
+
+
+def _stable_step(scene: Scene) -> float:
+    """Of the smallest element, h sqrt(rho / M), M = E (1 - nu) / ((1 + nu) (1 - 2 nu)), at h = the finest length that the mesher is asked for."""
+    from raceway.core.geometry import BallBearing
+    from raceway.core.hertz import contact_modulus
+
+    b = scene.bearing
+    row = BallBearing(
+        b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer
+    )
+    modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
+    load = getattr(scene.mesh, "ball_load", None) or axial_approach(scene)[1] or 300.0
+    minor = min(float(e.semi_axes(load)[1]) for e in row.ellipses(modulus))
+    fine = minor / float(getattr(scene.mesh, "nodes_per_semi_axis", 4))
+    steel, nu = b.balls, b.balls.poisson
+    wave = (steel.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / steel.density) ** 0.5
+    return 0.6 * min(fine, getattr(scene.mesh, "element_size", fine)) / wave
+
+
+def machine_bytes() -> float:
+    """Memory of this machine; without end where the system does not tell."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return float("inf")
+
+
+def elastic_faults(scene: Scene) -> list[Mistake]:
+    """What elastic bodies cannot do, each with the way out."""
+    faults: list[Mistake] = []
+
+    def refuse(bad: bool, path: str, value: object, why: str) -> None:
+        if bad:
+            faults.append(Mistake(path, value, why))
+
+    other = "or take bodies.kind = 'condensed'"
+    kinematics, b, contact = scene.kinematics, scene.bearing, scene.contact
+    why = f"is required by elastic bodies: for instance [mesh] with kind = 'structured', {other}"
+    refuse(scene.mesh is None, "mesh", None, why)
+    why = f"elastic bodies touch at surface points: use 'nodal', {other}"
+    refuse(contact.discretisation == "resultant", "contact.discretisation", contact.discretisation, why)
+    why = "is a condition, not a pressure that a penetration makes: use 'hertz' or 'penalty', " + other
+    refuse(getattr(contact.law, "constraint", False), "contact.kind", contact.kind, why)
+    why = f"balls of elastic bodies stay at their azimuth: set it false, {other}"
+    refuse(kinematics.orbiting, "kinematics.orbiting", True, why)
+    why = f"balls of elastic bodies do not turn: set it 'none', {other}"
+    refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
+    why = f"elastic bodies are one row of balls: use 'single', {other}"
+    refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, why)
+    why = f"the arm follows from the shape of elastic rings, which is that of 'groove': use it, {other}"
+    refuse(b.tilt_arm != "groove", "bearing.tilt_arm", b.tilt_arm, why)
+    return faults
+
+
+def memory_faults(scene: Scene) -> list[Mistake]:
+    """Meshes whose matrices this machine does not hold."""
+    cost = elastic_cost(scene)
+    most = _SHARE * machine_bytes()
+    if cost is None or cost.bytes <= most:
+        return []
+    why = (
+        f"gives {cost.cells} elements, whose matrices would take about {cost.bytes / 2**30:.1f} GiB, above "
+        f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of this machine's memory): take larger elements or fewer "
+        "nodes_per_semi_axis, or bodies.kind = 'condensed'"
+    )
+    return [Mistake("mesh.kind", scene.mesh.name, why)]
+
+
+def steps_per_turn(scene: Scene, period: float, safety: float) -> int | None:
+    """Explicit steps a turn that elements and contacts ask for; None where nothing is known."""
+    cost = elastic_cost(scene)
+    return None if cost is None or cost.stable_step_s == 0.0 else int(period / (safety * cost.stable_step_s)) + 1
+
+
+def words(cost: ElasticCost) -> str:
+    """Size of the bodies in a sentence."""
+    return f"{cost.cells} hexahedra, {cost.unknowns / 1e3:.0f} thousand unknowns, about {cost.bytes / 2**30:.2g} GiB"

@@ -1,0 +1,61 @@
+"""Turns, steps and samples of a motion, predicted and recorded; records that would not fit are refused."""
+
+from __future__ import annotations
+
+from raceway.errors import SceneError
+from raceway.estimate import highest_frequency
+from raceway.planning.elastic import steps_per_turn
+from raceway.scene import Scene
+
+#: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
+STEPS_PER_TURN = 360
+#: Records above this are refused [bytes].
+_MEMORY_LIMIT = 4 * 2**30
+
+
+def turns_of(scene: Scene) -> int:
+    """Turns that are integrated: the scene's, or as many as the excitation lasts."""
+    duration = getattr(scene.excitation, "duration_s", None)
+    if duration is None:
+        return scene.integrator.turns
+    return max(int(duration * scene.excitation.frequency_hz + 0.5), 1)
+
+
+def predicted_steps_per_turn(scene: Scene) -> int:
+    """The scene's number; for 'auto' 360, or what a rough stiffness asks of an explicit method."""
+    given = scene.integrator.steps_per_turn
+    if isinstance(given, int):
+        return given
+    if scene.integrator.method.implicit:
+        return STEPS_PER_TURN
+    period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
+    if scene.bodies.kind == "elastic":
+        return max(STEPS_PER_TURN, steps_per_turn(scene, period, 0.8) or 0)
+    return max(STEPS_PER_TURN, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)
+
+
+def recorded_per_turn(steps_per_turn: int, turns: int) -> int:
+    """Samples a turn that are really recorded: a divisor of the steps near ``samples_per_turn``, or all steps."""
+    wanted = samples_per_turn(turns)
+    fitting = (s for s in range(wanted, min(2 * wanted, steps_per_turn) + 1) if steps_per_turn % s == 0)
+    return next(fitting, steps_per_turn)
+
+
+def samples_per_turn(turns: int) -> int:
+    """Samples a turn that are recorded: 360, fewer in runs of more than 200 turns, never below 24."""
+    return max(24, min(STEPS_PER_TURN, 72_000 // max(turns, 1)))
+
+
+def refuse_memory(scene: Scene, turns: int, steps_per_turn: int, count: int) -> None:
+    """Records that will not fit are refused before anything is computed."""
+    samples = min(steps_per_turn, samples_per_turn(turns))
+    if steps_per_turn % samples:
+        samples = steps_per_turn
+    needed = 8 * turns * samples * (16 + 8 * count)
+    if needed > _MEMORY_LIMIT:
+        raise SceneError.at(
+            "integrator.turns",
+            scene.integrator.turns,
+            f"the record of {turns} turns would take {needed / 2**30:.1f} GiB, above {_MEMORY_LIMIT / 2**30:.0f} GiB: take "
+            "fewer turns, or steps_per_turn = 360 or a multiple of it",
+        )

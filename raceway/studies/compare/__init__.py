@@ -1,0 +1,1 @@
+"""One scene, some keys varied, everything else the same: effects in words."""

@@ -1,0 +1,68 @@
+"""A comparison for people: what it found in words, as a table and as a picture."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.studies.axes import Axis, shown
+from raceway.studies.compare.explain import explain
+from raceway.studies.compare.findings import QUANTITIES, Findings, Row
+
+
+@attrs.frozen(eq=False, slots=False)
+class Comparison(Findings):
+    """Findings with words, table and picture."""
+
+    @cached_property
+    def words(self) -> list[str]:
+        return explain(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything, as plain tables for JSON."""
+        return {
+            "title": self.title,
+            "axes": [axis.as_dict() for axis in self.axes],
+            "rows": [{"point": row.point, "result": row.result, "doubt": row.doubt} for row in self.rows],
+            "effects": self.effects,
+            "held": self.held,
+            "trends": self.trends,
+            "words": self.words,
+        }
+
+    def table(self) -> list[dict[str, str]]:
+        """One row a run, as short text for a screen; why a run is in doubt is said in the words."""
+        names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
+        return [_screen_row(row, names, noted) for row in self.rows]
+
+    def picture(self, folder: Path) -> list[Path]:
+        """Draw K and |Z| into a folder; the files written.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder that cannot be written.
+        """
+        from raceway.plugins.reports.comparison import ComparisonPicture
+
+        return ComparisonPicture().write(self.as_dict(), folder)
+
+
+def _screen_row(row: Row, names: dict[str, str], noted: bool) -> dict[str, str]:
+    text = {name: shown(row.point[key]) for key, name in names.items()}
+    k, z = (row.value(quantity) for quantity in QUANTITIES)
+    text["K N/um"] = "" if k is None else f"{k / 1e6:.3f}"
+    text["|Z| N/um"] = "" if z is None else f"{z / 1e6:.3f}"
+    text["error %"] = "" if k is None else f"{100.0 * row.error:.2g}"
+    if noted:
+        text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""
+    return text
+
+
+def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:
+    """Key -> its last part, or the whole key where two axes share that part: a table has to fit a screen."""
+    last = [axis.key.rpartition(".")[2] for axis in axes]
+    return {axis.key: name if last.count(name) == 1 else axis.key for axis, name in zip(axes, last, strict=True)}

@@ -1,0 +1,187 @@
+"""What a comparison found, in numbers: rows, effects, trends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.studies.axes import Axis, shown
+from raceway.studies.compare.effects import Factorial, trend, whole_part
+
+#: What is explained: name in the answer, label for people, path in ``identification``.
+QUANTITIES = {
+    "equivalent_stiffness": ("K(w)", ("equivalent_stiffness",)),
+    "dynamic_stiffness": ("|Z|", ("dynamic_stiffness", "abs")),
+}
+#: A row whose own error estimate is larger, or whose motion is less 1x than other, is no basis for an explanation.
+MOST_ERROR = 0.01
+MOST_RESIDUAL = 1.0
+#: Terms of third and higher order are listed from this size on.
+LEAST_HIGH_ORDER = 0.005
+
+
+@attrs.frozen
+class Row:
+    """One point: the values of the axes, and result.json or ``{"status", "reason"}``."""
+
+    point: dict[str, Any]
+    result: dict[str, Any]
+
+    @property
+    def failed(self) -> bool:
+        return "reason" in self.result
+
+    def value(self, quantity: str) -> float | None:
+        """One of ``QUANTITIES`` [N/m]; None where the run has none."""
+        value: Any = self.result.get("identification")
+        for name in QUANTITIES[quantity][1]:
+            value = value.get(name) if isinstance(value, dict) else None
+        return value
+
+    @property
+    def error(self) -> float:
+        """Estimated relative error, 0 where none was estimated."""
+        return float((self.result.get("error") or {}).get("total") or 0.0)
+
+    @property
+    def doubt(self) -> str | None:
+        """Why the row is left out of the explanation; None when it is not."""
+        if self.failed:
+            return f"{self.result['status']}: {self.result['reason']}"
+        found = self.result.get("identification")
+        if found is None:
+            return "the scene is static: no stiffness is identified"
+        for quantity, (label, _) in QUANTITIES.items():
+            value = self.value(quantity)
+            if value is None or not math.isfinite(value) or value <= 0.0:
+                return f"{label} is not positive"
+        if self.error > MOST_ERROR:
+            return f"the estimated error is above {100 * MOST_ERROR:g} %"
+        if (found.get("residual") or 0.0) > MOST_RESIDUAL:
+            return "the motion is larger at other frequencies than at the excitation's"
+        return None
+
+
+@attrs.frozen(eq=False, slots=False)
+class Findings:
+    """What a comparison found.
+
+    Attributes
+    ----------
+    title : of the scene;  axes, rows : in the order given, the last axis running fastest
+    notes : options that were left out, and the like
+    """
+
+    title: str
+    axes: tuple[Axis, ...]
+    rows: tuple[Row, ...]
+    notes: tuple[str, ...] = ()
+
+    def axis(self, key: str) -> Axis:
+        return next(axis for axis in self.axes if axis.key == key)
+
+    def settings(self, keys: Sequence[str]) -> list[tuple[dict[str, int], str]]:
+        """All ends (0 first, 1 last) of those axes in ``keys`` that have effects, with words for them."""
+        present = [key for key in keys if any(key in factorial.keys for factorial in self.factorials.values())]
+        found = []
+        for ends in product((0, 1), repeat=len(present)):
+            given = dict(zip(present, ends, strict=True))
+            found.append((given, ", ".join(f"{key} = {shown(self.axis(key).ends[end])}" for key, end in given.items())))
+        return found
+
+    @property
+    def varied(self) -> list[Axis]:
+        return [axis for axis in self.axes if len(axis.values) > 1]
+
+    @cached_property
+    def held(self) -> dict[str, Any]:
+        """Axes that the effects hold at one end, because corners of the other end cannot be used."""
+        part = self._whole_part
+        if part is None:
+            return {}
+        held = zip(self.varied, part, strict=True)
+        return {axis.key: axis.ends[end] for axis, end in held if end is not None}
+
+    @cached_property
+    def factorials(self) -> dict[str, Factorial]:
+        """For each quantity its corners; empty when there is nothing to analyse."""
+        part = self._whole_part
+        if part is None or all(end is not None for end in part):
+            return {}
+        index = tuple(slice(None) if end is None else end for end in part)
+        keys = tuple(axis.key for axis, end in zip(self.varied, part, strict=True) if end is None)
+        corners = self._corners[index]
+        # |effect| is off by at most 2^(1-k) times the sum of the corners' errors.
+        error = 2.0 * float(np.mean([row.error for row in corners.flat]))
+        return {
+            quantity: Factorial(keys, np.array([row.value(quantity) for row in corners.flat]).reshape(corners.shape), error)
+            for quantity in QUANTITIES
+        }
+
+    @cached_property
+    def _corners(self) -> np.ndarray:
+        """Rows (2,) * k at the ends of the k axes with more than one value; None where a run is missing."""
+        corners = np.full((2,) * len(self.varied), None, dtype=object)
+        for row in self.rows:
+            ends = [[i for i in (0, 1) if _same(row.point[axis.key], axis.ends[i])] for axis in self.varied]
+            if all(ends):
+                corners[tuple(end[0] for end in ends)] = row
+        return corners
+
+    @cached_property
+    def _whole_part(self) -> tuple[int | None, ...] | None:
+        if not self.varied:
+            return None
+        usable = [row is not None and row.doubt is None for row in self._corners.flat]
+        return whole_part(np.array(usable).reshape(self._corners.shape))
+
+    @cached_property
+    def effects(self) -> list[dict[str, Any]]:
+        """Main effects and two-axis interactions, and the larger ones of higher order; the largest first."""
+        found = []
+        for quantity, factorial in self.factorials.items():
+            for effect in factorial.effects:
+                if len(effect.term) <= 2 or abs(effect.log_change) >= LEAST_HIGH_ORDER:
+                    plain = attrs.asdict(effect)
+                    found.append({"quantity": quantity, "order": len(effect.term), **plain, "error": factorial.error})
+        return found
+
+    @cached_property
+    def trends(self) -> list[dict[str, Any]]:
+        """How each quantity runs along each axis of three or more numbers, for every combination of the others."""
+        found = []
+        for axis in self.varied:
+            if not axis.numeric or len(axis.values) < 3:
+                continue
+            series: dict[tuple[str, ...], list[Row]] = {}
+            others = [other.key for other in self.axes if other is not axis]
+            for row in self.rows:
+                series.setdefault(tuple(repr(row.point[key]) for key in others), []).append(row)
+            for rows in series.values():
+                at = {key: rows[0].point[key] for key in others}
+                good = sorted((row for row in rows if row.doubt is None), key=lambda row: row.point[axis.key])
+                if axis.values[0] > axis.values[-1]:
+                    good.reverse()
+                for quantity in QUANTITIES:
+                    found.append({"quantity": quantity, "axis": axis.key, "at": at, **_trend(quantity, good, rows, axis)})
+        return found
+
+
+def _same(a: Any, b: Any) -> bool:
+    return isinstance(a, bool) == isinstance(b, bool) and a == b
+
+
+def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> dict[str, Any]:
+    values = [row.value(quantity) or 0.0 for row in good]
+    reaches = len(good) > 1 and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
+    return {
+        "trend": trend(values, [row.error for row in good]) if len(good) > 1 else "unknown",
+        "percent": 100.0 * (values[-1] / values[0] - 1.0) if reaches else None,
+        "doubtful": len(rows) - len(good),
+    }

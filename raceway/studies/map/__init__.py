@@ -1,0 +1,1 @@
+"""Where k(speed) hardens or softens."""

@@ -1,0 +1,110 @@
+"""What a map leaves: map.json, map.csv, pictures, and map.html with all of it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import Any
+
+from raceway.files import write_whole
+from raceway.plugins.reports.map_picture import at_angle, can_map, change_map, curves_figure, exponent_map
+from raceway.plugins.reports.pictures import save_figure
+from raceway.result import without_nan, write_json
+from raceway.studies.map.design import AXES
+from raceway.studies.map.study import Map
+from raceway.studies.page import Page
+
+_ROW = (
+    "status", "reason", "stiffness", "change", "exponent", "error", "small_signal", "force", "lost", "unseats", "reach_inner",
+    "reach_outer", "largest_load", "largest_pressure", "axial_displacement",
+)  # fmt: skip
+_UNITS = {
+    "stiffness": "N/m", "small_signal": "N/m", "force": "N", "largest_load": "N", "largest_pressure": "Pa",
+    "axial_displacement": "m", "load.axial": "N", "excitation.speed_rpm": "r/min", "bearing.contact_angle_deg": "deg",
+}  # fmt: skip
+
+
+def write_data(found: Map, folder: Path) -> list[Path]:
+    """Write map.json and map.csv."""
+    content = without_nan(found.as_dict())
+    return [write_json(content, folder / "map.json"), write_whole(_csv(content).encode(), folder / "map.csv")]
+
+
+def write_pictures(found: Map, folder: Path) -> list[Path]:
+    """Write map.html, and its figures as PNG files."""
+    content = without_nan(found.as_dict())
+    paths = [save_figure(draw(content), folder / name, 110) for name, (draw, _) in _drawn(content).items()]
+    return [*paths, _page(content).write(folder / "map.html")]
+
+
+def _drawn(content: dict[str, Any]) -> dict[str, tuple[Any, str]]:
+    """File -> what draws it, and what is seen on it."""
+    curves = {"map-curves.png": (curves_figure, "k over speed for each axial load")}
+    if not can_map(content):
+        return curves
+    return {
+        "map-change.png": (change_map, "k over its value at the lowest speed, by speed and axial load"),
+        "map-exponent.png": (exponent_map, "local exponent of k over speed, by speed and axial load"),
+        **curves,
+    }
+
+
+def _csv(content: dict[str, Any]) -> str:
+    """A line for each point; units stand in the head."""
+    memory = io.StringIO()
+    lines = csv.writer(memory, lineterminator="\n")
+    lines.writerow([f"{name} [{_UNITS[name]}]" if name in _UNITS else name for name in (*AXES, *_ROW)])
+    for row in content["rows"]:
+        lines.writerow([*(row["point"][key] for key in AXES), *(row.get(name) for name in _ROW)])
+    return memory.getvalue()
+
+
+def _page(content: dict[str, Any]) -> Page:
+    page = Page(
+        f"Hardening or softening: {content['title']}",
+        f"k(speed) over axial load, tilt and contact angle; {content['amplitude']}",
+        "Made by `raceway study map`; opens without a network. Numbers: `map.json`, `map.csv`.",
+    )
+    page.section("In words")
+    page.listing(content["words"])
+    page.section("Maps")
+    for draw, seen in _drawn(content).values():
+        page.heading(seen)
+        angles = content["axes"]["bearing.contact_angle_deg"]
+        page.figures([(draw(at_angle(content, angle)), f"{seen}, {angle:g} deg", f"{angle:g} deg") for angle in angles])
+    page.section("What the numbers are")
+    page.listing(f"{name.replace('_', ' ')}: {text}" for name, text in content["definitions"].items())
+    page.section("Every curve")
+    page.table(
+        [
+            "contact angle [deg]", "tilt", "axial load [N]", "trend", "k at the lowest speed [N/um]", "change at the highest [%]",
+            "least [%]", "largest [%]", "small signals [%]", "largest exponent", "at [r/min]", "saturates [r/min]", "last exponent",
+            "contact lost from [r/min]", "unseats from [r/min]", "groove's edge from [r/min]", "failed",
+        ],
+        [_curve(curve) for curve in content["curves"]],
+        caption="Changes are relative to the lowest speed; a dash: not within these speeds",
+    )  # fmt: skip
+    page.section("Points without a number")
+    failed = [row for row in content["rows"] if row["status"] != "completed"]
+    if failed:
+        page.table([*AXES, "status", "reason"], [[*row["point"].values(), row["status"], row["reason"]] for row in failed])
+    else:
+        page.text(f"None: all {len(content['rows'])} points gave a number.")
+    return page
+
+
+def _curve(curve: dict[str, Any]) -> list[Any]:
+    def percent(name: str) -> str | None:
+        return None if curve[name] is None else f"{100.0 * curve[name]:+.3g}"
+
+    def plain(name: str, factor: float = 1.0, form: str = "{:.4g}") -> str | None:
+        return None if curve[name] is None else form.format(factor * curve[name])
+
+    return [
+        plain("contact_angle_deg"), str(curve["tilt"]), plain("axial"), curve["trend"], plain("first_stiffness", 1e-6),
+        percent("last_change"), percent("least_change"), percent("largest_change"), percent("small_signal_change"),
+        plain("steepest_exponent", form="{:.2f}"), plain("steepest_at_rpm", form="{:.0f}"),
+        plain("saturates_at_rpm", form="{:.0f}"), plain("last_exponent", form="{:.2f}"),
+        *(plain(f"{name}_from_rpm", form="{:.0f}") for name in ("contact_lost", "unseats", "edge")), str(curve["failed"]),
+    ]  # fmt: skip

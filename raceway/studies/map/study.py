@@ -1,0 +1,141 @@
+"""``raceway study map``: hardening or softening of k(speed) over axial load, tilt boundary and contact angle.
+
+Only ``raceway.run.run`` is called, on variations of one scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import RacewayError
+from raceway.registry import Registry, default_registry
+from raceway.simulate import OnProgress
+from raceway.studies.map.curves import LEVEL, SATURATED, curves, words
+from raceway.studies.map.design import SPEED, Design, amplitude_words
+from raceway.studies.map.workers import Numbered, in_processes, rows_of
+from raceway.studies.row_store import RowStore, row_key
+
+#: Points above which processes of their own are worth their start: importing the program takes as long as a hundred.
+_WORTH = 150
+
+
+@attrs.frozen(eq=False)
+class Map:
+    """A finished map.
+
+    Attributes
+    ----------
+    rows : in the design's order, each with its point;  curves : see ``map_curves``
+    fault : why rows could not be kept; None where they were
+    """
+
+    design: Design
+    amplitude: str
+    rows: list[dict[str, Any]]
+    curves: list[dict[str, Any]]
+    words: list[str]
+    fault: RacewayError | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything, as plain tables for JSON."""
+        tables = self.design.tables
+        return {
+            "title": tables.get("title", "scene"),
+            "method": self.design.method,
+            "amplitude": self.amplitude,
+            "definitions": definitions(self.design.method),
+            "axes": {key: list(values) for key, values in self.design.axes.items()},
+            "scene": tables,
+            "words": self.words,
+            "curves": self.curves,
+            "rows": self.rows,
+        }
+
+
+def definitions(method: str) -> dict[str, str]:
+    """What the numbers of a map are."""
+    how = {
+        "quasi_static": "secant: 1x line of the force over that of the displacement, the orbit as a series of equilibria "
+        "under the force as given; the contacts carry just this force",
+        "periodic": "K = Re Z + m w^2 on the steady orbit with the inertia of ring and rotor; the contacts carry the force "
+        "and what the mass adds",
+    }
+    return {
+        "stiffness": how[method],
+        "change": "k(w) / k(w0) - 1, w0 the lowest speed of the curve",
+        "exponent": "d ln k / d ln w between a speed and the next lower one",
+        "trend": f"signs of the exponent in their order; closer to 0 than {LEVEL:g} is level",
+        "saturates": f"first speed past the largest exponent with less than {SATURATED:g} of it",
+        "small_signal": "tangent at rest at this speed, free coordinates let go: what ball inertia and ring growth do alone",
+        "lost": "balls that leave the inner race at some time of a turn",
+        "reach": "farthest end of a contact ellipse over the groove's edge, both as angles from the groove's bottom; above 1 "
+        "the ellipse is cut off in reality, and the stiffness is too high",
+        "unseats": "the contact angle of a loaded ball falls to zero or below",
+    }
+
+
+def study_map(
+    design: Design,
+    processes: int = 0,
+    kept: Path | None = None,
+    registry: Registry | None = None,
+    plugins: Sequence[Path] = (),
+    on_progress: OnProgress | None = None,
+) -> Map:
+    """Run every point that is not kept already.
+
+    Parameters
+    ----------
+    processes : that work at a time; 0: in this one
+    kept : file of finished rows, read and added to
+
+    Notes
+    -----
+    A point that is refused or that fails is kept with its reason, and the study goes on.
+    """
+    registry = registry or default_registry()
+    points, store = design.points(), RowStore(kept)
+    keys = [row_key(design.scene(point, registry), registry, "map") for point in points]
+    missing = [(number, point) for number, point in enumerate(points) if store.get(keys[number]) is None]
+    tasks = _tasks(missing)
+
+    def keep(rows: Numbered) -> None:
+        for number, row in rows:
+            store.put(keys[number], row)
+        if on_progress is not None:
+            done = sum(1 for key in keys if store.get(key) is not None)
+            on_progress("points of the map", done, len(points))
+
+    def alone(some: Sequence[Numbered]) -> None:
+        for task in some:
+            for one in task:
+                keep(rows_of(design, [one], registry))
+
+    if processes < 2 or len(missing) < _WORTH:
+        alone(tasks)
+    else:
+        # The first curve here: it compiles what is not in the cache yet, once.
+        alone(tasks[:1])
+        for finished in in_processes(design, tasks[1:], processes, plugins):
+            keep(finished)
+    rows = [{"point": point, **_copy(store.get(key))} for point, key in zip(points, keys, strict=True)]
+    found = curves(rows)
+    amplitude = amplitude_words(design.scene(points[0], registry))
+    return Map(design, amplitude, rows, found, words(found, rows), store.fault)
+
+
+def _tasks(missing: Numbered) -> list[Numbered]:
+    """A task for each curve: points that differ in speed only."""
+    tasks: dict[tuple[Any, ...], Numbered] = {}
+    for number, point in missing:
+        tasks.setdefault(tuple(str(value) for key, value in point.items() if key != SPEED), []).append((number, point))
+    return list(tasks.values())
+
+
+def _copy(row: dict[str, Any] | None) -> dict[str, Any]:
+    assert row is not None
+    return dict(row)

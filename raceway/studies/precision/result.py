@@ -1,0 +1,269 @@
+"""A finished precision study: errors of the rows, fronts, orders, differences between models."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import RacewayError
+from raceway.studies.axes import shown
+from raceway.studies.precision.reference import Reference, distance, main_size, minus
+
+THRESHOLDS = (0.01, 0.001, 0.0001)
+#: A reference counts as exact for rows whose error is this many times its bound.
+EXACT = 10.0
+#: Errors below this many times the reference's bound say nothing about an order.
+_ORDER_MARGIN = 5.0
+#: Axes along which errors have an order: the exponent of 1 / value (True) or of the value itself.
+LADDERS = {"integrator.steps_per_turn": True, "mesh.element_size": False}
+Row = dict[str, Any]
+
+
+@attrs.frozen(eq=False, slots=False)
+class Precision:
+    """What a study found.
+
+    Attributes
+    ----------
+    rows : setting, family, physics, model, status, reason, quantities, own_error, cost, reused; expected_order
+    references : by physics; ``base`` is the physics that the front and the other models refer to
+    left_out : (family, values, reason) of the default design
+    fault : why rows could not be kept on disk
+    """
+
+    title: str
+    rows: tuple[Row, ...]
+    references: dict[str, Reference]
+    base: str
+    left_out: tuple[tuple[str, dict[str, Any], str], ...]
+    notes: tuple[str, ...] = ()
+    fault: RacewayError | None = None
+
+    @cached_property
+    def judged(self) -> list[Row]:
+        """Rows with value, error, errors of all quantities, whether the reference limits them, and the observed order."""
+        found = [{**row, **self._errors(row)} for row in self.rows]
+        for place, order in self._orders(found).items():
+            found[place]["order"] = order
+        return found
+
+    def _errors(self, row: Row) -> Row:
+        out: Row = {"value": None, "error": None, "errors": {}, "at_bound": False, "order": None}
+        values = row["quantities"]
+        if not values:
+            return out
+        reference = self.references[row["physics"]]
+        out["value"] = main_size(values)
+        if not reference.values:
+            return out
+        apart = minus(values, reference.values)
+        size = reference.size
+        scale = {name: size if name in ("z_real", "z_imag") else abs(reference.values[name]) or 1.0 for name in apart}
+        out["errors"] = {name: abs(apart[name]) / scale[name] for name in apart}
+        out["error"] = distance(apart) / size
+        out["at_bound"] = not out["error"] > EXACT * reference.bound
+        return out
+
+    def _orders(self, rows: list[Row]) -> dict[int, float]:
+        """Order between each row and the next coarser one of its ladder."""
+        found: dict[int, float] = {}
+        for key, inverse in LADDERS.items():
+            for places in _ladders(rows, key):
+                places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
+                for coarse, fine in zip(places, places[1:], strict=False):
+                    bound = _ORDER_MARGIN * self.references[rows[fine]["physics"]].bound
+                    errors = [rows[k]["error"] for k in (coarse, fine)]
+                    if min(errors) > bound:
+                        ratio = rows[fine]["setting"][key] / rows[coarse]["setting"][key]
+                        found[fine] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
+        return found
+
+    def bounded(self, row: Row) -> float:
+        """The largest error that the row can have."""
+        return float(row["error"]) + self.references[row["physics"]].bound
+
+    def front(self, physics: str) -> list[int]:
+        """Places of the rows that no other row of the same model beats in both error and run time, the fastest first.
+
+        Errors below the reference's bound count as the bound: nobody knows which of them is smaller.
+        """
+        bound = self.references[physics].bound
+        rows = [(r["cost"]["time_s"], max(r["error"], bound), k) for k, r in enumerate(self.judged) if _counts(r, physics)]
+        found, best = [], math.inf
+        for _, error, place in sorted(rows):
+            if error < best:
+                found.append(place)
+                best = error
+        return found
+
+    def cheapest(self, physics: str) -> dict[str, int | None]:
+        """For each threshold the place of the fastest row whose error, with the reference's bound, is below it."""
+        rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
+        found: dict[str, int | None] = {}
+        for threshold in THRESHOLDS:
+            good = [(time, k) for time, k in rows if self.bounded(self.judged[k]) <= threshold]
+            found[_text(threshold)] = min(good)[1] if good else None
+        return found
+
+    @property
+    def converged(self) -> bool:
+        """Whether any row has an error below the coarsest threshold, or at least numbers where there is no reference."""
+        found = [row for row in self.judged if row["status"] == "completed"]
+        known = [row for row in found if row["error"] is not None]
+        return any(self.bounded(row) <= THRESHOLDS[0] for row in known) if known else bool(found)
+
+    @property
+    def models(self) -> list[dict[str, Any]]:
+        """Each model: what sets it apart, its reference, its difference from the base, its own front."""
+        base = self.references[self.base]
+        found = []
+        for physics, reference in self.references.items():
+            rows = [row for row in self.rows if row["physics"] == physics]
+            if not rows:
+                continue
+            apart = minus(reference.values, base.values)
+            scale = {n: base.size if n in ("z_real", "z_imag") else abs(base.values[n]) or 1.0 for n in apart}
+            known = apart.keys() >= {"z_real"} or ("axial_displacement" in apart and "z_real" not in base.values)
+            found.append(
+                {
+                    "model": rows[0]["model"],
+                    "base": physics == self.base,
+                    "reference": _reference_table(reference),
+                    "difference": distance(apart) / base.size if known else None,
+                    "differences": {name: apart[name] / scale[name] for name in apart},
+                    "front": self.front(physics),
+                    "cheapest": self.cheapest(physics),
+                }
+            )
+        return found
+
+    @cached_property
+    def words(self) -> list[str]:
+        reference = self.references[self.base]
+        lines = [f"reference: {reference.how}; relative bound {reference.bound:.1g}"]
+        limited = [row for row in self.judged if row["at_bound"] and row["physics"] == self.base]
+        if limited:
+            lines.append(
+                f"the reference is not {EXACT:g} times more accurate than {len(limited)} of the rows (marked ~): their errors "
+                "are known to its bound only, and so is the front there"
+            )
+        for threshold, place in self.cheapest(self.base).items():
+            percent = f"{100.0 * float(threshold):g} %"
+            if place is None:
+                lines.append(f"no setting is known to be within {percent}")
+            else:
+                row = self.judged[place]
+                lines.append(f"cheapest within {percent}: {words_of(row['setting'])} ({1e3 * row['cost']['time_s']:.3g} ms)")
+        for model in self.models:
+            if not model["base"] and model["difference"] is not None:
+                lines.append(f"model error: {words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
+        return [*lines, *self.notes]
+
+    def as_dict(self) -> dict[str, Any]:
+        keep = (
+            "family",
+            "setting",
+            "model",
+            "value",
+            "error",
+            "at_bound",
+            "order",
+            "expected_order",
+            "errors",
+            "quantities",
+        )
+        rows = []
+        for row in self.judged:
+            cost = row["cost"] or {}
+            named = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
+            rest = {"status": row["status"], "reason": row["reason"], "own_error": row["own_error"], "reused": row["reused"]}
+            base = row["physics"] == self.base
+            rows.append({**{name: row[name] for name in keep}, **named, **rest, "base": base, "cost": row["cost"]})
+        return {
+            "title": self.title,
+            "reference": _reference_table(self.references[self.base]),
+            "rows": rows,
+            "front": self.front(self.base),
+            "cheapest": self.cheapest(self.base),
+            "models": self.models,
+            "left_out": [{"family": f, "setting": v, "why": why} for f, v, why in self.left_out],
+            "words": self.words,
+        }
+
+    def table(self) -> list[dict[str, str]]:
+        """One line a row, as short text for a screen."""
+        front = set(self.front(self.base))
+        return [_screen_row(row, place in front) for place, row in enumerate(self.judged)]
+
+    def write(self, folder: Path, pictures: bool) -> list[Path]:
+        """precision.json, precision.md and, if wanted, precision.png.
+
+        Raises
+        ------
+        RacewayError
+            A folder or disk that cannot be written, or matplotlib missing.
+        """
+        from raceway.plugins.reports.precision import PrecisionReport
+
+        return PrecisionReport(picture=pictures).write(self.as_dict(), folder)
+
+
+def _reference_table(reference: Reference) -> dict[str, Any]:
+    known = bool(reference.values)
+    return {
+        "value": reference.size if known else None,
+        "error": reference.bound if known and math.isfinite(reference.bound) else None,
+        "how": reference.how,
+        "quantities": {
+            name: {"value": value, "error": bound if math.isfinite(bound := reference.bounds[name]) else None}
+            for name, value in reference.values.items()
+        },
+    }
+
+
+def _counts(row: Row, physics: str) -> bool:
+    return row["physics"] == physics and row["error"] is not None
+
+
+def _ladders(rows: list[Row], key: str) -> list[list[int]]:
+    """Places of finished rows that differ in one key only, a list for each ladder."""
+    found: dict[str, list[int]] = {}
+    for place, row in enumerate(rows):
+        value = row["setting"].get(key)
+        if row["error"] and isinstance(value, int | float) and not isinstance(value, bool):
+            rest = {name: other for name, other in row["setting"].items() if name != key}
+            found.setdefault(f"{row['family']} {rest!r}", []).append(place)
+    return [places for places in found.values() if len(places) > 1]
+
+
+def words_of(setting: dict[str, Any]) -> str:
+    """A setting for people: the keys' last parts, or what kind of table it is."""
+
+    def word(key: str, value: Any) -> str:
+        table, _, last = key.rpartition(".")
+        if key == "inertia":
+            return "without inertia"
+        return f"{table} {shown(value)}" if last == "kind" else f"{last} {shown(value)}"
+
+    return ", ".join(word(key, value) for key, value in setting.items()) or "the scene itself"
+
+
+def _text(threshold: float) -> str:
+    return f"{threshold:.10f}".rstrip("0")
+
+
+def _screen_row(row: Row, on_front: bool) -> dict[str, str]:
+    cost = row["cost"]
+    text = {"setting": ("* " if on_front else "  ") + words_of(row["setting"])}
+    text["error"] = "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
+    text["own estimate"] = "" if row["own_error"] is None else f"{row['own_error']:.1e}"
+    text["order"] = "" if row["order"] is None else f"{row['order']:.2f}"
+    text["wall ms"] = "" if cost is None else f"{1e3 * cost['wall_s']:.1f}"
+    text["cpu ms"] = "" if cost is None else f"{1e3 * cost['cpu_s']:.1f}"
+    text["steps"] = "" if cost is None else str(cost["steps"])
+    text["status"] = "" if row["status"] == "completed" else row["status"]
+    return text

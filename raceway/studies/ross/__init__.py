@@ -1,0 +1,1 @@
+"""Coefficients for the rotor program ROSS."""

@@ -1,0 +1,155 @@
+"""Linearised coefficients kyy, kyz, kzy, kzz, cyy, ... of a bearing over speed and frequency, from a sweep's results.
+
+Three sources, each with its assumption:
+
+``tangent``      the 5x5 tangent of the equilibrium; all four stiffness entries, no damping
+``rotating``     the secant under a rotating force; one complex number, which stands for an isotropic bearing
+``directions``   secants under forces along fixed directions 0, 90 and, for the cross entries, 45 deg
+
+Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken out.
+"""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.errors import Mistake, RacewayError, SceneError
+from raceway.studies.axes import shown
+from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent
+from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
+
+SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
+SOURCES = ("rotating", "directions", "tangent")
+#: Entries by name: place in the 2x2 matrix over (y, z).
+ENTRIES = {"yy": (0, 0), "yz": (0, 1), "zy": (1, 0), "zz": (1, 1)}
+LEAST_POINTS = 5
+_RADIANS = np.pi / 30.0
+
+
+@attrs.frozen(eq=False)
+class Coefficients:
+    """A table over speed (n,), over frequency (m,), or over both (n, m).
+
+    Attributes
+    ----------
+    speed : (n,) of the rotor [rad/s], None for a table over frequency alone
+    frequency : (m,) of the vibration [rad/s], None where it equals the speed or nothing depends on it
+    stiffness, damping : (..., 2, 2) over y, z [N/m, N s/m]
+    axial : (...,) kxx [N/m]
+    source : one of ``SOURCES``;  definition : what the numbers are, in words
+    notes : what the reader of the table has to know, a sentence each
+    """
+
+    speed: np.ndarray | None
+    frequency: np.ndarray | None
+    stiffness: np.ndarray
+    damping: np.ndarray
+    axial: np.ndarray
+    source: str
+    definition: str
+    notes: tuple[str, ...]
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """``kyy`` ... ``czz`` and ``kxx``, each of the table's shape."""
+        found = {f"k{name}": self.stiffness[..., i, j] for name, (i, j) in ENTRIES.items()}
+        found |= {f"c{name}": self.damping[..., i, j] for name, (i, j) in ENTRIES.items()}
+        return {**found, "kxx": self.axial}
+
+
+def coefficients(selection: Selection, source: str | None = None) -> Coefficients:
+    """The coefficients of a selection.
+
+    Parameters
+    ----------
+    source : one of ``SOURCES``; by default what the sweep's excitation gives
+
+    Raises
+    ------
+    SceneError
+        Axes that are to be chosen first, or too few points on one.
+    RacewayError
+        Points without result, or a source that this sweep does not have.
+    """
+    purpose = "and a table of coefficients goes over speed and frequency only"
+    only_axes(selection, (SPEED, SPIN, DIRECTION), purpose)
+    source = source or _default_source(selection)
+    if source == "directions":
+        selection = _directions_last(selection)
+    else:
+        only_axes(selection, (SPEED, SPIN), purpose)
+    _refuse_gaps(selection)
+    _refuse_few(selection)
+    if source == "tangent":
+        stiffness, damping, definition, notes = tangent(selection)
+    else:
+        refuse_without_motion(selection)
+        made = rotating if source == "rotating" else directions
+        stiffness, damping, definition, notes = made(selection)
+    axial = reduced(selection)[..., 0, 0] if "stiffness" in selection.dataset else np.zeros(stiffness.shape[:-2])
+    axial = axial[..., 0] if axial.ndim > stiffness.ndim - 2 else axial
+    speed, frequency, stiffness, damping, axial = _table(selection, stiffness, damping, axial)
+    return Coefficients(speed, frequency, stiffness, damping, axial, source, definition, tuple(notes))
+
+
+def _default_source(selection: Selection) -> str:
+    if DIRECTION in selection.axes:
+        return "directions"
+    return "tangent" if selection.value("excitation.kind") is None else "rotating"
+
+
+def _directions_last(selection: Selection) -> Selection:
+    if DIRECTION not in selection.axes:
+        raise RacewayError(f"there is one direction only: sweep with --grid {DIRECTION}=0,45,90")
+    if LIST in selection.dataset.dims:
+        return selection
+    axes = {key: selection.axes[key] for key in sorted(selection.axes, key=lambda key: key == DIRECTION)}
+    return attrs.evolve(selection, axes=axes, dataset=selection.dataset.transpose(*axes, ...))
+
+
+def _refuse_gaps(selection: Selection) -> None:
+    if selection.unfinished:
+        raise RacewayError(
+            f"the table would have gaps: {selection.gaps} of its points have no result. Finish them with raceway sweep ... "
+            "--resume (failed ones: --retry-failed), or choose another part with --at"
+        )
+    if LIST in selection.dataset.dims:
+        raise RacewayError("the points of this sweep fill no grid over speed, and a table needs one: sweep with --grid")
+
+
+def _refuse_few(selection: Selection) -> None:
+    speeds = [key for key in (SPEED, SPIN) if key in selection.axes]
+    if not speeds:
+        given = selection.value(SPEED)
+        held = f"`{SPEED}` has the one value {shown(given)}" if given is not None else "the scene has no speed"
+        raise SceneError.at(SPEED, None, f"does not vary here ({held}): sweep it, for instance --grid {SPEED}=1000:15000:15")
+    few = [key for key in speeds if len(selection.axes[key]) < LEAST_POINTS]
+    if few:
+        raise SceneError(
+            [
+                Mistake(
+                    key,
+                    None,
+                    f"has {len(selection.axes[key])} points ({listed(selection.axes[key])}); rotor programs put cubics through "
+                    f"them, which takes at least {LEAST_POINTS} on an axis: sweep with --grid {key}=START:STOP:{LEAST_POINTS} or more",
+                )
+                for key in few
+            ]
+        )
+
+
+def _table(
+    selection: Selection, stiffness: np.ndarray, damping: np.ndarray, axial: np.ndarray
+) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray, np.ndarray, np.ndarray]:
+    """Axes [rad/s]; both of them in the order (speed, frequency)."""
+    spins, speeds = (np.array(selection.axes.get(key, []), dtype=float) * _RADIANS for key in (SPIN, SPEED))
+    if len(spins) and len(speeds):
+        keys = [key for key in selection.axes if key in (SPIN, SPEED)]
+        if keys != [SPIN, SPEED]:
+            stiffness, damping, axial = (np.swapaxes(array, 0, 1) for array in (stiffness, damping, axial))
+        return spins, speeds, stiffness, damping, axial
+    if len(spins):
+        return spins, None, stiffness, damping, axial
+    if selection.value(SPIN) is not None:
+        return None, speeds, stiffness, damping, axial
+    return speeds, None, stiffness, damping, axial

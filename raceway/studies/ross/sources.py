@@ -1,0 +1,204 @@
+"""Where a matrix over y, z comes from: a rotating force, forces along fixed directions, the tangent of an equilibrium.
+
+Each source gives stiffness and damping (..., 2, 2) [N/m, N s/m], what they are in words, and notes for the table's reader.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from raceway.errors import RacewayError, SceneError
+from raceway.studies.axes import is_number
+from raceway.studies.sweep.selection import Selection, listed
+
+DIRECTION = "excitation.direction_deg"
+#: Backward over forward amplitude, or cross over direct receptance, above which one number does not stand for the bearing.
+MOST_ANISOTROPY = 0.01
+
+Found = tuple[np.ndarray, np.ndarray, str, list[str]]
+
+
+def refuse_without_motion(selection: Selection) -> None:
+    if selection.value("excitation.kind") is None or "z_real" not in selection.dataset:
+        raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
+
+
+def rotating(selection: Selection) -> Found:
+    """One complex number for both directions."""
+    kind = selection.value("excitation.kind")
+    way_out = (
+        "Take the tangent of the equilibrium with --from tangent, or sweep a fixed force over both directions with "
+        f"excitation.kind = unidirectional and --grid {DIRECTION}=0,45,90"
+    )
+    if kind == "unidirectional":
+        raise RacewayError(
+            "a force along one direction does not tell whether the bearing is the same in the other one. Sweep with "
+            f"excitation.kind = bidirectional, over several directions with --grid {DIRECTION}=0,45,90, or take the tangent "
+            "of the equilibrium with --from tangent"
+        )
+    data = selection.dataset
+    parts = np.sort(np.stack([data["forward_amplitude"].values, data["backward_amplitude"].values]), axis=0)
+    share = float(np.max(parts[0] / parts[1]))
+    if share > MOST_ANISOTROPY:
+        raise RacewayError(
+            f"the bearing is not isotropic: the orbit's counter-rotating part reaches {share:.1%} of the rotating one (at most "
+            f"{MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not tell them. {way_out}"
+        )
+    identity = np.eye(2)
+    stiffness = data["equivalent_stiffness"].values[..., None, None] * identity
+    damping = data["equivalent_damping"].values[..., None, None] * identity
+    notes = [
+        f"isotropic: kyy = kzz = K, cyy = czz = C, no cross terms; the counter-rotating part of the orbits is at most {share:.1e}",
+        *_common(selection),
+    ]
+    return stiffness, damping, f"{_kind_words(selection)} under a rotating force ({kind}), {_tilt_words(selection)}", notes
+
+
+def directions(selection: Selection) -> Found:
+    """Receptances along 0, 90 and 45 deg, inverted as a matrix.
+
+    Notes
+    -----
+    Along a unit vector n the receptance is h = n' H n: h(0) = Hyy, h(90) = Hzz, h(45) = (Hyy + Hzz + Hyz + Hzy) / 2.  The
+    matrix is taken as symmetric (no gyroscopic moments).  |Hzy| is known from the orbit under the force along y, too:
+    forward^2 + backward^2 = (|x_y|^2 + |x_z|^2) / 2.
+    """
+    given = selection.axes[DIRECTION]
+    missing = [angle for angle in (0, 90) if angle not in given]
+    if missing or not all(is_number(angle) and angle in (0, 45, 90) for angle in given):
+        raise SceneError.at(DIRECTION, None, f"has {listed(given)} deg; both columns take 0 and 90, cross terms 45, too")
+    if selection.value("rotor.polar_inertia", 0.0) and selection.value("supports.tilt") != "locked":
+        raise RacewayError(
+            "gyroscopic moments (rotor.polar_inertia with free tilts) make the matrix unsymmetric, which forces along fixed "
+            "directions do not resolve: set rotor.polar_inertia=0, the rotor model brings its own"
+        )
+    data = selection.dataset
+    z = data["z_real"].values + 1j * data["z_imag"].values
+    w = 2.0 * np.pi * data["frequency"].values
+    h = dict(zip(given, np.moveaxis(1.0 / z, -1, 0), strict=True))
+    across = _across(data, given, h)
+    if 45 in given:
+        cross = h[45] - 0.5 * (h[0] + h[90])
+        told = "cross terms from the force along 45 deg, the matrix taken as symmetric"
+    else:
+        if across > MOST_ANISOTROPY:
+            raise RacewayError(
+                f"a force along y moves the ring along z by {across:.1%} of its motion along y: cross terms are there, and two "
+                f"directions do not tell them. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
+            )
+        cross = np.zeros_like(h[0])
+        told = f"no cross terms: a force along one direction moves the ring across by at most {across:.1e} of its motion"
+    receptance = np.stack([np.stack([h[0], cross], -1), np.stack([cross, h[90]], -1)], -2)
+    dynamic = np.linalg.inv(receptance)
+    w, mass = w[..., 0, None, None], data["mass"].values[..., 0, None, None]
+    stiffness = dynamic.real + mass * w**2 * np.eye(2)
+    notes = [told, *_common(selection)]
+    return (
+        stiffness,
+        dynamic.imag / w,
+        f"{_kind_words(selection)} under forces along fixed directions, {_tilt_words(selection)}",
+        notes,
+    )
+
+
+def _across(data: Any, given: list[Any], h: dict[Any, np.ndarray]) -> float:
+    """Largest motion across a force along y or z over the motion along it."""
+    found = []
+    for angle in (0, 90):
+        k = given.index(angle)
+        turning = data["forward_amplitude"].values[..., k] ** 2 + data["backward_amplitude"].values[..., k] ** 2
+        along = (data["force_amplitude"].values[..., k] * np.abs(h[angle])) ** 2
+        found.append(np.sqrt(np.maximum(2.0 * turning / along - 1.0, 0.0)))
+    # Rounding of the difference above: squares of 1e-16 leave 1e-8.
+    return max(0.0, float(np.max(found)) - 1e-7)
+
+
+def tangent(selection: Selection) -> Found:
+    """The radial part of the equilibrium's tangent, motions that the scene leaves free condensed out."""
+    if "stiffness" not in selection.dataset:
+        raise RacewayError("the sweep holds no tangent of the equilibrium: choose --from rotating")
+    matrix = reduced(selection)
+    coupling = np.abs(matrix[..., 0, 1:])
+    radial = matrix[..., 1:, 1:]
+    notes = ["no damping: the tangent of an equilibrium has none, and cyy ... czz are 0"]
+    if selection.value("supports.axial") == "force":
+        radial = radial - matrix[..., 1:, :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
+        notes.append("kyy ... kzz at constant axial force (supports.axial), kxx with the radial motions held")
+    else:
+        notes.append("kyy ... kzz and kxx with each other's motions held (supports.axial)")
+    size = float(np.max(coupling / np.sqrt(np.abs(matrix[..., 0, 0] * matrix[..., 1, 1]))[..., None]))
+    if size > 1e-6:
+        notes.append(f"left out: the coupling of axial and radial motions, {size:.1e} of the geometric mean of kxx and kyy")
+    notes.append("small motions about the equilibrium under the constant loads: the unbalance does not change them")
+    return radial, np.zeros_like(radial), f"tangent of the equilibrium, {_tilt_words(selection)}", notes
+
+
+def reduced(selection: Selection) -> np.ndarray:
+    """(..., 3, 3) tangent over x, y, z with the tilts as supported."""
+    matrix = np.array(selection.dataset["stiffness"].values, dtype=float)
+    tilt = selection.value("supports.tilt", "locked")
+    if tilt == "locked":
+        return matrix[..., :3, :3]
+    tilts = matrix[..., 3:, 3:] + (0.0 if tilt == "free" else float(tilt)) * np.eye(2)
+    return matrix[..., :3, :3] - matrix[..., :3, 3:] @ np.linalg.solve(tilts, matrix[..., 3:, :3])
+
+
+def _tilt_words(selection: Selection) -> str:
+    tilt = selection.value("supports.tilt", "locked")
+    return f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
+
+
+def _kind_words(selection: Selection) -> str:
+    return "tangent response" if selection.value("identifier.kind") == "tangent" else "secant"
+
+
+def _common(selection: Selection) -> list[str]:
+    return [*_mass(selection), *_rotor(selection), *_amplitude(selection), *_resolved(selection)]
+
+
+def _rotor(selection: Selection) -> list[str]:
+    """What the swept rotor brought besides its mass, and a rotor model brings again."""
+    found = []
+    inertias = [key for key in ("rotor.transverse_inertia", "rotor.polar_inertia") if selection.value(key, 0.0)]
+    if inertias and selection.value("supports.tilt", "locked") != "locked":
+        found.append(
+            f"{' and '.join(inertias)} resist the free tilt in these numbers, and do so again in a rotor model: sweep with 0"
+        )
+    if selection.value("rotor.damping", 0.0):
+        found.append("rotor.damping is part of cyy and czz")
+    return found
+
+
+def _mass(selection: Selection) -> list[str]:
+    used = selection.dataset["mass"].values
+    if not np.any(used):
+        return ["K = Re Z: the motion has no inertia (quasi-static)"]
+    return [
+        f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(used)):.4g} kg, is taken out; a rotor model brings its own, "
+        "with the inner ring's where its shaft does not include it"
+    ]
+
+
+def _amplitude(selection: Selection) -> list[str]:
+    force = selection.dataset["force_amplitude"].values
+    low, high = float(np.min(force)), float(np.max(force))
+    size = f"{low:.4g} N" if high - low <= 1e-6 * high else f"{low:.4g} to {high:.4g} N"
+    return [
+        f"under forces of amplitude {size}; a rotor model takes the numbers as linear: where its bearing force differs, iterate"
+    ]
+
+
+def _resolved(selection: Selection) -> list[str]:
+    """How many dampings are smaller than their error."""
+    data = selection.dataset
+    if "error_total" not in data:
+        return []
+    z = np.hypot(data["z_real"].values, data["z_imag"].values)
+    hidden = np.abs(data["z_imag"].values) <= np.nan_to_num(data["error_total"].values) * z
+    if not hidden.any():
+        return []
+    return [
+        f"damping is not resolved at {int(hidden.sum())} of {hidden.size} points: smaller than its error, of either sign"
+    ]

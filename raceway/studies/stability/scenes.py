@@ -1,0 +1,138 @@
+"""Extreme scenes, run as a user would run them with every law and integrator: balances, closed forms, the steady orbit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from raceway.errors import RacewayError
+from raceway.estimate import axial_approach
+from raceway.model import build_model
+from raceway.plan import make_plan
+from raceway.registry import Registry
+from raceway.result import Result
+from raceway.run import run
+from raceway.statics import settle
+from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtMost, Case, Measured, Near, Row, judged, refused, short
+from raceway.studies.stability.systems import scene_at, transient
+
+_BALANCE = Near(1e-8, "an equilibrium is solved to a residual of 1e-11")
+_BALANCE_ELASTIC = Near(
+    0.05, "structural compliances vary with the contact angle, which pushes a ball along the groove: 0.1 %, at 100 kN 4 %"
+)
+_ROUGH = Near(0.05, "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)")
+_ORBIT = Near(0.01, "time steps cost 0.02 %, what is left of the transient after 12 turns 0.1 %; ten times that")
+#: Drift of the energy that a completed motion may show: 360 steps a turn and light contacts.
+_ENERGY = AtMost(0.05, "steps of a turn / 360 balance energy to 1e-4 as a rule; impacts that few steps resolve cost more")
+#: What a motion is held against.
+_JUDGES = {"orbit": "periodic", "slow": "quasi_static"}
+
+
+def extreme(case: Case, registry: Registry) -> list[Row]:
+    """One scene with one law: its equilibrium, and its motion by every transient integrator."""
+    a = case.arguments
+    changes = dict(a["changes"])
+    if "penalty_factor" in a:
+        changes["contact.stiffness"] = a["penalty_factor"] * _default_penalty(a["tables"], changes, registry)
+    shown = dict(a["shown"])
+    rows = _at_rest(case, shown, changes, registry)
+    if not a["judge"]:
+        return rows
+    known: complex | None = None
+    note = ""
+    if a["judge"] in _JUDGES:
+        kind = _JUDGES[a["judge"]]
+        try:
+            known = _dynamic(run(scene_at(a["tables"], {**changes, "integrator.kind": kind}, registry), registry))
+        except RacewayError as why:
+            note = f"nothing to compare with, {kind}: {short(why)}"
+    for name in transient(registry):
+        more = {**changes, "integrator.kind": name}
+        rows += _moving(case, {**shown, "integrator": name}, more, known, note, registry)
+    return rows
+
+
+def _moving(
+    case: Case, setting: dict[str, Any], changes: dict[str, Any], known: complex | None, note: str, registry: Registry
+) -> list[Row]:
+    tables = case.arguments["tables"]
+    drift: list[float | None] = [None]
+
+    def motion() -> Measured:
+        result = run(scene_at(tables, changes, registry), registry)
+        drift[0] = result.stability["energy_drift"]
+        return abs(_dynamic(result)), drift[0]
+
+    def balance() -> Measured:
+        result = run(scene_at(tables, changes, registry), registry)
+        worst = result.stability["energy_drift"]
+        return (0.0 if worst is None else worst), worst
+
+    if known is not None:
+        return [judged(case.name, setting, "|Z| [N/m], predicted by the steady motion", _ORBIT, abs(known), motion)]
+    return [judged(case.name, setting, "completed; energy not balanced by the work", _ENERGY, 0.0, balance, note)]
+
+
+def _dynamic(result: Result) -> complex:
+    found = result.identification
+    assert found is not None
+    return found.dynamic_stiffness
+
+
+def _at_rest(case: Case, shown: dict[str, Any], changes: dict[str, Any], registry: Registry) -> list[Row]:
+    """Balance of the axial forces of the balls with the load; the approach by a closed form where there is one."""
+    a = case.arguments
+    # Nothing turns and nothing rubs: the balls' loads are along their contact angles.
+    quiet = {**changes, "kinematics.gyroscopic": "none", "contact.friction": 0.0}
+    rows = []
+
+    def axial() -> Measured:
+        scene = scene_at(a["tables"], quiet, registry)
+        model = build_model(scene, make_plan(scene))
+        found = settle(model)
+        z = model.system.ball_count
+        load = found.contact_force[:z]
+        return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(found.angle_inner)), 0.0))), None
+
+    scene = scene_at(a["tables"], quiet, registry)
+    balance = _BALANCE if scene.bodies.kind == "rigid" else _BALANCE_ELASTIC
+    rows.append(judged(case.name, shown, "sum of the balls' axial forces [N]", balance, scene.load.axial, axial))
+    if a.get("closed_form"):
+        alone = {**quiet, "kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}
+
+        def approach() -> Measured:
+            scene = scene_at(a["tables"], alone, registry)
+            return float(settle(build_model(scene, make_plan(scene))).displacement[0]), None
+
+        rows.append(judged(case.name, shown, "axial displacement [m]", _ROUGH, axial_approach(scene)[0], approach))
+    return rows
+
+
+def _default_penalty(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
+    """The penalty [N/m3] that gives the inner races the stiffness of the default."""
+    own, unit = ({**changes, "contact.stiffness": value} for value in (None, 1.0))
+    factors = [_inner_factor(tables, each, registry) for each in (own, unit)]
+    return factors[0] / factors[1]
+
+
+def _inner_factor(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
+    scene = scene_at(tables, changes, registry)
+    return float(build_model(scene, make_plan(scene)).system.law_params[0, 0])
+
+
+def refusal(case: Case, registry: Registry) -> list[Row]:
+    """A scene that has no answer: the message says why."""
+    a = case.arguments
+    return [
+        refused(case.name, a["shown"], a["words"], a["reason"], lambda: run(scene_at(a["tables"], a["changes"], registry)))
+    ]
+
+
+def warning(case: Case, registry: Registry) -> list[Row]:
+    """A scene that has an answer, and something that a user must be told about it."""
+    a = case.arguments
+    result = run(scene_at(a["tables"], a["changes"], registry))
+    found = next((text for text in result.warnings if a["words"] in text), None)
+    head = (case.name, a["shown"], "warning", f"warned: '{a['words']}'", None, None, None)
+    return [Row(*head, FAILED if found is None else AS_EXPECTED, a["reason"], found or "no such warning")]

@@ -1,0 +1,150 @@
+"""``raceway stability``: stiff and extreme cases, each with an expectation, over all laws and transient integrators.
+
+``stability_catalogue`` is the list of cases, ``stability_case`` says what an expectation is, ``stability_workers`` runs the
+cases in processes of their own; ``stability_limits``, ``_energy``, ``_scenes`` and ``_elements`` measure.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import resource
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.errors import RacewayError, SceneError
+from raceway.options import nearest
+from raceway.registry import Registry, default_registry
+from raceway.studies.row_store import RowStore, program_key
+from raceway.studies.stability.case import FAILED, Case, Row
+from raceway.studies.stability.catalogue import catalogue
+from raceway.studies.stability.workers import in_parallel, rows_of
+
+if TYPE_CHECKING:
+    from raceway.simulate import OnProgress
+
+PROCESSES = 2
+
+
+@attrs.frozen
+class Stability:
+    """Rows of a whole catalogue.
+
+    Attributes
+    ----------
+    cases : how many were run or taken from what is kept;  reused : how many of them were kept
+    seconds, cpu_s : wall time; processor time of all processes, compiling too
+    fault : why rows could not be kept, or None
+    """
+
+    title: str
+    rows: tuple[Row, ...]
+    cases: int
+    reused: int
+    seconds: float
+    cpu_s: float
+    processes: int
+    fault: RacewayError | None = None
+
+    @property
+    def failed(self) -> tuple[Row, ...]:
+        return tuple(row for row in self.rows if row.verdict == FAILED)
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "title": self.title,
+            "cases": self.cases,
+            "reused": self.reused,
+            "seconds": self.seconds,
+            "cpu_s": self.cpu_s,
+            "processes": self.processes,
+            "failed": len(self.failed),
+            "rows": [attrs.asdict(row) for row in self.rows],
+        }
+
+    def write(self, folder: Path) -> list[Path]:
+        """stability.json and stability.md.
+
+        Raises
+        ------
+        RacewayError
+            A folder or disk that cannot be written.
+        """
+        from raceway.plugins.reports.stability import StabilityReport
+
+        return StabilityReport().write(self.as_dict(), folder)
+
+
+def stability(
+    tables: Mapping[str, Any] | None = None,
+    only: str | None = None,
+    processes: int = PROCESSES,
+    store: Path | None = None,
+    registry: Registry | None = None,
+    plugins: Sequence[Path] = (),
+    on_progress: OnProgress | None = None,
+) -> Stability:
+    """Run the catalogue.
+
+    Parameters
+    ----------
+    tables : plain tables of a scene that is put through the cases that suit any scene; the whole catalogue when None
+    only : part of the names of the cases that are run; all when None
+    processes : how many work at a time; 0 works in this process, without guard against a hang
+    store : file that finished cases are kept in and taken from
+    plugins : one-off plug-in files, which each process loads
+    on_progress : called as ``on_progress(what, done, total)`` after each case; an exception stops the study
+
+    Raises
+    ------
+    SceneError
+        A name that no case has, or a scene that cannot be put through the catalogue.
+    """
+    begun, cpu = time.monotonic(), _processor_time()
+    registry = registry or default_registry()
+    cases = catalogue(registry, tables)
+    if only is not None:
+        names = list(dict.fromkeys(case.name for case in cases))
+        cases = tuple(case for case in cases if only in case.name)
+        if not cases:
+            raise SceneError.at("--only", only, f"no case is called so{nearest(only, names)}; cases: {'; '.join(names)}")
+    kept, program = RowStore(store), program_key(registry)
+    found: dict[int, list[Row]] = {}
+    keys = [_key(case, program) for case in cases]
+    for place, key in enumerate(keys):
+        if (row := kept.get(key)) is not None:
+            found[place] = [Row(**one) for one in row["rows"]]
+    reused = len(found)
+    places = {id(case): place for place, case in enumerate(cases)}
+    waiting = [case for place, case in enumerate(cases) if place not in found]
+    for case, rows, _ in _run(waiting, processes, registry, plugins):
+        place = places[id(case)]
+        found[place] = rows
+        kept.put(keys[place], {"rows": [attrs.asdict(row) for row in rows]})
+        if on_progress is not None:
+            on_progress(case.name, len(found), len(cases))
+    title = "Stiff and extreme cases" if tables is None else f"Stiff and extreme cases of {tables.get('title', 'the scene')}"
+    in_order = tuple(row for place in range(len(cases)) for row in found[place])
+    taken = time.monotonic() - begun, _processor_time() - cpu
+    return Stability(title, in_order, len(cases), reused, *taken, processes, kept.fault)
+
+
+def _processor_time() -> float:
+    """Of this process and of those that it has ended [s]."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
+def _run(cases: list[Case], processes: int, registry: Registry, plugins: Sequence[Path]) -> Any:
+    if processes == 0:
+        return ((case, rows_of(case, registry), 0.0) for case in cases)
+    return in_parallel(cases, processes, plugins)
+
+
+def _key(case: Case, program: str) -> str:
+    text = json.dumps([attrs.asdict(case), program], sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:24]

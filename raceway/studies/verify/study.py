@@ -1,0 +1,160 @@
+"""``raceway verify``: published reference cases against this program's own numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from math import isfinite
+from typing import Any
+
+import attrs
+
+from raceway.errors import Mistake, RacewayError, SceneError
+from raceway.options import nearest
+from raceway.registry import Registry, default_registry
+from raceway.studies.reference import Case, Number, reference_cases
+from raceway.studies.verify.article import article_pressures
+from raceway.studies.verify.bearings import ellipse_table, masta, nsk_pair, race_ellipse, rig_force
+from raceway.studies.verify.impacts import impact_of_spheres
+
+OnProgress = Callable[[str, int, int], None]
+
+#: How each case is computed.
+COMPUTED: dict[str, Callable[[Case, Registry], Iterator[Number]]] = {
+    "masta-dgbb-1": masta,
+    "masta-dgbb-3": masta,
+    "masta-dgbb-5": masta,
+    "harris-mindel-1973-hertz-inner": race_ellipse,
+    "harris-table-6.1": ellipse_table,
+    "nsk-7206C-stiffness": nsk_pair,
+    "nsk-7206A-stiffness": nsk_pair,
+    "chung-ooi-1-glass": impact_of_spheres,
+    "chung-ooi-3-alumina": impact_of_spheres,
+    "seed-unbalance": rig_force,
+    "seed-static-pressures": article_pressures,
+}
+
+
+@attrs.frozen
+class Row:
+    """One line of the table.
+
+    Attributes
+    ----------
+    case, quantity : which number, with its unit
+    reference, computed : in the unit of the source
+    error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is kept
+    source : where the reference was published
+    note : why there is no computed number (then computed and error are None, and ok is False), or ""
+    """
+
+    case: str
+    quantity: str
+    reference: float | None
+    computed: float | None
+    error: float | None
+    tolerance: float | None
+    ok: bool
+    source: str
+    note: str = ""
+
+
+@attrs.frozen
+class Verification:
+    """The rows of all cases that were computed."""
+
+    rows: tuple[Row, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every row keeps its tolerance (and there is at least one)."""
+        return bool(self.rows) and all(row.ok for row in self.rows)
+
+    @property
+    def worst(self) -> tuple[Row, ...]:
+        """Of each case the row that comes closest to its tolerance, or misses it by most."""
+        found: dict[str, Row] = {}
+        for row in self.rows:
+            if row.case not in found or _strain(row) > _strain(found[row.case]):
+                found[row.case] = row
+        return tuple(found.values())
+
+    def as_dict(self) -> dict[str, Any]:
+        return {"passed": self.passed, "rows": [attrs.asdict(row) for row in self.rows]}
+
+
+def _strain(row: Row) -> float:
+    return float("inf") if row.error is None or not row.tolerance else row.error / row.tolerance
+
+
+def verify(
+    only: str | Iterable[str] | None = None, on_progress: OnProgress | None = None, registry: Registry | None = None
+) -> Verification:
+    """Compute the published cases, each within the agreement that its source allows.
+
+    Parameters
+    ----------
+    only : id of one case, or several; all cases to be checked when None
+    on_progress : called as ``on_progress(case, done, total)`` before each case and once at the end
+    registry : whose integrators the impacts are run with
+
+    Raises
+    ------
+    SceneError
+        A case that does not exist (with the nearest name) or that is there for information only.
+    """
+    registry = registry or default_registry()
+    cases = chosen_cases(only)
+    rows: list[Row] = []
+    for done, case in enumerate(cases):
+        if on_progress is not None:
+            on_progress(case.id, done, len(cases))
+        rows += compute(case, registry)
+    if on_progress is not None:
+        on_progress("", len(cases), len(cases))
+    return Verification(tuple(rows))
+
+
+def chosen_cases(only: str | Iterable[str] | None) -> list[Case]:
+    """The cases to compute, in the file's order.
+
+    Raises
+    ------
+    SceneError
+        See ``verify``.
+    """
+    known = {name: case for name, case in reference_cases().items() if case.checked}
+    if only is None:
+        return list(known.values())
+    names = [only] if isinstance(only, str) else list(only)
+    faults = [_refusal(name, known) for name in names if name not in known]
+    if faults:
+        raise SceneError(faults)
+    return [case for name, case in known.items() if name in names]
+
+
+def _refusal(name: str, known: dict[str, Case]) -> Mistake:
+    other = reference_cases().get(name)
+    if other is not None:
+        return Mistake("only", name, f"is not computed: {other.role}; computed are: {', '.join(known)}")
+    hint = nearest(str(name), known)
+    return Mistake("only", name, f"no such case{hint}; known: {', '.join(known)}")
+
+
+def compute(case: Case, registry: Registry) -> list[Row]:
+    """The rows of one case; a solver that fails makes a row that says why."""
+    rows: list[Row] = []
+    try:
+        for number in COMPUTED[case.id](case, registry):
+            rows.append(_row(case, number))
+    except RacewayError as why:
+        rows.append(Row(case.id, "the rest of the case", None, None, None, None, False, case.source, str(why)))
+    return rows
+
+
+def _row(case: Case, number: Number) -> Row:
+    computed, note = number.computed, number.note
+    if computed is not None and not isfinite(computed):
+        computed, note = None, f"computed {computed}: not a finite number"
+    error = None if computed is None else abs(computed - number.reference) / abs(number.reference)
+    ok = error is not None and error <= number.tolerance
+    return Row(case.id, number.quantity, number.reference, computed, error, number.tolerance, ok, case.source, note)

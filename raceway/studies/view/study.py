@@ -1,0 +1,137 @@
+"""The pictures of one result: PNG files, on request an HTML page and an animation.  ``raceway view``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.files import write_whole
+from raceway.plugins.reports.pictures import ball_loads, orbit, save_figure
+from raceway.plugins.reports.view.animation import animate
+from raceway.plugins.reports.view.bearing import Bearing, State
+from raceway.plugins.reports.view.contacts import contacts
+from raceway.plugins.reports.view.scene import overview
+from raceway.result import Result
+from raceway.simulate import OnProgress
+from raceway.studies.view.page import view_page
+from raceway.studies.view.states import at_peak, at_rest, last_turn
+
+
+@attrs.frozen
+class Wanted:
+    """What to draw besides the PNG files.
+
+    Attributes
+    ----------
+    page : the HTML page;  frames : of the animation, 0 for none
+    """
+
+    page: bool = False
+    frames: int = 0
+
+
+def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) -> dict[str, Any]:
+    """Write the pictures of a result; ``files`` and what is shown on them.
+
+    Raises
+    ------
+    RacewayError
+        A package that is missing, a folder that cannot be written; an animation of what does not move.
+    """
+    from raceway.plugins.reports.mesh_picture import _png
+
+    turn = last_turn(result, wanted.frames) if wanted.frames else None
+    bearing = Bearing.of(result)
+    rest = at_rest(result)
+    shown, when = rest, "at rest"
+    if result.simulation is not None:
+        shown, angle = at_peak(result)
+        when = f"when a ball carries most, {angle:.0f} deg into the turn"
+    states = {"bearing.png": (rest, "at rest")} | ({"bearing-peak.png": (shown, when)} if shown is not rest else {})
+    pictures: dict[str, tuple[Path, str, str]] = {}
+    for name, (state, words) in states.items():
+        on_progress(f"drawing {name}", len(pictures), 0)
+        path = write_whole(
+            _png(overview(bearing, state, f"{_short(result.title)}\n{words}: {_loads(state)}")), folder / name
+        )
+        pictures[name] = (
+            path,
+            f"the bearing cut open, balls coloured by their load, {words}",
+            f"Loads {words}: {_loads(state)}",
+        )
+    on_progress("drawing contacts.png", len(pictures), 0)
+    path = save_figure(contacts(bearing, shown, f"{_short(result.title)}, {when}"), folder / "contacts.png", 110)
+    told = f"Section and contact ellipses of the most loaded ball {when}; Hertz's pressure"
+    pictures["contacts.png"] = path, "section of the rings with the ball, and its two contact ellipses", told
+    path = save_figure(ball_loads(result), folder / "ball-loads.png", 110)
+    pictures["ball-loads.png"] = path, "ball loads by azimuth", "Ball loads on the inner race by azimuth"
+    if result.simulation is not None:
+        path = save_figure(orbit(result), folder / "orbit.png", 110)
+        pictures["orbit.png"] = path, "orbit of the inner ring", "Orbit of the inner ring's reference point"
+    if turn is not None:
+        heading = f"{_short(result.title)}\nmotion x {turn.factor:g}"
+        path = animate(
+            bearing, turn, heading, folder / "orbit.gif", lambda done, total: on_progress("drawing orbit.gif", done, total)
+        )
+        told = f"The last turn; motions of ring and balls {turn.factor:g} times as large as they are, the orbit in the bore to fit it"
+        pictures["orbit.gif"] = path, "the turning load, ball loads and orbit", told
+    if wanted.page:
+        text = {
+            "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown), "notes": _notes(bearing)
+        }  # fmt: skip
+        images = [(path.read_bytes(), seen, told) for path, seen, told in pictures.values()]
+        page = view_page(bearing, shown, text, images).write(folder / "view.html")
+        pictures["view.html"] = page, "", ""
+    z = result.model.system.ball_count
+    return {
+        "title": result.title,
+        "shown": when,
+        "largest_ball_load_n": float(shown.load[:z].max()),
+        "largest_pressure_pa": float(shown.peak.max()),
+        "exaggeration": None if turn is None else turn.factor,
+        "assumed": list(bearing.assumed),
+        "warnings": list(result.warnings),
+        "files": [str(path) for path, _, _ in pictures.values()],
+    }
+
+
+def _loads(state: State) -> str:
+    inner = state.load[: len(state.azimuth)]
+    return f"balls {inner.min():.4g} to {inner.max():.4g} N, pressure up to {1e-6 * state.peak.max():.4g} MPa"
+
+
+def _bearing_words(result: Result) -> str:
+    b, scene = result.model.scene.bearing, result.model.scene
+    name = f"{b.preset}: " if b.preset else ""
+    return (
+        f"{name}{b.ball_count} balls of {1e3 * b.ball_diameter:.4g} mm on {1e3 * b.pitch_diameter:.4g} mm, contact angle "
+        f"{scene.bearing.contact_angle * 57.29577951308232:.4g} deg; {scene.bodies.kind} bodies, tilt {scene.supports.tilt}"
+    )
+
+
+def _lead(result: Result, state: State) -> str:
+    load, found = result.model.scene.load, result.identification
+    words = [f"Axial load {load.axial:.4g} N"]
+    if any(load.radial):
+        words.append(f"radial load {load.radial[0]:.4g}, {load.radial[1]:.4g} N along y, z")
+    if found is not None:
+        words.append(
+            f"{result.model.excitation.name} force of {found.force_amplitude:.4g} N at {60.0 * found.frequency_hz:.6g} r/min, "
+            f"K = {1e-6 * found.equivalent_stiffness:.4g} N/µm"
+        )
+    words.append(f"axial displacement {1e6 * result.equilibrium.displacement[0]:.4g} µm")
+    words.append(_loads(state))
+    return f"{'; '.join(words)}."
+
+
+def _notes(bearing: Bearing) -> list[str]:
+    notes = [f"{text[0].upper()}{text[1:]}." for text in bearing.result.warnings]
+    if bearing.assumed:
+        notes.append(f"The scene does not give {', '.join(bearing.assumed)} of the rings: usual proportions are drawn.")
+    return notes
+
+
+def _short(title: str) -> str:
+    return title if len(title) <= 70 else title[:67] + "..."
