@@ -24,6 +24,14 @@ def _raw_object_cache_notify():
         pytest.fail("raised where it would be forgotten")
 
 
+@pytest.fixture(autouse=True)
+def pythons_own_handler():
+    """A shell may start a program in the background with Ctrl-C ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize("arrive", [Finalized, _raw_object_cache_notify, lambda: signal.raise_signal(signal.SIGINT)])
 def test_ctrl_c_is_not_lost_in_a_callback_or_a_finalizer(arrive):
     begun = time.monotonic()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from raceway import array_cache
+from raceway.bodies import condensed
 from raceway.errors import SceneError
 from raceway.model import build_model
 from raceway.plan import make_plan
@@ -61,6 +62,7 @@ def test_mesh_independence(size, along, tolerance):
 
 def test_second_use_of_a_geometry_takes_compliances_from_the_cache(monkeypatch, tmp_path):
     made = []
+    monkeypatch.setattr(condensed, "_BODIES", {})  # what other tests computed in this process
     monkeypatch.setattr(array_cache, "folder", lambda: tmp_path)
     write = array_cache._write
     monkeypatch.setattr(array_cache, "_write", lambda *a: made.append(a[1]) or write(*a))
@@ -136,6 +138,7 @@ def test_a_bearing_without_dimensions_is_refused_by_name():
 def test_an_unwritable_cache_is_said_once_and_costs_nothing_else(monkeypatch, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
+    monkeypatch.setattr(condensed, "_BODIES", {})  # what other tests computed in this process
     monkeypatch.setattr(array_cache, "folder", lambda: blocked / "arrays")
     array_cache._warn_unwritable.cache_clear()
     mesh = {"kind": "structured", "element_size": 2e-3, "nodes_per_semi_axis": 1}

@@ -29,7 +29,7 @@ class Map:
 
     Attributes
     ----------
-    rows : in the design's order, each with its point;  curves : see ``map_curves``
+    rows : in the design's order, each with its point;  curves : see ``curves``
     fault : why rows could not be kept; None where they were
     """
 

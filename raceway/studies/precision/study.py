@@ -1,8 +1,8 @@
 """Error against run time: which setting is good enough, and what it costs.
 
-Every row is a plain run of the scene with a few keys changed.  ``precision_design`` chooses the settings,
-``measured_run`` runs and times them, ``precision_reference`` finds what they are held against, ``row_store`` keeps what is
-finished, ``precision_result`` judges.
+Every row is a plain run of the scene with a few keys changed.  ``design`` chooses the settings,
+``measured_run`` runs and times them, ``reference`` finds what they are held against, ``row_store`` keeps what is
+finished, ``result`` judges.
 """
 
 from __future__ import annotations

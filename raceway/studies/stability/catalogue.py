@@ -1,4 +1,4 @@
-"""The catalogue of stiff and extreme cases.  What a case measures is in the modules that it names, data in ``stability_extremes``."""
+"""The catalogue of stiff and extreme cases.  What a case measures is in the modules that it names, data in ``extremes``."""
 
 from __future__ import annotations
 
@@ -38,16 +38,14 @@ def catalogue(registry: Registry, tables: Mapping[str, Any] | None = None) -> tu
 
 def _limits(base: Changes, registry: Registry) -> Iterator[Case]:
     for name in transient(registry):
-        yield Case("steps around the limit, linear", "stability_limits:linear", {"tables": base, "integrator": name}, 0.5)
+        yield Case("steps around the limit, linear", "limits:linear", {"tables": base, "integrator": name}, 0.5)
         for law in pair_laws(registry):
             for tilt in ("locked", "free"):
                 arguments = {
                     "tables": base, "integrator": name, "changes": {"contact.kind": law, "supports.tilt": tilt},
                     "shown": {"law": law, "tilt": tilt},
                 }  # fmt: skip
-                yield Case(
-                    "steps around the limit, small motions of the bearing", "stability_limits:small_motions", arguments, 0.5
-                )
+                yield Case("steps around the limit, small motions of the bearing", "limits:small_motions", arguments, 0.5)
 
 
 def _orbits(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
@@ -68,7 +66,7 @@ def _orbits(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
                     changes |= {"load.axial": axial, **force(newton), "supports.tilt": tilt}
                     shown |= {"axial": axial, "force": newton, "tilt": tilt}
                 arguments = {"tables": base, "integrator": name, "changes": changes, "shown": shown}
-                yield Case("orbit at the safe limit", "stability_limits:orbit_at_the_safe_limit", arguments, 0.3)
+                yield Case("orbit at the safe limit", "limits:orbit_at_the_safe_limit", arguments, 0.3)
 
 
 def _energy(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
@@ -79,20 +77,20 @@ def _energy(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
             one = {**common, "integrator": name}
             for factor, amplitude in ((0.1, 0.03), (0.02, 1.5)):
                 arguments = {**one, "steps": steps, "factor": factor, "amplitude": amplitude}
-                yield Case("undamped steps", "stability_energy:million_steps", arguments, 6e-6 * steps)
+                yield Case("undamped steps", "energy:million_steps", arguments, 6e-6 * steps)
             if not whole:
                 continue
             for speed in (0.01, 1.0, 10.0):
-                yield Case("impact", "stability_energy:impact", {**one, "speed": speed, "steps": 100}, 0.2)
+                yield Case("impact", "energy:impact", {**one, "speed": speed, "steps": 100}, 0.2)
             for depth in (1e-4, 5e-4):
-                yield Case("deep initial penetration", "stability_energy:deep_penetration", {**one, "depth": depth}, 0.3)
+                yield Case("deep initial penetration", "energy:deep_penetration", {**one, "depth": depth}, 0.3)
         if whole:
             far = {**common, "guesses": [1e-3, 5e-3, 5e-2, -1e-3, -5e-3]}
-            yield Case("equilibrium from afar", "stability_energy:settled_from_afar", far, 0.2)
+            yield Case("equilibrium from afar", "energy:settled_from_afar", far, 0.2)
             for name, options, step, chatters in _CHATTER:
                 if name in transient(registry):
                     rest = {**common, "integrator": name, "options": options, "step": step, "chatters": chatters}
-                    yield Case("chatter", "stability_energy:chatter", rest, 0.1)
+                    yield Case("chatter", "energy:chatter", rest, 0.1)
 
 
 #: integrator, options, step over the contact's period, whether it chatters.
@@ -113,7 +111,7 @@ def _penalties(base: Changes, registry: Registry) -> Iterator[Case]:
             "tables": base, "changes": {"contact.kind": "penalty"}, "shown": {"law": "penalty", "penalty / default": factor},
             "penalty_factor": factor, "judge": "orbit" if "excitation" in base else "",
         }  # fmt: skip
-        yield Case("penalty", "stability_scenes:extreme", arguments, 1.0)
+        yield Case("penalty", "scenes:extreme", arguments, 1.0)
 
 
 def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
@@ -123,30 +121,30 @@ def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
                 "tables": base, "changes": {**changes, "contact.kind": law}, "shown": {"law": law}, "closed_form": closed,
                 "judge": judge,
             }  # fmt: skip
-            yield Case(name, "stability_scenes:extreme", arguments, 1.5)
+            yield Case(name, "scenes:extreme", arguments, 1.5)
             if name in CONDENSED and (name, law) not in TOO_STIFF:
                 elastic: Changes = {
                     **arguments, "changes": {**arguments["changes"], "bodies.kind": "condensed"}, "closed_form": False,
                     "shown": {"law": law, "bodies": "condensed"},
                 }  # fmt: skip
-                yield Case(name, "stability_scenes:extreme", elastic, 8.0)
+                yield Case(name, "scenes:extreme", elastic, 8.0)
 
 
 def _refusals(base: Changes) -> Iterator[Case]:
     for name, changes, words, reason in REFUSALS:
         arguments = {"tables": base, "changes": changes, "words": words, "reason": reason, "shown": {}}
-        yield Case(name, "stability_scenes:refusal", arguments, 0.2)
+        yield Case(name, "scenes:refusal", arguments, 0.2)
     for name, changes, words, reason in WARNINGS:
         arguments = {"tables": base, "changes": changes, "words": words, "reason": reason, "shown": {}}
-        yield Case(name, "stability_scenes:warning", arguments, 0.2)
+        yield Case(name, "scenes:warning", arguments, 0.2)
 
 
 def _elements() -> Iterator[Case]:
     for aspect in (1, 20, 200):
-        yield Case("slender elements, explicit steps", "stability_elements:slender_steps", {"aspect": aspect}, 2.0)
+        yield Case("slender elements, explicit steps", "elements:slender_steps", {"aspect": aspect}, 2.0)
         for poisson, young in ((0.29, 212e9), (0.4999, 1e7)):
             arguments = {"aspect": aspect, "poisson": poisson, "young": young}
-            yield Case("slender elements, tension", "stability_elements:slender_bar", arguments, 1.0)
-    yield Case("nearly incompressible cantilever", "stability_elements:locking", {}, 2.0)
-    yield Case("rubber on ceramic, elements", "stability_elements:soft_on_hard", {}, 1.0)
-    yield Case("elements without a volume", "stability_elements:bad_elements", {}, 0.5)
+            yield Case("slender elements, tension", "elements:slender_bar", arguments, 1.0)
+    yield Case("nearly incompressible cantilever", "elements:locking", {}, 2.0)
+    yield Case("rubber on ceramic, elements", "elements:soft_on_hard", {}, 1.0)
+    yield Case("elements without a volume", "elements:bad_elements", {}, 0.5)

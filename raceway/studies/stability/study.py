@@ -1,7 +1,7 @@
 """``raceway stability``: stiff and extreme cases, each with an expectation, over all laws and transient integrators.
 
-``stability_catalogue`` is the list of cases, ``stability_case`` says what an expectation is, ``stability_workers`` runs the
-cases in processes of their own; ``stability_limits``, ``_energy``, ``_scenes`` and ``_elements`` measure.
+``catalogue`` is the list of cases, ``case`` says what an expectation is, ``workers`` runs the
+cases in processes of their own; ``limits``, ``energy``, ``scenes``, ``surface`` and ``elements`` measure.
 """
 
 from __future__ import annotations

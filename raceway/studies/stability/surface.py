@@ -84,23 +84,23 @@ def surface_cases(base: Changes, registry: Registry) -> Iterator[Case]:
         shown: Changes = {"law": law, "bodies": "condensed, points"}
         for name, changes in _STILL:
             arguments: Changes = {"tables": base, "changes": {**_POINTS, **changes, "contact.kind": law}, "shown": shown}
-            yield Case(f"surface points: {name}", "stability_surface:condensed_at_rest", arguments, 2.0)
+            yield Case(f"surface points: {name}", "surface:condensed_at_rest", arguments, 2.0)
         for name, changes, words, reason in _WARNED:
             arguments = {
                 "tables": base, "changes": {**_POINTS, **changes, "contact.kind": law, "excitation": None}, "shown": shown,
                 "words": words, "reason": reason,
             }  # fmt: skip
-            yield Case(f"surface points: {name}", "stability_scenes:warning", arguments, 3.0)
+            yield Case(f"surface points: {name}", "scenes:warning", arguments, 3.0)
         for name in transient(registry):
             yield _moving(base, law, name)
     for law in (entry.name for entry in laws if "resultant" in entry.plugin.discretisations):
         shown = {"law": law, "bodies": "elastic"}
         for name, changes in _ELASTIC if law == "hertz" else _ELASTIC[:1]:
             arguments = {"tables": _TINY, "changes": {**changes, "contact.kind": law}, "shown": shown}
-            yield Case(f"elastic bodies: {name}", "stability_surface:elastic_at_rest", arguments, 6.0)
+            yield Case(f"elastic bodies: {name}", "surface:elastic_at_rest", arguments, 6.0)
     for name in transient(registry):
         arguments = {"tables": _TINY, "changes": _EXCITED, "integrator": name, "shown": {"bodies": "elastic"}}
-        yield Case("elastic bodies: a force acts at once", "stability_surface:elastic_motion", arguments, 15.0)
+        yield Case("elastic bodies: a force acts at once", "surface:elastic_motion", arguments, 15.0)
 
 
 def _moving(base: Changes, law: str, name: str) -> Case:
@@ -111,10 +111,10 @@ def _moving(base: Changes, law: str, name: str) -> Case:
         "shown": {"law": law, "bodies": "condensed, points", "integrator": name},
     }
     if name in INTEGRATORS:
-        return Case("surface points: a turn", "stability_surface:turn", {**arguments, "changes": changes}, 12.0)
+        return Case("surface points: a turn", "surface:turn", {**arguments, "changes": changes}, 12.0)
     arguments["changes"] = {**changes, "integrator.kind": name}
     arguments |= {"words": "through too many steps", "reason": "a step takes a tenth of a second"}
-    return Case("surface points: a turn", "stability_scenes:refusal", arguments, 0.5)
+    return Case("surface points: a turn", "scenes:refusal", arguments, 0.5)
 
 
 def condensed_at_rest(case: Case, registry: Registry) -> list[Row]:

@@ -25,7 +25,7 @@ def rows_of(case: Case, registry: Registry) -> list[Row]:
 
     module, _, function = case.measure.partition(":")
     try:
-        place = module if "." in module else f"raceway.studies.{module}"
+        place = module if "." in module else f"raceway.studies.stability.{module}"
         rows: list[Row] = getattr(import_module(place), function)(case, registry)
     except Exception as why:  # noqa: BLE001 - a traceback is what no case may end in: it is the finding
         last = traceback.extract_tb(why.__traceback__)[-1]
