@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import random
 import signal
 import subprocess
@@ -12,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,8 @@ from raceway.studies.sweep import grid, open_store, prepare
 from raceway.studies.sweep import sweep as study
 
 SCENE = Path(__file__).parents[1] / "examples" / "b7206.toml"
-_BUSY = 0.5
+#: A machine whose processors are busier than this with other programs is not quiet.
+_BUSY = 0.1
 
 
 def words(count: int, store: Path, *more: str, bodies: str = "rigid") -> list[str]:
@@ -82,9 +83,21 @@ def overhead(count: int = 400) -> dict[str, float]:
     return {"bare_s": bare / count, "swept_s": swept / count, "overhead_s": (swept - bare) / count}
 
 
-def quiet() -> bool:
-    """Whether nobody else works on this machine."""
-    return os.getloadavg()[0] < _BUSY
+def quiet(patience: float = 2.0) -> bool:
+    """Whether nobody else works on this machine: its processors idle while this process sleeps.
+
+    The load average would still count this program's own last minutes.
+    """
+    (idle, total), _ = _processor_time(), time.sleep(patience)
+    idle_then, total_then = _processor_time()
+    return idle_then - idle > (1.0 - _BUSY) * (total_then - total)
+
+
+def _processor_time() -> tuple[int, int]:
+    """Idle and all time of the processors since the start [ticks]."""
+    ticks = [int(word) for word in Path("/proc/stat").read_text(encoding="ascii").partition("
+")[0].split()[1:9]]
+    return ticks[3] + ticks[4], sum(ticks)
 
 
 def rows_of(store: Path) -> list[Any]:
@@ -216,7 +229,14 @@ def _finish(given: list[str]) -> None:
 
 @contextmanager
 def _running(given: list[str]) -> Iterator[subprocess.Popen[bytes]]:
-    process = subprocess.Popen(_python(*given), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    process = subprocess.Popen(
+        _python(*given),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        # What a shell starts in the background ignores Ctrl-C, and its children with it.
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
+    )
     try:
         yield process
     finally:

@@ -16,7 +16,7 @@ _SAME = 1e-7
 
 
 def rows() -> list[Row]:
-    return [*_speed(), *_two_workers(), *_memory(), *_continuation(), *_survives()]
+    return [*_two_workers(), *_speed(), *_memory(), *_continuation(), *_survives()]
 
 
 def _speed() -> list[Row]:
@@ -39,7 +39,13 @@ def _speed() -> list[Row]:
     found = sweeps.overhead()
     note = f"{1e3 * found['swept_s']:.2f} ms a point against {1e3 * found['bare_s']:.2f} ms of the same runs alone, processor time"
     out.append(
-        below("overhead of the sweep, ms a point", 1e3 * found["overhead_s"], _OVERHEAD_MS, f"{_COMMAND} overhead", note)
+        below(
+            "overhead of the sweep, ms of processor time a point",
+            1e3 * found["overhead_s"],
+            _OVERHEAD_MS,
+            f"{_COMMAND} overhead",
+            note,
+        )
     )
     return out
 
