@@ -95,8 +95,7 @@ def quiet(patience: float = 2.0) -> bool:
 
 def _processor_time() -> tuple[int, int]:
     """Idle and all time of the processors since the start [ticks]."""
-    ticks = [int(word) for word in Path("/proc/stat").read_text(encoding="ascii").partition("
-")[0].split()[1:9]]
+    ticks = [int(word) for word in Path("/proc/stat").read_text(encoding="ascii").partition("\n")[0].split()[1:9]]
     return ticks[3] + ticks[4], sum(ticks)
 
 
