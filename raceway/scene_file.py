@@ -36,10 +36,14 @@ _NEAR = 0.6
 STUDY_TABLES: dict[str, type] = {"rig": Rig}
 
 
+def _tomls_in(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*.toml")) if folder.is_dir() else []
+
+
 def _scenes_in(folder: Path) -> list[str]:
     """Names of the TOML files in a folder that have a bearing in them."""
     found = []
-    for path in sorted(folder.glob("*.toml")) if folder.is_dir() else ():
+    for path in _tomls_in(folder):
         try:
             if "bearing" in tomllib.loads(path.read_text(encoding="utf-8")):
                 found.append(path.name)
@@ -60,12 +64,12 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     try:
         text = path.read_bytes().decode("utf-8")
     except FileNotFoundError:
-        near = _scenes_in(path.parent)
         # By the name itself: what ends in .toml is alike to a third already.
-        stems = {Path(name).stem: name for name in near}
+        stems = {one.stem: one.name for one in _tomls_in(path.parent)}
         close = difflib.get_close_matches(path.stem, list(stems), n=1, cutoff=_NEAR)
+        scenes = [] if close else _scenes_in(path.parent)
         hint = f" (did you mean '{stems[close[0]]}'?)" if close else ""
-        hint = hint or (f"; scenes there: {', '.join(near[:5])}" if near else "")
+        hint += f"; scenes there: {', '.join(scenes[:5])}" if scenes else ""
         raise SceneError.at(str(path), None, f"no such file{hint}") from None
     except (OSError, UnicodeDecodeError) as why:
         reason = "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else why.strerror or str(why)
