@@ -20,6 +20,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.contact_error import contact_error
 from raceway.core.identification import Identification
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError
@@ -68,7 +69,7 @@ def error_table(
     mesh = None
     if model.bodies is not None:
         mesh, how["mesh"] = model.bodies.mesh_error(model, equilibrium)
-    how["contact"] = "the law is taken as exact: its own model error is not estimated"
+    table["contact"], how["contact"] = contact_error(model, equilibrium)
     if not motions:
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}

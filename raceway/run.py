@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from raceway.contact_error import contact_error
 from raceway.core.bodies.ring import GYROSCOPIC
 from raceway.core.energy import energy_balance
 from raceway.core.identification import Identification
@@ -81,7 +82,9 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     error, error_s = no_error("the scene is static: nothing is identified"), 0.0
     if model.bodies is not None:
         error["mesh"], error["how"]["mesh"] = model.bodies.mesh_error(model, equilibrium)
-    if scene.excitation is not None:
+    if scene.excitation is None:
+        error["contact"], error["how"]["contact"] = contact_error(model, equilibrium)
+    else:
         method = scene.identifier.method
         records = []
         if "speeds" in method.needs:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import difflib
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -29,8 +30,26 @@ PLUGIN_TABLES = {
 }
 #: Those of them that may be absent, which means something.
 OPTIONAL_TABLES = ("excitation", "mesh")
+#: Likeness of two files' names from which one is taken for a slip of the other.
+_NEAR = 0.6
 #: Tables that a study reads beside the scene, which keeps them in ``source``.
 STUDY_TABLES: dict[str, type] = {"rig": Rig}
+
+
+def _tomls_in(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*.toml")) if folder.is_dir() else []
+
+
+def _scenes_in(folder: Path) -> list[str]:
+    """Names of the TOML files in a folder that have a bearing in them."""
+    found = []
+    for path in _tomls_in(folder):
+        try:
+            if "bearing" in tomllib.loads(path.read_text(encoding="utf-8")):
+                found.append(path.name)
+        except (OSError, ValueError):  # no text, no TOML
+            continue
+    return found
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
@@ -45,8 +64,12 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     try:
         text = path.read_bytes().decode("utf-8")
     except FileNotFoundError:
-        near = sorted(p.name for p in path.parent.glob("*.toml")) if path.parent.is_dir() else []
-        hint = nearest(path.name, near) or (f"; scenes there: {', '.join(near[:5])}" if near else "")
+        # By the name itself: what ends in .toml is alike to a third already.
+        stems = {one.stem: one.name for one in _tomls_in(path.parent)}
+        close = difflib.get_close_matches(path.stem, list(stems), n=1, cutoff=_NEAR)
+        scenes = [] if close else _scenes_in(path.parent)
+        hint = f" (did you mean '{stems[close[0]]}'?)" if close else ""
+        hint += f"; scenes there: {', '.join(scenes[:5])}" if scenes else ""
         raise SceneError.at(str(path), None, f"no such file{hint}") from None
     except (OSError, UnicodeDecodeError) as why:
         reason = "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else why.strerror or str(why)

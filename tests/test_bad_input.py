@@ -7,6 +7,8 @@ import json
 import numpy as np
 import pytest
 
+from raceway.errors import SceneError
+from raceway.scene_file import read_toml
 from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, raceway
 
 #: What is set; the path that is named; words of the message.
@@ -295,3 +297,19 @@ def test_a_fault_of_the_program_is_one_message(monkeypatch):
     assert found.exit_code == 1
     assert "unexpected ZeroDivisionError" in found.stderr
     assert "--debug" in found.stderr
+
+
+def test_a_missing_file_is_told_by_names_that_are_near(tmp_path):
+    for name, text in (("pyproject.toml", "[project]"), ("b7206.toml", "[bearing]"), ("broken.toml", "= 1")):
+        (tmp_path / name).write_text(text)
+
+    def said(name):
+        with pytest.raises(SceneError) as caught:
+            read_toml(tmp_path / name)
+        return str(caught.value)
+
+    assert "did you mean 'b7206.toml'?" in said("b7260.toml")
+    far = said("nofile.toml")
+    assert "did you mean" not in far and far.endswith("scenes there: b7206.toml")
+    (tmp_path / "b7206.toml").unlink()
+    assert said("nofile.toml").endswith("no such file")

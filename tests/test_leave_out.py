@@ -159,7 +159,15 @@ def test_the_command_shows_modules():
     assert "Modules not imported" in shown and "rigid_tangential" in shown
 
 
-def test_the_saving_of_a_rule_counts_time_or_memory():
-    rule = leave_out.Rule("r", "", 0.0, 1e-10, "", 1.0, 2.0, 10, 10)
-    assert rule.holds and not leave_out.Rule("r", "", 1.0, 1e-10, "", 1.0, 2.0, 10, 10).holds
-    assert not leave_out.Rule("r", "", 0.0, 1e-10, "", 2.0, 2.0, 10, 10).holds
+def test_a_saving_counts_above_the_noise_only():
+    def rule(difference=0.0, cpu=0.010, forced=0.020, size=10, size_forced=10, spread=0.0):
+        return leave_out.Rule("r", "", difference, 1e-10, "", cpu, forced, size, size_forced, spread)
+
+    assert rule().holds and rule().saves
+    assert not rule(difference=1.0).holds and not rule(difference=1.0).saves
+    # 0.8 % faster, or faster by less than times spread, or by microseconds: equal answers, and nothing saved.
+    for noise in (rule(cpu=0.0379, forced=0.0382), rule(spread=0.011), rule(cpu=9e-6, forced=23e-6)):
+        assert noise.holds and not noise.saves
+    assert rule(cpu=0.020, size=2**20, size_forced=2**21).saves
+    # Dearer than with the part: the rule is no good.
+    assert not rule(cpu=0.030).holds

@@ -24,6 +24,7 @@ from raceway.run import run
 from raceway.statics import settle
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
+from tests.command_line import ARTICLE, invoke
 
 
 def scene(kind="periodic", axial=1000.0, tilt="locked", inertia=False, **tables):
@@ -216,3 +217,10 @@ def test_the_result_tells_the_multipliers():
     assert fate["found"] == "directly"
     assert content["error"]["transient"] == 0.0
     assert content["error"]["time_step"] <= 1e-7
+
+
+def test_far_below_resonance_the_message_names_the_share_and_the_way_out():
+    found = invoke("run", ARTICLE, "--set", "integrator.kind=periodic", "--set", "excitation.speed_rpm=1")
+    assert found.exit_code == 1
+    words = " ".join(found.output.split())
+    assert "ends at 0 % of the force" in words and "quasi_static" in words and "the corrector diverges" in words

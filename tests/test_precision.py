@@ -13,6 +13,7 @@ from raceway.errors import RacewayError, SceneError
 from raceway.free_vibration import hann_line
 from raceway.motion import peak
 from raceway.registry import default_registry
+from raceway.run import run
 from raceway.scene_file import read_toml, scene_from_dict
 from raceway.studies.measured_run import measured
 from raceway.studies.precision import study as module
@@ -206,6 +207,29 @@ def test_a_static_scene_has_models_only():
     found = precision(static, ["contact.kind=hertz,penalty"], repeats=1)
     assert [row["error"] for row in found.judged] == [0.0, 0.0]
     assert found.models[1]["difference"] > 0.0
+
+
+def test_the_error_of_a_contact_law_is_its_distance_from_hertz():
+    """A penalty that is scaled at one load: the approach goes with Q^(1/2) instead of Q^(2/3)."""
+    static = {name: table for name, table in TABLES.items() if name != "excitation"}
+    scene = {**static, "load": {"axial": 1000.0}, "kinematics": {"ball_inertia": False}}
+    exact = run(scene_from_dict(scene)).error
+    assert exact["contact"] is None and "half-spaces" in exact["how"]["contact"]
+    scaled = {"kind": "penalty", "calibrate_at": 100.0}
+    result = run(scene_from_dict({**scene, "contact": scaled}))
+    load = result.equilibrium.contact_force[0]
+    # Both races carry the same load: rounding of the equilibrium.
+    assert result.error["contact"] == pytest.approx(abs((load / 100.0) ** (1.0 / 2.0 - 2.0 / 3.0) - 1.0), rel=1e-6)
+    assert "exact Hertz" in result.error["how"]["contact"]
+    assert result.error["total"] is None
+
+
+def test_calibrated_laws_on_elastic_bodies_are_not_measured():
+    tables = {**TABLES, "bodies": {"kind": "condensed"}, "identifier": {"kind": "tangent"}}
+    error = run(scene_from_dict(tables)).error
+    assert error["contact"] is None and "nodal" in error["how"]["contact"]
+    # The equilibrium's own residual and the mesh: nothing else is uncertain.
+    assert error["total"] == pytest.approx(error["mesh"], rel=1e-3)
 
 
 HARD = (

@@ -10,11 +10,12 @@ import pytest
 
 from raceway.errors import ConvergenceError, SceneError
 from raceway.registry import default_registry
+from raceway.studies.stability import scenes
 from raceway.studies.stability import study as study_module
 from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
 from raceway.studies.stability.catalogue import SCENES, catalogue
 from raceway.studies.stability.study import stability
-from raceway.studies.stability.systems import pair_laws, transient
+from raceway.studies.stability.systems import BASE, pair_laws, transient
 from raceway.studies.stability.workers import in_parallel, rows_of
 from tests.command_line import ARTICLE, invoke
 
@@ -75,6 +76,31 @@ def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
     assert refused("c", {}, "nothing loads", "", refuse).verdict == AS_EXPECTED
     assert refused("c", {}, "another message", "", refuse).verdict == FAILED
     assert refused("c", {}, "nothing loads", "", lambda: 1.0).note == "it was computed instead"
+
+
+def extreme_case(judge, **changes):
+    arguments = {"tables": BASE, "changes": {"integrator.turns": 1, **changes}, "shown": {}, "judge": judge}
+    return Case("c", "scenes:extreme", arguments)
+
+
+def test_a_comparison_that_is_refused_fails_its_case(monkeypatch):
+    def refuse(scene, registry):
+        raise ConvergenceError("no motion was found")
+
+    monkeypatch.setattr(scenes, "run", refuse)
+    for judge, kind in (("orbit", "periodic"), ("slow", "quasi_static"), ("any", "periodic")):
+        *_, row = scenes.extreme(extreme_case(judge), REGISTRY)
+        assert row.verdict == FAILED and "unexpectedly: no motion was found" in row.note
+        assert row.setting["integrator"] == kind
+
+
+def test_a_motion_whose_energy_nobody_balances_fails():
+    # While a force grows, energy is not balanced.
+    _, *moved = scenes.extreme(extreme_case("energy", **{"integrator.start": "ramp"}), REGISTRY)
+    assert moved and all(row.verdict == FAILED and "not a number" in row.note for row in moved)
+    # A user's scene that `periodic` cannot take is held against its energy instead, and says so.
+    _, *moved = scenes.extreme(extreme_case("any", **{"contact.friction": 0.1}), REGISTRY)
+    assert moved and all(row.verdict == AS_EXPECTED and "no steady motion to compare" in row.note for row in moved)
 
 
 def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():

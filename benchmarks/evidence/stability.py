@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -32,7 +33,7 @@ def rows() -> list[Row]:
     for name in dict.fromkeys(row["case"] for row in found):
         own = [row for row in found if row["case"] == name]
         good = sum(row["verdict"] == "as expected" for row in own)
-        out.append(Row(name, f"{good} of {len(own)}", "all", good == len(own), f"raceway stability --only '{name}' --all"))
+        out.append(Row(name, f"{good} of {len(own)}", "all", good == len(own), f"raceway stability --only {shlex.quote(name)} --all"))
     return out
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.errors import ConvergenceError
 from raceway.options import inside, one_of, option
 
 if TYPE_CHECKING:
@@ -47,4 +48,15 @@ class Periodic:
     def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
         from raceway.core.periodic.steady import steady
 
-        return steady(system, start, schedule, self.tolerance, self.symmetry == "auto", on_chunk)
+        try:
+            return steady(system, start, schedule, self.tolerance, self.symmetry == "auto", on_chunk)
+        except ConvergenceError as why:
+            if why.state:
+                raise
+            # Only the corrector of a branch that fails at its first point, the resting ring, leaves no state.
+            raise ConvergenceError(
+                "no motion of the period of the force was found: the one that grows out of rest ends at 0 % of the force, where "
+                f"its branch begins ({why}). Use integrator.kind = 'quasi_static' for speeds far below the natural frequencies; "
+                "at others a transient integrator with start = 'ramp' shows what the ring does.",
+                {"q": start.q.copy()},
+            ) from why

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import build_model, make_plan, scene_from_dict
+from raceway.contact_error import contact_error
 from raceway.core.bodies.ring import CAGE, CENTRIFUGAL
 from raceway.core.condensed.pool import Pool
 from raceway.errors import ConvergenceError, SceneError
@@ -134,6 +135,19 @@ def test_the_result_tells_pressures_approaches_and_points(free):
     field = case.bodies.pressure_field(case, found, 0)
     assert field.pressure.max() == pytest.approx(nodal, rel=1e-6)
     assert case.system.without(CAGE).pool is case.system.pool
+
+
+def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
+    size, how = contact_error(*free)
+    assert size == 0.0 and "overlap" in how, "unilateral"
+    case = model(contact={"kind": "hertz"}, supports={"tilt": "free"})
+    found = settle(case)
+    size, how = contact_error(case, found)
+    # 1 % of Hertz's approach at the typical load; it grows with the cube root of the load over its area, and contacts on
+    # finite rings approach less than half-spaces: some percent.
+    assert 0.005 < size < 0.03 and "not part of the total" in how
+    columns = case.bodies.ball_columns(case, found)
+    assert size >= (columns["approach_penetration_inner_m"] / columns["approach_inner_m"])[0]
 
 
 REFUSED = {

@@ -61,6 +61,7 @@ def page(result: dict[str, Any], picture: bool = False) -> str:
     lines = [f"# Error against run time: {result['title']}", ""]
     lines += ["![error against run time](precision.png)", ""] if picture else []
     lines += [*(f"- {text}" for text in result["words"]), "", _table(result), ""]
+    lines += ["Errors of each quantity, each relative to its own reference:", "", _quantities(result), ""]
     others = [model for model in result["models"] if not model["base"]]
     if others:
         lines += ["Differences between models, each by its own reference:", "", _models(others), ""]
@@ -107,6 +108,15 @@ def _table(result: dict[str, Any]) -> str:
         lines.append(_line(cells))
     notes = "\\* on the front; ~ the reference is not ten times more accurate than this row: its error is known to the bound only."
     return "\n".join([*lines, "", notes])
+
+
+def _quantities(result: dict[str, Any]) -> str:
+    """Errors of all quantities, those of Z's parts relative to |Z|."""
+    rows = [row for row in result["rows"] if row["errors"]]
+    names = list(dict.fromkeys(name for row in rows for name in row["errors"]))
+    lines = [_line(("setting", *(name.replace("_", " ") for name in names))), _line(["---"] * (1 + len(names)))]
+    lines += [_line((_words(row["setting"]), *(_number(row["errors"].get(name), 2) for name in names))) for row in rows]
+    return "\n".join([*lines, "", "z real and z imag: relative to the size of Z."])
 
 
 def _models(models: list[dict[str, Any]]) -> str:

@@ -119,11 +119,24 @@ def judged(
     try:
         observed, drift = measure()
     except RacewayError as error:
-        return Row(*head, None, None, FAILED, expectation.reason, f"refused, unexpectedly: {short(error)}")
+        return unexpected(case, setting, quantity, expectation, error, predicted)
     if not math.isfinite(observed) or (drift is not None and not math.isfinite(drift)):
         return Row(*head, None, None, FAILED, expectation.reason, f"not a number: {observed}, energy {drift}")
     good = expectation.holds(predicted, observed)
     return Row(*head, float(observed), drift, AS_EXPECTED if good else FAILED, expectation.reason, note)
+
+
+def unexpected(
+    case: str,
+    setting: dict[str, Any],
+    quantity: str,
+    expectation: Expectation,
+    why: RacewayError,
+    predicted: float | None = None,
+) -> Row:
+    """The row of a refusal that nobody expects."""
+    head = (case, setting, quantity, expectation.words(predicted), predicted)
+    return Row(*head, None, None, FAILED, expectation.reason, f"refused, unexpectedly: {short(why)}")
 
 
 def refused(case: str, setting: dict[str, Any], words: str, reason: str, measure: Callable[[], Any]) -> Row:

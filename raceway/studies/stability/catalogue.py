@@ -30,7 +30,7 @@ def catalogue(registry: Registry, tables: Mapping[str, Any] | None = None) -> tu
         why = "the cases move bearings through a million steps, which takes forces of whole contacts: use 'resultant'"
         raise SceneError.at("contact.discretisation", "nodal", why)
     cases = [*_limits(base, registry), *_orbits(base, registry, tables is None), *_energy(base, registry, tables is None)]
-    cases += _penalties(base, registry)
+    cases += _penalties(base, registry, "orbit" if tables is None else "any")
     if tables is None:
         cases += [*_scenes(base, registry), *surface_cases(base, registry), *_refusals(base), *_elements()]
     return tuple(cases)
@@ -103,13 +103,13 @@ _CHATTER: tuple[tuple[str, Changes, float, bool], ...] = (
 )
 
 
-def _penalties(base: Changes, registry: Registry) -> Iterator[Case]:
+def _penalties(base: Changes, registry: Registry, judge: str) -> Iterator[Case]:
     if "penalty" not in pair_laws(registry):
         return
     for factor in PENALTIES:
         arguments = {
             "tables": base, "changes": {"contact.kind": "penalty"}, "shown": {"law": "penalty", "penalty / default": factor},
-            "penalty_factor": factor, "judge": "orbit" if "excitation" in base else "",
+            "penalty_factor": factor, "judge": judge if "excitation" in base else "",
         }  # fmt: skip
         yield Case("penalty", "scenes:extreme", arguments, 1.0)
 

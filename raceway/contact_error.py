@@ -1,0 +1,50 @@
+"""What a contact law itself is off by: the entry ``contact`` of a result's table ``error``.
+
+Notes
+-----
+At surface points the bodies deform and a law may leave some overlap: its share of the approach is how much too soft the
+contact is.  A law of whole contacts on rigid bodies is held against exact Hertz at the same load.  Both say what the model
+is off by, not the numbers: the entry is no part of ``total``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway.model import Model
+from raceway.statics import Equilibrium
+
+#: Differences from Hertz's approach below this are rounding, of an equilibrium solved to 1e-11.
+_ROUNDING = 1e-8
+
+
+def contact_error(model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+    """Relative error of the approaches at the equilibrium, the largest of all loaded contacts, or None; and how or why not."""
+    loaded = equilibrium.contact_force > 0.0
+    if not loaded.any():
+        return None, "no contact carries anything"
+    if model.scene.contact.discretisation == "nodal":
+        return _penetration(model, equilibrium, loaded)
+    kind = model.scene.contact.kind
+    if model.bodies is not None:
+        return None, (
+            f"law '{kind}' is calibrated to Hertz on elastic bodies, and nothing in a run tells how well: compare with "
+            "contact.discretisation = 'nodal' (docs/condensed.md has both for B7206C)"
+        )
+    split = model.system.ball_count
+    force = equilibrium.contact_force
+    hertz = np.concatenate([model.inner.approach(force[:split]), model.outer.approach(force[split:])])
+    off = float(np.abs(-equilibrium.gap[loaded] / hertz[loaded] - 1.0).max())
+    if off < _ROUNDING:
+        return None, "the law is Hertz's: what it assumes (smooth, dry half-spaces) is not estimated"
+    return off, "largest difference of a contact's approach from exact Hertz at the same load; not part of the total"
+
+
+def _penetration(model: Model, equilibrium: Equilibrium, loaded: np.ndarray) -> tuple[float | None, str]:
+    columns = model.bodies.ball_columns(model, equilibrium)
+    overlap, approach = (
+        np.concatenate([columns[f"{name}_{race}_m"] for race in ("inner", "outer")])[loaded]
+        for name in ("approach_penetration", "approach")
+    )
+    share = float((overlap / np.maximum(approach, 1e-300)).max())
+    return share, "largest share of a contact's approach that the law lets the surfaces overlap; not part of the total"
