@@ -22,7 +22,7 @@ from tests.cluster import rows as rows_of
 TITLE = "Sweeps on a dask scheduler: killed, unfit and silent partners"
 COMMAND = "python -m benchmarks.evidence dask"
 TEST = "python -m pytest tests/test_dask.py"
-_KILLS, _SEED, _PATIENCE_S = 6, 20, 2.0
+_KILLS, _SEED, _PATIENCE_S = 20, 20, 2.0
 
 
 def rows() -> list[Row]:
@@ -51,17 +51,17 @@ def _kills(cluster: Cluster, folder: Path) -> list[Row]:
         cluster.wait_for_workers(2)
         moment, killed = chance.randint(1, POINTS * 2 // 3), list[str]()
 
-        def kill(_what: str, done: int, _total: int, moment: int = moment, killed: list[str] = killed) -> None:
+        def kill(_what: str, done: int, _total: int, k: int = k, moment: int = moment, killed: list[str] = killed) -> None:
             if not killed and done >= moment:
                 killed.append(cluster.kill_busy())
                 moments.append(done)
+                cluster.worker(f"worker-{k + 2}")
 
         with sweep(
             prepared(folder / f"sweep-{k}"), Dask(scheduler=cluster.address, patience=START_S), on_progress=kill
         ) as store:
             complete += store.status()["done"] == POINTS
             equal += rows_of(store) == wanted
-        cluster.worker(f"worker-{k + 2}")
     told = f"{POINTS} points each; killed after {min(moments)} to {max(moments)} of them"
     return [
         Row(
