@@ -75,7 +75,7 @@ def told(rows: list[dict[str, Any]]) -> str:
     parts = []
     for status, count in Counter(row["status"] for row in bad).items():
         reason = next(row["reason"] for row in bad if row["status"] == status)
-        speeds = ", ".join(f"{row['speed_rpm']:g}" for row in bad if row["status"] == status)
+        speeds = ", ".join(dict.fromkeys(f"{row['speed_rpm']:g}" for row in bad if row["status"] == status))
         parts.append(f"{count} {status} ({speeds} r/min: {reason})")
     return "; ".join(parts)
 
