@@ -6,6 +6,7 @@ import csv
 import json
 import re
 
+import attrs
 import pytest
 
 from raceway.errors import ConvergenceError
@@ -16,7 +17,7 @@ from raceway.studies.article import study as driver
 from raceway.studies.article.design import ARTICLE, shaft_tilt_stiffness
 from raceway.studies.article.figures import Picture, pictures
 from raceway.studies.article.report import page
-from tests.article_study import curves, study
+from tests.article_study import curves, row, study
 from tests.command_line import EXAMPLES, invoke
 
 #: Far from resonances, so that a run takes milliseconds.
@@ -94,7 +95,7 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
 def test_page_of_invented_numbers_has_every_figure_and_every_verdict(monkeypatch):
     text = _page(lambda s, load, w: 1e8 * (1.0 + 0.2 * w * (s.tilt == "free")), monkeypatch)
     images = re.findall(r'<img alt="([^"]+)"', text)
-    assert len(images) == 37 and all(len(words) > 40 for words in images)
+    assert len(images) == 67 and all(len(words) > 40 for words in images)
     for number in ("1a", "1b", "2", "3a", "3b", "4", "5a", "5b", "5c", "5d", "5e", "6a", "6b", "6c", "6"):
         assert f'<th scope="row">{number}</th>' in text or f'<th scope="row" class="number">{number}</th>' in text
     assert not re.search(r"\bnan\b", re.sub(r'src="[^"]+"', "", text))
@@ -104,6 +105,18 @@ def test_page_says_what_failed(monkeypatch):
     text = _page(lambda s, load, w: None if s.tilt == "locked" else (1e8,) if w == 1.0 else 1e8, monkeypatch)
     assert "no motion was found" in text and "the steady motion is unstable" in text
     assert '<span class="tone failed">failed</span>' in text
+
+
+def test_runs_of_scan_and_rig_that_fail_are_listed_and_leave_an_empty_cell(tmp_path):
+    found = study(curves(lambda s, load, w: 1e8 * (1.0 + w)))
+    found.scan[400.0][1] = row(15000.0, 400.0, None, "failed", "no motion, says the scan")
+    found = attrs.evolve(found, rig=(*found.rig[1:], {**found.rig[0], **row(11000.0, 400.0, None, "refused", "not so")}))
+    assert [one["reason"] for one in found.failed] == ["not so", "no motion, says the scan"]
+    found.write(tmp_path, pictures=False)
+    with (tmp_path / "tilt-stiffness.csv").open(encoding="utf-8") as file:
+        assert [line["k_ratio"] == "" for line in csv.DictReader(file)] == [True] + [False] * 50
+    for path in tmp_path.glob("*.csv"):
+        assert "nan" not in path.read_text(encoding="utf-8"), path.name
 
 
 def test_a_picture_is_drawn():

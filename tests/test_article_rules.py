@@ -12,6 +12,7 @@ from tests.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)
 SMALL = np.full(9, 1e-9)
+NONE = np.zeros(9, dtype=bool)
 
 
 def _verdicts(k, deviation=0.001, **words):
@@ -96,28 +97,54 @@ def test_courses():
     for expected, values in {
         "rises": 1.0 + W, "falls": 2.0 - W, "level": 1.0 + 0.004 * W, "not monotonic": 1.0 + 0.1 * np.sin(6.0 * W)
     }.items():  # fmt: skip
-        assert rules.course(values, SMALL) == expected
+        assert rules.course(values, SMALL, NONE) == expected
     # A dent within the runs' own errors is none.
     dent = 1.0 + W + np.where(np.arange(9) == 4, -0.2, 0.0)
-    assert rules.course(dent, SMALL) == "not monotonic" and rules.course(dent, np.full(9, 0.1)) == "rises"
+    assert rules.course(dent, SMALL, NONE) == "not monotonic" and rules.course(dent, np.full(9, 0.1), NONE) == "rises"
 
 
-def test_numbers_missing_at_an_end_leave_no_judgement_and_those_between_are_skipped():
+def test_an_unstable_motion_at_an_end_leaves_no_judgement_and_one_between_is_bridged():
     values = 1.0 + W
     between, end = values.copy(), values.copy()
     between[3], end[-1] = np.nan, np.nan
-    assert rules.course(between, SMALL) == "rises"
-    assert rules.course(end, SMALL) is None and rules.rises_quadratically(W, end, SMALL) is None
-    assert rules.change_within(W, end, 0.75, 1.0) is None and rules.spread(W, np.stack([values, end]), 0.75, 1.0) is None
+    assert rules.course(between, SMALL, NONE) == "rises"
+    assert rules.course(end, SMALL, NONE) is None and rules.rises_quadratically(W, end, SMALL, NONE) is None
+    assert rules.change_within(W, end, NONE, 0.75, 1.0) is None
+    assert rules.spread(W, np.stack([values, end]), np.stack([NONE, NONE]), 0.75, 1.0) is None
+
+
+def test_nothing_is_judged_over_a_failed_run():
+    values, failed = 1.0 + W**2, np.arange(9) == 4
+    values[failed] = np.nan
+    surface, lost = np.stack([values, 2.0 * values]), np.stack([NONE, failed])
+    assert rules.course(values, SMALL, failed) is None and rules.rises_quadratically(W, values, SMALL, failed) is None
+    assert rules.change_within(W, values, failed, 0.0, 0.25) is None and rules.spread(W, surface, lost, 0.0, 0.25) is None
+    assert rules.influence_grows(surface, lost) is None
+    assert rules.rises_with_load(np.stack([surface[0], surface[1], 3.0 * values]), np.full((3, 9), 1e-9),
+                                 np.stack([NONE, failed, NONE]))[3:6] == [True, None, True]  # fmt: skip
+
+
+@pytest.mark.parametrize("lost", ["failed", "unstable"])
+def test_a_run_missing_between_the_ends(lost):
+    """At w* = 0.5 everywhere: failed runs fail every place, unstable motions are bridged."""
+    found = _verdicts(
+        lambda s, load, w: _as_the_article_says(s, load, w) if w != 0.5 else None if lost == "failed" else (1e8,)
+    )
+    for number in ("3a", "3b", "4", "5a", "5b", "5c", "5d", "5e", "6b", "6c"):
+        assert (found[number].kind == FAILED) is (lost == "failed"), number
+        assert found[number].failed.startswith("everywhere") is (lost == "failed"), number
+    # At that speed K over the axial load has no number at all; at the others it has all of them.
+    assert found["6a"].kind == PARTLY and found["6a"].failed.startswith("12990 r/min")
+    assert found["6"].kind == FAILED
 
 
 def test_a_parabola_is_found_again_and_a_root_or_a_jump_is_none():
     fit = rules.parabola(W, 1.0 + 0.1 * W + 0.3 * W**2)
     assert (fit.slope, fit.bend) == pytest.approx((0.1, 0.3), abs=1e-12)  # an exact parabola: rounding only
     assert fit.bend_share == pytest.approx(0.75) and fit.misfit < 1e-12
-    assert rules.rises_quadratically(W, 1.0 + 0.1 * W + 0.3 * W**2, SMALL)
-    assert rules.rises_quadratically(W, 1.0 + np.sqrt(W), SMALL) is False
-    assert rules.rises_quadratically(W, np.where(W > 0.5, 2.0, 1.0) + 0.01 * W, SMALL) is False
+    assert rules.rises_quadratically(W, 1.0 + 0.1 * W + 0.3 * W**2, SMALL, NONE)
+    assert rules.rises_quadratically(W, 1.0 + np.sqrt(W), SMALL, NONE) is False
+    assert rules.rises_quadratically(W, np.where(W > 0.5, 2.0, 1.0) + 0.01 * W, SMALL, NONE) is False
 
 
 def test_regions_in_words():

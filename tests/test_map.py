@@ -13,7 +13,7 @@ from raceway.run import run
 from raceway.scene_file import read_toml
 from raceway.studies.map import study as study_module
 from raceway.studies.map import workers as map_workers
-from raceway.studies.map.curves import SATURATED, curves, trend
+from raceway.studies.map.curves import SATURATED, curves, trend, words
 from raceway.studies.map.design import ANGLE, AXIAL, METHODS, SPEED, TILT, design
 from raceway.studies.map.point import small_signal
 from raceway.studies.map.study import study_map
@@ -53,6 +53,17 @@ def test_saturation_is_the_first_speed_with_less_than_its_share_of_the_largest_e
     (curve,) = curves(rows(law.get))
     assert curve["saturates_at_rpm"] == 4e4
     assert curve["steepest_exponent"] == pytest.approx(2.0) and curve["last_exponent"] == pytest.approx(1.4)
+
+
+def test_words_name_no_load_that_behaves_otherwise():
+    made = []
+    for load, rises in ((50.0, True), (100.0, True), (400.0, False), (2000.0, True)):
+        some = rows(lambda speed, rises=rises: speed if rises else 1.0 / speed)
+        made += [{**row, "point": {**row["point"], AXIAL: load}} for row in some]
+    (said,) = words(curves(made), made)
+    assert "hardens at 50 to 100 N and 2000 N; softens at 400 N" in said
+    (said,) = words(curves(made[:10]), made[:10])
+    assert said.endswith("k at the highest speed is 60 times that at the lowest.")
 
 
 def test_signs_failures_and_boundaries():

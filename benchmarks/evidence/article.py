@@ -85,8 +85,8 @@ def _page(run: _Cold) -> list[Row]:
     return [
         below("size of the page [MB]", len(run.page.encode()) / 1e6, 5.0, COMMAND),
         Row("what the page fetches or runs", ", ".join(found) or "nothing", "nothing", not found, COMMAND),
-        Row("pictures in the page, each with words for those who do not see it", len(images), "37, none without words",
-            len(images) == 37 and all(images), COMMAND),
+        Row("pictures in the page, each with words for those who do not see it", len(images), "67, none without words",
+            len(images) == 67 and all(images), COMMAND),
     ]  # fmt: skip
 
 

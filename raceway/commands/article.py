@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from raceway.commands.console import warn
 from raceway.commands.frame import attempt, common, plugin_files, registry_with, show, show_progress
@@ -69,6 +71,7 @@ def article(
         tables, mistakes = changed_tables(scene or ARTICLE, changes, registry)
         if mistakes:
             raise SceneError(mistakes)
+    command = _command(click.get_current_context())
     name = "article" if scene is None else f"{slug(str((tables or {})['title']))}-article"
     folder = writable(out or _RESULTS / name)
     pictures = pictures and has_matplotlib()
@@ -85,10 +88,25 @@ def article(
             raise
         progress("writing", 0, 0)
         content, files = found.as_dict(), list[str]()
-        failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
+        failed = attempt(lambda: found.write(folder, pictures, command), files) or found.fault
     if failed is None and all(row["status"] == "failed" for row in content["rows"]):
         failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")
     from raceway.commands.article_screen import article_screen
 
     show(content, as_json, failed, lambda _: article_screen(content, files))
     return 0
+
+
+def _command(context: click.Context) -> str:
+    """What was typed, as far as it decides the numbers; of a path from the root only the name."""
+    words = ["raceway", "study", "article"]
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        typed = context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+        if not typed or name not in context.params or name in ("out", "processes", "pictures", "as_json"):
+            continue
+        value = context.params[name]
+        for one in value if parameter.multiple else (value,):
+            text = one.name if isinstance(one, Path) and one.is_absolute() else str(one)
+            words += [text] if isinstance(parameter, click.Argument) else [parameter.opts[0], text]
+    return shlex.join(words)

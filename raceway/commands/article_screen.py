@@ -38,7 +38,7 @@ def article_screen(content: Mapping[str, Any], files: Sequence[str]) -> Renderab
     cost = content["cost"]
     lines = [
         f"quasi-static trends equal to an independent solver's printed digits: {good} of {len(trends)}",
-        f"{len(content['rows'])} points, {content['failed']} failed; {cost['wall_s']:.0f} s, "
+        f"{content['runs']} points, {content['failed']} failed; {cost['wall_s']:.0f} s, "
         f"{cost['cpu_s']:.0f} s of processor time"
         + (f"; {cost['reused']} of {cost['tasks']} pieces taken from earlier" if cost["reused"] else ""),
     ]

@@ -90,7 +90,7 @@ def test_records_that_cannot_be_used(case):
 def test_a_mark_that_is_missing():
     record = made()
     gone = (record.time > 0.2) & (record.time < 0.2 + 1.0 / HZ)
-    with pytest.raises(RacewayError, match="a mark of `key` is missing at 0.195.* s"):
+    with pytest.raises(RacewayError, match="the turn at 0.195.* s takes 2.00 .* a mark of `key` is missing there"):
         turning(Recording(record.time, record.y, record.z, np.where(gone, 0.0, record.key)))
 
 

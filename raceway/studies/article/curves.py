@@ -41,11 +41,16 @@ class Curves:
         key = MEASURES[measure]
         return np.array([row[key] if row["status"] == "unstable" else np.nan for row in self.rows[setting, load]])
 
-    def surface(self, setting: Setting, measure: str = "K") -> tuple[np.ndarray, np.ndarray]:
-        """Values [N/m] and errors, (loads, speeds) each."""
+    def failed(self, setting: Setting, load: float) -> np.ndarray:
+        """(speeds,) where the run failed or was refused."""
+        return np.array([row["status"] not in ("completed", "unstable") for row in self.rows[setting, load]])
+
+    def surface(self, setting: Setting, measure: str = "K") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Values [N/m], errors, and where runs failed; (loads, speeds) each."""
         loads = self.design.loads
         values = np.array([self.values(setting, load, measure) for load in loads])
-        return values, np.array([self.errors(setting, load) for load in loads])
+        errors = np.array([self.errors(setting, load) for load in loads])
+        return values, errors, np.array([self.failed(setting, load) for load in loads])
 
     def normalised(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
         """k* = k / k(w_min), (speeds,)."""
@@ -70,7 +75,7 @@ def told(rows: list[dict[str, Any]]) -> str:
     parts = []
     for status, count in Counter(row["status"] for row in bad).items():
         reason = next(row["reason"] for row in bad if row["status"] == status)
-        speeds = ", ".join(f"{row['speed_rpm']:g}" for row in bad if row["status"] == status)
+        speeds = ", ".join(dict.fromkeys(f"{row['speed_rpm']:g}" for row in bad if row["status"] == status))
         parts.append(f"{count} {status} ({speeds} r/min: {reason})")
     return "; ".join(parts)
 

@@ -15,7 +15,7 @@ import numpy as np
 from raceway.plugins.reports.pictures import new_figure
 from raceway.studies.article import causes
 from raceway.studies.article.curves import ROTATING, Curves
-from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILT_WORDS, TILTS, Setting
+from raceway.studies.article.design import AMPLITUDES, CLAIMED, DIRECTIONS, TILT_WORDS, TILTS, Setting
 from raceway.studies.article.rules import LEVEL
 
 if TYPE_CHECKING:
@@ -73,24 +73,27 @@ def _axes(figure: Figure, place: Any, solid: bool) -> Any:
 
 
 def pictures(study: Article) -> list[Picture]:
-    """All figures in the order of the page."""
+    """All figures in the order of the page: 9 to 12 for each kind of bodies, then what they have in common."""
     curves = study.curves
-    found = [
-        *_excitations(curves), *_over_speed(curves), *_over_load(curves), *_surfaces(curves), _tilt_stiffness(study)
-    ]  # fmt: skip
+    found = []
+    for kind in curves.design.bodies:
+        made = [*_excitations(curves, kind), *_over_speed(curves, kind), *_over_load(curves, kind), *_surfaces(curves, kind)]
+        found += [attrs.evolve(one, name=named(one.name, curves.design.bodies, kind)) for one in made]
+    found.append(_tilt_stiffness(study))
     if len(curves.design.bodies) > 1:
         found.append(_bodies(curves))
     return found
+
+
+def named(figure: str, bodies: Sequence[str], kind: str) -> str:
+    """The name of a figure: that of the first kind of bodies has nothing added."""
+    return figure if kind == bodies[0] else f"{figure}-{kind}"
 
 
 def shown_load(curves: Curves) -> float:
     """The scene's own axial load, or the one of the study that lies next to it."""
     own = curves.design.tables.get("load", {}).get("axial", 0.0)
     return min(curves.design.loads, key=lambda load: abs(load - own))
-
-
-def _kind(curves: Curves) -> str:
-    return curves.design.bodies[0]
 
 
 def _some(values: Sequence[float], count: int = 5) -> list[int]:
@@ -114,9 +117,9 @@ def _ends(values: np.ndarray) -> str:
     return f"{values[0]:.4g} to {values[-1]:.4g}" if np.isfinite(values[[0, -1]]).all() else "not computed to the end"
 
 
-def _excitations(curves: Curves) -> list[Picture]:
-    """Figure 9: both excitations over speed, and the two mixed pairs that change one thing only."""
-    load, kind = shown_load(curves), _kind(curves)
+def _excitations(curves: Curves, kind: str) -> list[Picture]:
+    """Figure 9: both excitations over speed, and the mixed pairs, as far as they are run, that change one thing only."""
+    load = shown_load(curves)
     w = np.array(curves.design.relative_speeds)
     parts = (
         ("figure-9", "Figure 9: k*, both excitations", "K", True, "k* (k = K)"),
@@ -127,9 +130,10 @@ def _excitations(curves: Curves) -> list[Picture]:
     for name, title, measure, star, label in parts:
         panels = []
         for tilt in TILTS:
-            lines = {pair: Setting(*pair, tilt, True, kind) for pair in _PAIRS}
+            settings = {pair: Setting(*pair, tilt, True, kind) for pair in _PAIRS}
+            lines = {pair: setting for pair, setting in settings.items() if (setting, load) in curves.rows}
             panels.append(_excitation_panel(curves, w, lines, load, measure, star, label, TILT_WORDS[tilt]))
-        found.append(Picture(name, f"{title}, {load:g} N, ball inertia, {kind} bodies", tuple(panels)))
+        found.append(Picture(name, f"{title}, {load:g} N, {kind} bodies", tuple(panels)))
     return found
 
 
@@ -140,20 +144,28 @@ def _excitation_panel(
     def taken(setting: Setting, values: np.ndarray) -> np.ndarray:
         return np.asarray(values / curves.values(setting, load, measure)[0] if star else values / 1e6)
 
+    light = {pair: attrs.evolve(lines[pair], inertia=False) for pair in CLAIMED}
+
     def draw(axes: Any) -> None:
-        for pair, (colour, style, width, name) in _PAIRS.items():
-            setting = lines[pair]
+        for pair, setting in light.items():
+            steady = taken(setting, curves.values(setting, load, measure))
+            known = np.isfinite(steady)
+            axes.plot(w[known], steady[known], "--", color=_PAIRS[pair][0], linewidth=1.1)
+        for pair, setting in lines.items():
+            colour, style, width, name = _PAIRS[pair]
             steady = taken(setting, curves.values(setting, load, measure))
             known = np.isfinite(steady)
             axes.plot(w[known], steady[known], style, marker="o", markersize=3, color=colour, linewidth=width, label=name)
             axes.plot(w, taken(setting, curves.unstable(setting, load, measure)), "x", color=colour, markersize=6, zorder=1)
         _finish(axes, f"{tilt}, {load:g} N", _SPEED, label, legend=2)
-        _cut(axes, [taken(s, curves.values(s, load, measure)) for s in lines.values()])
+        _cut(axes, [taken(s, curves.values(s, load, measure)) for s in (*lines.values(), *light.values())])
 
     words = "; ".join(f"{_PAIRS[pair][3]}: {_ends(taken(s, curves.values(s, load, measure)))}" for pair, s in lines.items())
     alternative = f"{label} over w* from 0 to 1, {tilt}: {words}"
     bad = [curves.unstable(setting, load, measure) for setting in lines.values()]
-    caption = "Crosses: unstable motions, which a ring does not stay on." if np.isfinite(bad).any() else ""
+    caption = "Dashed: the same with weightless balls."
+    if np.isfinite(bad).any():
+        caption += " Crosses: unstable motions, which a ring does not stay on."
     return Panel(draw, alternative, caption)
 
 
@@ -189,9 +201,9 @@ def _end_labels(axes: Any, x: float, labels: list[tuple[float, str, Any]]) -> No
                       annotation_clip=False)  # fmt: skip
 
 
-def _over_speed(curves: Curves) -> list[Picture]:
+def _over_speed(curves: Curves, kind: str) -> list[Picture]:
     """Figure 10: k over speed at several axial loads; dashed without ball inertia."""
-    w, kind, found = np.array(curves.design.relative_speeds), _kind(curves), []
+    w, found = np.array(curves.design.relative_speeds), list[Picture]()
     places = _some(curves.design.loads)
     colours = _colours(len(places))
     for name, title, star in (
@@ -231,9 +243,9 @@ def _surface(curves: Curves, setting: Setting, star: bool) -> np.ndarray:
     return np.asarray(values / values[:, :1] if star else values / 1e6)
 
 
-def _over_load(curves: Curves) -> list[Picture]:
-    """Figure 11: k over axial load at several speeds."""
-    loads, kind, found = np.array(curves.design.loads), _kind(curves), []
+def _over_load(curves: Curves, kind: str) -> list[Picture]:
+    """Figure 11: k over axial load at several speeds; dashed without ball inertia."""
+    loads, found = np.array(curves.design.loads), list[Picture]()
     places = _some(curves.design.speeds)
     colours = _colours(len(places))
     for name, title, star in (
@@ -242,26 +254,31 @@ def _over_load(curves: Curves) -> list[Picture]:
     ):
         panels = []
         for tilt in TILTS:
-            surface = _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), star)
+            surface, light = (
+                _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=i, bodies=kind), star) for i in (True, False)
+            )
 
-            def draw(axes: Any, surface: np.ndarray = surface, tilt: str = tilt, star: bool = star) -> None:
+            def draw(
+                axes: Any, surface: np.ndarray = surface, light: np.ndarray = light, tilt: str = tilt, star: bool = star
+            ) -> None:
                 for k, colour in zip(places, colours, strict=True):
+                    axes.plot(loads, light[:, k], "--", color=colour, linewidth=1.1)
                     label = f"w* = {curves.design.relative_speeds[k]:.2g}"
                     axes.plot(loads, surface[:, k], "-o", markersize=3, color=colour, linewidth=1.9, label=label)
                 _finish(axes, TILT_WORDS[tilt], _LOAD, _STAR if star else _STIFFNESS, legend=3)
 
             words = "; ".join(f"w* = {curves.design.relative_speeds[k]:.2g}: {_ends(surface[:, k])}" for k in places)
             label = _STAR if star else _STIFFNESS
-            panels.append(Panel(draw, f"{label} over the axial load, {TILT_WORDS[tilt]}: {words}", ""))
-        found.append(
-            Picture(name, f"{title} over axial load, rotating force m e w², ball inertia, {kind} bodies", tuple(panels))
-        )
+            panels.append(
+                Panel(draw, f"{label} over the axial load, {TILT_WORDS[tilt]}: {words}", "Dashed: weightless balls.")
+            )
+        found.append(Picture(name, f"{title} over axial load, rotating force m e w², {kind} bodies", tuple(panels)))
     return found
 
 
-def _surfaces(curves: Curves) -> list[Picture]:
+def _surfaces(curves: Curves, kind: str) -> list[Picture]:
     """Figure 12: k* over speed and axial load, as a map; K in N/m as a surface."""
-    kind, found = _kind(curves), []
+    found = []
     for inertia, name, title in (
         (True, "figure-12", "ball inertia"),
         (False, "figure-12-weightless-balls", "weightless balls"),
@@ -269,7 +286,7 @@ def _surfaces(curves: Curves) -> list[Picture]:
         panels = tuple(_map(curves, Setting(**ROTATING, tilt=tilt, inertia=inertia, bodies=kind)) for tilt in TILTS)
         found.append(Picture(name, f"Figure 12: k* over speed and axial load, {title}, {kind} bodies", panels))
     panels = tuple(_solid(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind)) for tilt in TILTS)
-    found.append(Picture("figure-12-newton-per-metre", f"Figure 12 in N/m: K, ball inertia, {kind} bodies", panels))
+    found.append(Picture("figure-12-newton-per-metre", f"Figure 12 in N/m: K, {kind} bodies", panels))
     return found
 
 
@@ -302,13 +319,15 @@ def _range(values: np.ndarray) -> str:
 
 def _solid(curves: Curves, setting: Setting) -> Panel:
     w, loads = np.meshgrid(curves.design.relative_speeds, curves.design.loads)
-    k = _surface(curves, setting, False)
+    k, light = (_surface(curves, attrs.evolve(setting, inertia=i), False) for i in (True, False))
 
     def draw(axes: Any) -> None:
         if np.isfinite(k).all():
             axes.plot_surface(w, loads, k, cmap="viridis", edgecolor="#1b273355", linewidth=0.4, antialiased=True)
         else:
             axes.scatter(*(part[np.isfinite(k)] for part in (w, loads, k)), color="#0b5fa5", s=8)
+        if np.isfinite(light).all():
+            axes.plot_wireframe(w, loads, light, color="#c8501e", linewidth=0.6)
         axes.set_title(TILT_WORDS[setting.tilt], fontsize=11)
         axes.set_xlabel(_SPEED, fontsize=9)
         axes.set_ylabel(_LOAD, fontsize=9)
@@ -320,8 +339,8 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
         axes.view_init(24, -128)
         axes.set_box_aspect(None, zoom=0.92)
 
-    words = f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(k)} 10⁶ N/m"
-    return Panel(draw, words, "", solid=True)
+    words = f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(k)} 10⁶ N/m; with weightless balls {_range(light)}"
+    return Panel(draw, words, "Red wires: weightless balls.", solid=True)
 
 
 def _tilt_stiffness(study: Article) -> Picture:

@@ -12,7 +12,7 @@ import attrs
 
 from raceway.files import write_whole
 from raceway.plugins.reports.pictures import save_figure
-from raceway.result import write_json
+from raceway.result import without_nan, write_json
 from raceway.studies.article import causes
 from raceway.studies.article.figures import pictures as all_pictures
 from raceway.studies.article.report import page, verdict_rows
@@ -45,7 +45,7 @@ def _tables(study: Article, content: Mapping[str, Any]) -> dict[str, list[dict[s
     scan = [
         {"axial_n": load, "tilt_stiffness": stiffness, "k_ratio": ratio}
         for load, rows in study.scan.items()
-        for stiffness, ratio in zip(causes.STIFFNESSES, causes.hardening(rows).tolist(), strict=True)
+        for stiffness, ratio in zip(causes.STIFFNESSES, without_nan(causes.hardening(rows).tolist()), strict=True)
     ]
     trends = []
     for one in study.trends:

@@ -11,7 +11,7 @@ from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
 from raceway.studies.article.curves import told
 from raceway.studies.article.design import TILT_WORDS, TILTS
-from raceway.studies.article.figures import Picture, shown_load
+from raceway.studies.article.figures import Picture, named, shown_load
 from raceway.studies.page import Cell, Page
 
 if TYPE_CHECKING:
@@ -142,10 +142,12 @@ def _figures(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
         ("Figure 11: axial load", ("figure-11", "figure-11-newton-per-metre")),
         ("Figure 12: both", ("figure-12", "figure-12-weightless-balls", "figure-12-newton-per-metre")),
     )
-    for heading, names in parts:
-        out.section(heading)
-        for name in names:
-            _picture(out, pictures[name])
+    bodies = study.curves.design.bodies
+    for kind in bodies:
+        for heading, names in parts:
+            out.section(heading if kind == bodies[0] else f"{heading}, {kind} bodies")
+            for name in names:
+                _picture(out, pictures[named(name, bodies, kind)])
     out.section("What causes the trend")
     out.text("One choice is swapped at a time; everything else stays.")
     curves = study.curves
@@ -214,17 +216,23 @@ def _rig(out: Page, study: Article) -> None:
 
 def _faults(out: Page, study: Article) -> None:
     out.section("Failed runs and unstable motions")
-    total = sum(len(rows) for rows in study.curves.rows.values())
-    bad = {key: words for key, rows in study.curves.rows.items() if (words := told(rows))}
+    bad = [
+        [setting.name, f"{load:g}", words] for (setting, load), rows in study.curves.rows.items() if (words := told(rows))
+    ]
+    for load, rows in study.scan.items():
+        bad += [["tilt stiffness of the shaft varied", f"{load:g}", words] for words in filter(None, [told(rows)])]
+    places = dict.fromkeys((row["tilt"], row["bodies"], row["axial_n"]) for row in study.rig)
+    for place in places:
+        found = told([row for row in study.rig if (row["tilt"], row["bodies"], row["axial_n"]) == place])
+        bad += [[f"at the rig’s speeds, {TILT_WORDS[place[0]]}, {place[1]}", f"{place[2]:g}", found]] if found else []
     unstable = sum(row["status"] == "unstable" for row in study.curves.faults())
     out.text(
-        f"{len(study.failed)} of {total} runs failed. {unstable} steady motions are unstable: they satisfy the equations, but a "
+        f"{len(study.failed)} of {study.runs} runs failed. {unstable} steady motions of the curves are unstable: they satisfy the equations, but a "
         "ring does not stay on them; they are crosses in the figures and count for no verdict. Unidirectional forces meet resonances "
         "of the contacts’ higher harmonics with the ring’s vibrations (docs/periodic.md)."
     )
     if bad:
-        rows = [[setting.name, f"{load:g}", words] for (setting, load), words in bad.items()]
-        out.table(["setting", "axial load N", "what became of it"], rows)
+        out.table(["setting", "axial load N", "what became of it"], bad)
 
 
 def _digits(value: float | None, count: int = 5) -> str:

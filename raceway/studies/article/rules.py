@@ -1,6 +1,7 @@
 """What the claims ask of numbers.  Plain functions: arrays in, answers out; None where numbers are missing.
 
-A number that is missing is nan.
+A number that is missing is nan.  Where ``failed`` is True a run failed or was refused: nothing is judged over such a gap.  The
+other numbers that are missing belong to unstable motions: those between two numbers are bridged, those at an end leave no judgement.
 """
 
 from __future__ import annotations
@@ -18,13 +19,16 @@ ABOUT = 0.25
 MISFIT = 0.05
 
 
-def course(values: np.ndarray, errors: np.ndarray) -> str | None:
-    """ "rises" or "falls" at every step, "level", "not monotonic"; None without both ends or with fewer than three numbers.
+def course(values: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> str | None:
+    """ "rises" or "falls" at every step, "level", "not monotonic"; None with a failed run, without both ends, or with
+    fewer than three numbers.
 
     Parameters
     ----------
-    values : (n,);  errors : (n,) relative; a step within its ends' errors is no step
+    values : (n,);  errors : (n,) relative; a step within its ends' errors is no step;  failed : (n,) bool
     """
+    if failed.any():
+        return None
     known = np.isfinite(values)
     if not (known[0] and known[-1] and known.sum() >= 3):
         return None
@@ -61,9 +65,11 @@ def parabola(relative_speed: np.ndarray, normalised: np.ndarray) -> Parabola:
     return Parabola(float(slope), float(bend), float(rest / size) if size > 0.0 else np.inf)
 
 
-def rises_quadratically(relative_speed: np.ndarray, values: np.ndarray, errors: np.ndarray) -> bool | None:
+def rises_quadratically(
+    relative_speed: np.ndarray, values: np.ndarray, errors: np.ndarray, failed: np.ndarray
+) -> bool | None:
     """Rises at every step, bends upwards, and a parabola describes it."""
-    found = course(values, errors)
+    found = course(values, errors, failed)
     if found is None:
         return None
     if found != "rises":
@@ -76,8 +82,12 @@ def about(value: float, target: float) -> bool:
     return abs(value - target) <= ABOUT * target
 
 
-def change_within(relative_speed: np.ndarray, values: np.ndarray, first: float, last: float) -> float | None:
-    """|k(last) / k(first) - 1|, between neighbours by straight lines; None where numbers around them are missing."""
+def change_within(
+    relative_speed: np.ndarray, values: np.ndarray, failed: np.ndarray, first: float, last: float
+) -> float | None:
+    """|k(last) / k(first) - 1|, between neighbours by straight lines; None with a failed run or without numbers around them."""
+    if failed.any():
+        return None
     known = np.isfinite(values)
     w, k = relative_speed[known], values[known]
     if len(w) < 2 or first < w[0] or last > w[-1]:
@@ -86,15 +96,17 @@ def change_within(relative_speed: np.ndarray, values: np.ndarray, first: float, 
     return float(abs(ends[1] / ends[0] - 1.0))
 
 
-def spread(relative_speed: np.ndarray, surface: np.ndarray, first: float, last: float) -> float | None:
+def spread(relative_speed: np.ndarray, surface: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
     """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it.
 
-    Between neighbours by straight lines; None where numbers around the zone's ends are missing.
+    Between neighbours by straight lines; None with a failed run or without numbers around the zone's ends.
 
     Parameters
     ----------
-    surface : (loads, speeds), positive
+    surface : (loads, speeds), positive;  failed : (loads, speeds) bool
     """
+    if failed.any():
+        return None
     inside = (relative_speed > first) & (relative_speed < last)
     places = np.array([first, *relative_speed[inside], last])
     zone = []
@@ -107,9 +119,9 @@ def spread(relative_speed: np.ndarray, surface: np.ndarray, first: float, last: 
     return float((np.max(zone, axis=0) / np.min(zone, axis=0) - 1.0).max())
 
 
-def rises_with_load(surface: np.ndarray, errors: np.ndarray) -> list[bool | None]:
+def rises_with_load(surface: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> list[bool | None]:
     """At each speed: whether k rises at every step of the axial load; (loads, speeds) each."""
-    found = [course(surface[:, k], errors[:, k]) for k in range(surface.shape[1])]
+    found = [course(surface[:, k], errors[:, k], failed[:, k]) for k in range(surface.shape[1])]
     return [None if one is None else one == "rises" for one in found]
 
 
@@ -118,8 +130,10 @@ def influence(surface: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(surface[:, -1] / surface[:, 0] - 1.0))
 
 
-def influence_grows(surface: np.ndarray) -> bool | None:
-    """Whether the size of the speed's influence rises at every step of the axial load; (loads, speeds)."""
+def influence_grows(surface: np.ndarray, failed: np.ndarray) -> bool | None:
+    """Whether the size of the speed's influence rises at every step of the axial load; (loads, speeds) each."""
+    if failed.any():
+        return None
     found = influence(surface)
     if not np.isfinite(found).all():
         return None

@@ -62,8 +62,14 @@ class Article:
 
     @property
     def failed(self) -> list[dict[str, Any]]:
-        """Runs that failed or were refused; unstable motions are not among them."""
-        return [row for row in self.curves.faults() if row["status"] != "unstable"]
+        """Runs that failed or were refused, of curves, rig and scan; unstable motions are not among them."""
+        every = [*self.curves.faults(), *self.rig, *(row for rows in self.scan.values() for row in rows)]
+        return [row for row in every if row["status"] not in ("completed", "unstable")]
+
+    @property
+    def runs(self) -> int:
+        """How many steady orbits were sought."""
+        return sum(map(len, [*self.curves.rows.values(), self.rig, *self.scan.values()]))
 
     def as_dict(self) -> dict[str, Any]:
         """Everything, as plain tables for JSON."""
@@ -92,14 +98,19 @@ class Article:
                     for load, rows in self.scan.items()
                 ],
                 "rows": rows,
+                "runs": self.runs,
                 "failed": len(self.failed),
                 "cost": {"wall_s": self.seconds, "cpu_s": self.cpu_s, "own_cpu_s": self.own_cpu_s, "tasks": self.tasks, "reused": self.reused},
             }
         )  # fmt: skip
         return content
 
-    def write(self, folder: Path, pictures: bool = True) -> list[Path]:
+    def write(self, folder: Path, pictures: bool = True, command: str = "raceway study article") -> list[Path]:
         """article.html with its figures as PNG files, article.json and CSV files; without pictures no page.
+
+        Parameters
+        ----------
+        command : what makes it again, for the page's foot
 
         Raises
         ------
@@ -108,7 +119,7 @@ class Article:
         """
         from raceway.studies.article.files import write
 
-        return write(self, folder, pictures)
+        return write(self, folder, pictures, command)
 
 
 def article(

@@ -97,11 +97,12 @@ def words(found: Sequence[dict[str, Any]], rows: Sequence[dict[str, Any]]) -> li
     for (angle, tilt), members in groups.items():
         name = f"{angle:g} deg, tilt {tilt if tilt in ('locked', 'free') else tilt + ' N m/rad'}"
         kinds: dict[str, list[float]] = {}
+        loads = sorted({curve["axial"] for curve in members})
         for curve in members:
             kinds.setdefault(curve["trend"], []).append(curve["axial"])
-        said = "; ".join(f"{kind} at {_span(loads)}" for kind, loads in kinds.items())
+        said = "; ".join(f"{kind} at {_spans(some, loads)}" for kind, some in kinds.items())
         ends = [curve["last_change"] for curve in members if curve["last_change"] is not None]
-        tail = f". k at the highest speed is {_times(min(ends))} to {_times(max(ends))} that at the lowest" if ends else ""
+        tail = f". k at the highest speed is {_times(min(ends), max(ends))} that at the lowest" if ends else ""
         out.append(f"{name}: {said}{tail}.")
     failed = [row for row in rows if row["status"] != "completed"]
     if failed:
@@ -109,10 +110,17 @@ def words(found: Sequence[dict[str, Any]], rows: Sequence[dict[str, Any]]) -> li
     return out
 
 
-def _span(loads: Sequence[float]) -> str:
-    low, high = min(loads), max(loads)
-    return f"{low:g} N" if low == high else f"{low:g} to {high:g} N"
+def _spans(chosen: Sequence[float], every: Sequence[float]) -> str:
+    """Loads in words; only neighbours among every load of the map become a range."""
+    runs: list[list[float]] = [[]]
+    for load in every:
+        if load in chosen:
+            runs[-1].append(load)
+        elif runs[-1]:
+            runs.append([])
+    return " and ".join(f"{run[0]:g} N" if len(run) == 1 else f"{run[0]:g} to {run[-1]:g} N" for run in runs if run)
 
 
-def _times(change: float) -> str:
-    return f"{1.0 + change:.3g} times"
+def _times(least: float, most: float) -> str:
+    low, high = f"{1.0 + least:.3g} times", f"{1.0 + most:.3g} times"
+    return low if low == high else f"{low} to {high}"

@@ -71,8 +71,8 @@ def _by_marks(recording: Recording) -> Turning:
     for place in np.flatnonzero((ratio > 1.6) | (ratio < 0.6))[:1]:
         what = "missing" if ratio[place] > 1.0 else "double"
         raise RacewayError(
-            f"a mark of `key` is {what} at {marks[place]:.6g} s: that turn takes {ratio[place]:.2f} of the usual time. "
-            "Cut the record there"
+            f"the turn at {marks[place]:.6g} s takes {ratio[place]:.2f} of the usual time: a mark of `key` is {what} there, or the "
+            f"speed is not constant (order tracking follows up to {100 * MOST_RANGE:g} % over the record). Cut the record there"
         )
     mean = 2.0 * pi * (len(marks) - 1) / float(marks[-1] - marks[0])
     if recording.speed is not None and abs(mean / float(recording.speed.mean()) - 1.0) > _AGREE:

@@ -15,12 +15,15 @@ from math import pi
 import attrs
 import numpy as np
 
+from raceway.errors import RacewayError
 from raceway.studies.measured.angle import Turning
 
 _BLOCKS = 16
 _HARMONICS = 3
 #: Range of speed above which the line's change with the speed is fitted: straight, then curved.
 _STRAIGHT, _CURVED = 5e-4, 0.02
+#: A 1x line below this part of the largest sample is rounding of the fit: some thousand times the spacing of floats.
+_ROUNDING = 1e-12
 
 
 @attrs.frozen(eq=False)
@@ -53,12 +56,21 @@ class Order:
 
 
 def order(found: Turning) -> Order:
-    """The 1x line of a record."""
-    angle, straight = found.angle, found
+    """The 1x line of a record.
+
+    Raises
+    ------
+    RacewayError
+        The sensor sees no motion once a turn.
+    """
+    straight = found
+    lines, backward, speeds, rest = _blocks(found)
+    if max(np.abs(lines).max(), np.abs(backward).max()) <= _ROUNDING * np.abs(found.recording.plane).max():
+        raise RacewayError("the sensor sees no motion once a turn: y and z are constant, or as good as. Is it connected?")
     if not found.marked:
-        straight = _aligned(found)
-        angle = straight.angle
-    lines, backward, speeds, rest = _blocks(straight)
+        straight = _aligned(found, lines)
+        lines, backward, speeds, rest = _blocks(straight)
+    angle = straight.angle
     value, error = _at_mean(lines, speeds)
     if len(lines) > 1:  # white noise seen within the blocks; scatter of a few blocks alone may be small by chance
         error = max(error, rest / np.sqrt(len(angle)))
@@ -117,9 +129,8 @@ def _at_mean(lines: np.ndarray, speeds: np.ndarray) -> tuple[complex, float]:
     return complex(solution[0]), float(np.sqrt(variance))
 
 
-def _aligned(found: Turning) -> Turning:
-    """Angles without a mark, shifted so that the forward line has no phase anywhere: an integrated speed wanders."""
-    lines, *_ = _blocks(found)
+def _aligned(found: Turning, lines: np.ndarray) -> Turning:
+    """Angles without a mark, shifted so that the blocks' forward lines (m,) have no phase: an integrated speed wanders."""
     edges = np.round(np.linspace(0, found.turns, len(lines) + 1))
     middles = pi * (edges[:-1] + edges[1:])
     phase = np.unwrap(np.angle(lines))

@@ -40,11 +40,11 @@ def slow_roll(recording: Recording) -> Order:
     """
     try:
         found = turning(recording)
+        if not found.marked:
+            raise RacewayError("no `key`: without a mark a vector has no phase and cannot be subtracted")
+        return order(found)
     except RacewayError as why:
         raise RacewayError(f"slow roll: {why}") from None
-    if not found.marked:
-        raise RacewayError("slow roll: no `key`: without a mark a vector has no phase and cannot be subtracted")
-    return order(found)
 
 
 def less_response(found: Order, held: Bearing, line: Rotor, unbalance_angle: float) -> RunOut:
