@@ -1,6 +1,6 @@
 """A rotor in ROSS on bearings from Raceway.
 
-    pip install 'raceway[sweep,ross]'
+    pip install '.[sweep,ross]'
     python examples/ross_rotor.py [--out FILE.json]
 
 1. Raceway sweeps a B7206C under 1 kN over speed, writes the coefficients, and ROSS reads them.
@@ -287,7 +287,7 @@ def main(words: list[str]) -> int:
     ross = import_ross()
     if ross is None:
         Console(stderr=True).print(
-            "ROSS is not installed: pip install 'raceway[ross]' (in an environment of its own, see CONTRIBUTING.md)",
+            "ROSS is not installed: pip install '.[ross]' (in an environment of its own, see CONTRIBUTING.md)",
             markup=False,
         )
         return 2

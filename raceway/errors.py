@@ -19,6 +19,11 @@ class RacewayError(Exception):
     exit_code = 2
 
 
+def extra(name: str) -> str:
+    """What to type for an extra of this package, which is installed from its sources."""
+    return f"pip install '.[{name}]' in a checkout of Raceway"
+
+
 @attrs.frozen
 class Mistake:
     """One thing wrong in a scene: where, what stood there, the rule, and the way out."""

@@ -107,7 +107,7 @@ def test_pictures_without_matplotlib_name_the_extra(monkeypatch, tmp_path):
     monkeypatch.setattr("raceway.commands.inputs.find_spec", lambda name: None if name == "matplotlib" else find_spec(name))
     found = invoke("run", ARTICLE, "--pictures", "--out", tmp_path)
     assert found.exit_code == 2
-    assert 'pip install "raceway[pictures]"' in found.stderr
+    assert "pip install '.[pictures]'" in found.stderr
     assert list(tmp_path.iterdir()) == []
 
 

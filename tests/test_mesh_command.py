@@ -37,7 +37,7 @@ def test_without_pyvista_the_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     found = invoke("mesh", MINIMAL, *COARSE, "--out", tmp_path, "--picture")
     assert found.exit_code == 2
-    assert "raceway[view]" in found.output
+    assert "pip install '.[view]'" in found.output
 
 
 def test_sizes_that_cannot_be_meshed_are_refused(tmp_path):

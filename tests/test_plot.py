@@ -117,6 +117,14 @@ def test_what_cannot_be_drawn_is_refused_with_the_way_out(axes, wanted, words):
     assert issubclass(SceneError, RacewayError)
 
 
+def test_a_sweep_with_nothing_done_says_so():
+    empty = made({SPEED: SPEEDS})
+    empty = empty.drop_vars([name for name in empty.data_vars if name != "status"])
+    for value in (None, "p0"):
+        with pytest.raises(RacewayError, match="no point is done yet.*--resume"):
+            layout(select(empty, {}), value)
+
+
 def test_files_are_whole_repeatable_and_named_by_their_ending(tmp_path):
     picture = chosen({SPEED: SPEEDS})
     png = picture.write(tmp_path / "a.png").read_bytes()

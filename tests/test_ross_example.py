@@ -15,4 +15,4 @@ def test_the_example_says_what_is_missing(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "ross", None)  # an import of it fails
     assert example.main([]) == 2
     told = " ".join(capsys.readouterr().err.split())
-    assert "ROSS is not installed: pip install 'raceway[ross]'" in told
+    assert "ROSS is not installed: pip install '.[ross]'" in told

@@ -229,7 +229,7 @@ def test_what_makes_no_table_is_refused_with_the_way_out(axes, tables, changes, 
 def test_gaps_are_refused():
     data = made({SPEED: SPEEDS})
     data["status"][2] = "failed"
-    with pytest.raises(RacewayError, match="1 failed of its points have no result"):
+    with pytest.raises(RacewayError, match="points without result: 1 failed"):
         table(data)
 
 

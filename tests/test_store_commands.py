@@ -114,4 +114,4 @@ def test_a_missing_extra_is_named(store, monkeypatch):
     monkeypatch.setattr(command_inputs, "find_spec", lambda _name: None)
     found = invoke("plot", store)
     assert found.exit_code == 2
-    assert 'pip install "raceway[pictures]"' in found.stderr
+    assert "pip install '.[pictures]'" in found.stderr

@@ -128,6 +128,9 @@ def test_bad_designs_are_refused_before_anything_is_written(tmp_path):
     ):
         with pytest.raises(SceneError, match=word):
             prepare(SCENE, design, store)
+    # A refusal of a whole table is that of the one value in it that was changed.
+    with pytest.raises(SceneError, match="`bearing.ball_count` = 400: bearing: "):
+        prepare(SCENE, grid(["bearing.ball_count=14,400"]), store)
     with pytest.raises(SceneError, match="nothing is varied"):
         grid([])
     with pytest.raises(SceneError, match="has no values"):
@@ -278,8 +281,10 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
     heavier = {**SCENE, "rotor": {"mass": 3.0}}
     with pytest.raises(RacewayError, match=r"another scene \(rotor.mass: 2.0 there, 3.0 here\).*not overwritten"):
         prepare(heavier, design, tmp_path / "s", resume=True)
-    with pytest.raises(RacewayError, match=r"another sweep \(2 points over load.axial\)"):
+    with pytest.raises(RacewayError, match=r"another sweep \(load.axial: 500, 600 there, 500, 600, 700 here\)"):
         prepare(SCENE, grid(["load.axial=500,600,700"]), tmp_path / "s", resume=True)
+    with pytest.raises(RacewayError, match=r"another sweep \(rotor.mass = 2, 3 here, no axis there\)"):
+        prepare(SCENE, grid(["load.axial=500,600", "rotor.mass=2,3"]), tmp_path / "s", resume=True)
     file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
     with file:
         (text,) = file.execute("SELECT value FROM facts WHERE name = 'identity'").fetchone()
@@ -295,6 +300,44 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
         prepare(SCENE, design, tmp_path / "strange", resume=True)
     with pytest.raises(RacewayError, match="no store of a sweep"):
         open_store(tmp_path)
+
+
+def test_designs_say_what_differs():
+    old = grid(["load.axial=1:12:12", "rotor.mass=2,3"])
+    assert old.differences(old) == []
+    assert old.differences(grid(["load.axial=1:12:12"])) == ["rotor.mass = 2, 3 there, no axis here"]
+    assert old.differences(grid(["rotor.mass=2,3", "load.axial=1:12:12"])) == [
+        "axes load.axial, rotor.mass there, rotor.mass, load.axial here"
+    ]
+    (words,) = old.differences(grid(["load.axial=1:11:11", "rotor.mass=2,3"]))
+    assert words == "load.axial: 1, 2, ..., 12 (12 values) there, 1, 2, ..., 11 (11 values) here"
+    one, two = (Design(listed=({"load.axial": 1.0}, {"load.axial": value})) for value in (2.0, 3.0))
+    assert one.differences(two) == ["point 2: load.axial = 2 there, load.axial = 3 here"]
+    assert one.differences(old)[0].startswith("2 listed points over load.axial there, 12 x 2 points")
+
+
+def test_warnings_of_points_are_kept_and_summed_up(tmp_path):
+    words = [
+        "sweep",
+        ARTICLE,
+        "--set",
+        "integrator.kind=periodic",
+        "--set",
+        "rotor.damping=0",
+        "--grid",
+        "load.axial=30,60,1000",
+    ]
+    out = tmp_path / "s"
+    shown = invoke(*words, "--out", out, "--resume", "--csv")
+    assert shown.exit_code == 0 and "holds no sweep to go on with: it is begun anew" in shown.stderr
+    with open_store(out) as store:
+        told = [row["warnings"] for row in store.rows()]
+        counts = store.to_xarray()["warnings"].values
+    assert told[0] and counts.tolist() == [len(one) for one in told]
+    assert "points warn: " in shown.stdout and "(first at load.axial = 30)" in " ".join(shown.stdout.split())
+    assert told[0][0] in (out / "results.csv").read_text()
+    rows = json.loads(invoke(*words, "--out", out, "--resume", "--json").stdout)["rows"]
+    assert [row.get("warnings", []) for row in rows] == told
 
 
 def test_two_sweeps_do_not_write_one_store(tmp_path):
@@ -338,7 +381,7 @@ def test_a_process_that_dies_costs_its_batch_only():
 def test_executors_say_what_is_missing(monkeypatch):
     for name, executor in (("joblib.externals.loky", Joblib()), ("distributed", Dask())):
         monkeypatch.setitem(sys.modules, name, None)
-        with pytest.raises(PluginError, match=r"pip install 'raceway\[sweep\]'"):
+        with pytest.raises(PluginError, match=r"pip install '\.\[sweep\]'"):
             list(executor.compute(Deadly(), []))
 
 
@@ -347,11 +390,11 @@ def test_the_command(tmp_path):
     shown = invoke(*words, "--csv")
     assert shown.exit_code == 0 and "2 points: 2 done" in shown.output
     lines = (tmp_path / "s" / "results.csv").read_text().splitlines()
-    assert len(lines) == 3 and lines[0].startswith("load.axial,status,reason,z_real")
+    assert len(lines) == 3 and lines[0].startswith("load.axial,status,reason,warnings,z_real")
     assert (tmp_path / "s" / "results.nc").stat().st_size > 0
     content = json.loads(invoke(*words, "--resume", "--json").stdout)
     assert content["axes"] == [{"key": "load.axial", "values": [500, 600]}] and content["store"] == str(tmp_path / "s")
-    assert set(content["rows"][0]) == {"point", "status", "values"}
+    assert set(content["rows"][0]) - {"warnings"} == {"point", "status", "values"}
     for more, word in (
         (["--executor", "seriall"], "did you mean 'serial'"),
         (["--workers", "3"], "executor 'serial' has no --workers"),

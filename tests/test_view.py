@@ -150,7 +150,7 @@ def test_a_missing_package_is_named_before_anything_is_computed(tmp_path, monkey
     monkeypatch.setattr("raceway.commands.view.find_spec", lambda name: None if name == package else real(name))
     found = invoke("view", MINIMAL, "--out", tmp_path)
     assert found.exit_code == 2
-    assert package in found.output and "raceway[view]" in found.output
+    assert package in found.output and "pip install '.[view]'" in found.output
 
 
 def test_what_does_not_move_is_not_animated(tmp_path):

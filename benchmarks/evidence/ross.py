@@ -1,7 +1,7 @@
 """ROSS reads our coefficients: at the points, in a rotor's critical speed, and in a loop with the force on the bearing.
 
 ROSS is no part of the extra ``all``.  It is looked for in this environment, or in the interpreters that the variable
-RACEWAY_ROSS_PYTHON names (several: separated as in PATH), each of which has raceway, too: pip install 'raceway[sweep,ross]'.
+RACEWAY_ROSS_PYTHON names (several: separated as in PATH), each of which has raceway, too: pip install '.[sweep,ross]'.
 """
 
 from __future__ import annotations

@@ -54,13 +54,15 @@ def common(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
 
 
-def show_progress(remaining: bool = False) -> Any:
+def show_progress(remaining: bool = False, waiting: str | None = None) -> Any:
+    """A bar; ``waiting`` says what happens before the first step where that is not the start of this process."""
     from raceway.cache_folder import current_folder
     from raceway.commands.progress import ProgressBar
 
     folder = current_folder()
     warm = folder.is_dir() and any(folder.iterdir())
-    return ProgressBar("starting" if warm else "compiling kernels (first run only)", remaining=remaining)
+    start = waiting or ("starting" if warm else "compiling kernels (first run only)")
+    return ProgressBar(start, remaining=remaining)
 
 
 def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:

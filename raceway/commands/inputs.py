@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.commands.console import warn
-from raceway.errors import Mistake, RacewayError, SceneError
+from raceway.errors import Mistake, RacewayError, SceneError, extra
 
 if TYPE_CHECKING:
     from raceway.registry import Registry
@@ -103,14 +103,14 @@ def writable(folder: Path) -> Path:
 
 def require_matplotlib(otherwise: str) -> None:
     if find_spec("matplotlib") is None:
-        raise RacewayError(f'pictures need matplotlib: pip install "raceway[pictures]", or {otherwise}.')
+        raise RacewayError(f"pictures need matplotlib: {extra('pictures')}, or {otherwise}.")
 
 
 def has_netcdf() -> bool:
     """Whether labelled results can be written; says what is missing."""
     missing = [name for name in ("xarray", "h5netcdf", "h5py") if find_spec(name) is None]
     if missing:
-        warn(f'no results.nc: it needs {", ".join(missing)}, pip install "raceway[sweep]"; points.sqlite holds everything')
+        warn(f"no results.nc: it needs {', '.join(missing)}; {extra('sweep')}; points.sqlite holds everything")
     return not missing
 
 
@@ -118,5 +118,5 @@ def has_matplotlib() -> bool:
     """Whether pictures can be drawn; says what is missing where they are no more than the default."""
     there = find_spec("matplotlib") is not None
     if not there:
-        warn('no picture: it needs matplotlib, pip install "raceway[pictures]"')
+        warn(f"no picture: it needs matplotlib, {extra('pictures')}")
     return there

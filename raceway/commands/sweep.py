@@ -66,6 +66,7 @@ def sweep(
     """
     from raceway.studies.sweep import prepare
     from raceway.studies.sweep import sweep as study
+    from raceway.studies.sweep.store import exists
 
     registry = registry_with(plugins)
     points = _design(axes, listed, design)
@@ -75,11 +76,13 @@ def sweep(
         raise SceneError(mistakes)
     folder = writable(out or _RESULTS / f"{slug(str(tables['title']))}-sweep")
     tell_faults(registry)
+    if (resume or retry_failed) and not exists(folder):
+        warn(f"`{folder}` holds no sweep to go on with: it is begun anew", label="")
     prepared = prepare(tables, points, folder, plugins, resume or retry_failed)
     for note in prepared.survey.notes:
         warn(note)
     stopped: BaseException | None = None
-    with show_progress(remaining=True) as progress:
+    with show_progress(remaining=True, waiting=f"waiting for {scheduler}" if scheduler else None) as progress:
         from raceway.studies.sweep import open_store
 
         try:
@@ -123,7 +126,7 @@ def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | No
 def _row(row: dict[str, Any]) -> dict[str, Any]:
     """What does not change from one sweep to the next: no costs, no names of machines."""
     kept = {"point": row["point"], "status": row["status"], "values": row["values"]}
-    return {**kept, "reason": row["reason"]} if row["reason"] else kept
+    return kept | {name: row[name] for name in ("reason", "warnings") if row[name]}
 
 
 def _design(axes: Sequence[str], listed: Path | None, design: Path | None) -> Design:

@@ -10,7 +10,7 @@ import click
 
 from raceway.commands.frame import common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
 from raceway.commands.inputs import load, slug, tell_faults, writable
-from raceway.errors import RacewayError, SceneError
+from raceway.errors import RacewayError, SceneError, extra
 
 
 @click.command(short_help="Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.")
@@ -41,7 +41,7 @@ def view(
     folder = writable(out or Path("raceway-out") / slug(loaded.title))
     for package in ("pyvista", "matplotlib"):
         if find_spec(package) is None:
-            raise RacewayError(f'pictures need {package}: pip install "raceway[view]"')
+            raise RacewayError(f"pictures need {package}: {extra('view')}")
     if animate and loaded.excitation is None:
         raise SceneError.at("excitation", None, "is missing, so that nothing moves: add the table, or leave out --animate")
     tell_faults(registry)

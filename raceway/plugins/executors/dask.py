@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.contracts import Lost, Refused
-from raceway.errors import PluginError
+from raceway.errors import PluginError, extra
 from raceway.options import between, inside, option, optional
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class Dask:
         try:
             from distributed import Client, LocalCluster
         except ImportError as why:
-            raise PluginError(f"executor 'dask' needs dask.distributed: pip install 'raceway[sweep]' ({why})") from None
+            raise PluginError(f"executor 'dask' needs dask.distributed: {extra('sweep')} ({why})") from None
         if self.scheduler is None:
             options = {"processes": True, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
             with LocalCluster(n_workers=self.workers, **options) as cluster, Client(cluster) as client:
@@ -69,8 +69,10 @@ class Dask:
             _greet(self.scheduler, self.patience)
             client = Client(self.scheduler, timeout=self.patience)
         except (OSError, ValueError, TypeError) as why:
-            message = f"no dask scheduler answers at `{self.scheduler}` within {self.patience:g} s: {why}. Start one with `dask scheduler`"
-            raise PluginError(f"{message}, or correct --scheduler.") from None
+            raise PluginError(
+                f"no dask scheduler answers at `{self.scheduler}` within {self.patience:g} s: {why or type(why).__name__}. "
+                "Start one with `dask scheduler`, or correct --scheduler."
+            ) from None
         with client:
             yield client
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.contracts import Lost
-from raceway.errors import PluginError
+from raceway.errors import PluginError, extra
 from raceway.options import between, option
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Joblib:
             from joblib.externals.loky import get_reusable_executor
             from joblib.externals.loky.process_executor import TerminatedWorkerError
         except ImportError as why:
-            raise PluginError(f"executor 'joblib' needs joblib: pip install 'raceway[sweep]' ({why})") from None
+            raise PluginError(f"executor 'joblib' needs joblib: {extra('sweep')} ({why})") from None
         left, flying = iter(batches), dict[int, list[Any]]()
 
         def taken() -> Iterator[Batch]:

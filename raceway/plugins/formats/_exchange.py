@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from raceway.core.mesh import FACES, HexMesh
-from raceway.errors import MeshError
+from raceway.errors import MeshError, extra
 
 #: Solids that meshio knows and the kernels do not.
 _SOLIDS = ("tetra", "wedge", "pyramid", "hexahedron2", "polyhedron", "voxel")
@@ -20,7 +20,7 @@ def meshio() -> Any:
     try:
         import meshio as package
     except ImportError as why:
-        raise MeshError(f"meshes from files need the package meshio: pip install 'raceway[mesh]' ({why})") from why
+        raise MeshError(f"meshes from files need the package meshio: {extra('mesh')} ({why})") from why
     return package
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 import attrs
 import numpy as np
 
-from raceway.errors import MeshError
+from raceway.errors import MeshError, extra
 from raceway.options import one_of, option, positive
 from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
 
@@ -118,7 +118,7 @@ class Gmsh:
         try:
             import gmsh
         except (ImportError, OSError) as why:  # OSError: its library lacks a system library
-            raise MeshError(f"mesh.kind = 'gmsh' needs the package gmsh: pip install 'raceway[gmsh]' ({why})") from why
+            raise MeshError(f"mesh.kind = 'gmsh' needs the package gmsh: {extra('gmsh')} ({why})") from why
         gmsh.initialize([], readConfigFiles=False, interruptible=False)
         try:
             gmsh.option.setNumber("General.Terminal", 0)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from raceway.core.mesh import FACES, HexMesh, boundary
-from raceway.errors import RacewayError
+from raceway.errors import RacewayError, extra
 from raceway.files import write_whole
 
 #: Inner ring, outer ring, everything else.
@@ -31,7 +31,7 @@ def draw(meshes: Mapping[str, HexMesh], title: str, path: Path) -> Path:
     try:
         import pyvista
     except ImportError:
-        message = 'the picture needs pyvista: pip install "raceway[view]", or leave out --picture'
+        message = f"the picture needs pyvista: {extra('view')}, or leave out --picture"
         raise RacewayError(message) from None
     try:
         # Without a display VTK says so on standard error, and then draws in memory as it was asked to.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.errors import RacewayError
+from raceway.errors import RacewayError, extra
 from raceway.files import write_whole
 from raceway.options import between, option
 
@@ -65,7 +65,7 @@ def new_figure(width: float, height: float) -> Figure:
         from matplotlib.figure import Figure
     except ImportError:
         raise RacewayError(
-            'pictures need matplotlib, which is not installed: pip install "raceway[pictures]", or leave out --pictures'
+            f"pictures need matplotlib, which is not installed: {extra('pictures')}, or leave out --pictures"
         ) from None
     return Figure(figsize=(width, height), layout="constrained")
 

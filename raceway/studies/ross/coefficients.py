@@ -110,7 +110,7 @@ def _directions_last(selection: Selection) -> Selection:
 def _refuse_gaps(selection: Selection) -> None:
     if selection.unfinished:
         raise RacewayError(
-            f"the table would have gaps: {selection.gaps} of its points have no result. Finish them with raceway sweep ... "
+            f"the table would have gaps: points without result: {selection.gaps}. Finish them with raceway sweep ... "
             "--resume (failed ones: --retry-failed), or choose another part with --at"
         )
     if LIST in selection.dataset.dims:

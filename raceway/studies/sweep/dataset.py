@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.errors import RacewayError
+from raceway.errors import RacewayError, extra
 from raceway.files import write_whole
 from raceway.registry import Registry, default_registry
 from raceway.scene import Scene
@@ -40,8 +40,11 @@ def dataset(store: Store, registry: Registry | None = None) -> xarray.Dataset:
     xarray = _xarray()
     design = store.design
     dims = design.keys if design.axes else ("point",)
-    columns, status = _columns(store)
+    columns, status, warnings = _columns(store)
     variables: dict[str, Any] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
+    if columns:
+        about = {"units": "1", "long_name": "number of warnings of the point: their words are in the JSON and the CSV"}
+        variables["warnings"] = (dims, warnings.reshape(design.shape), about)
     for name, column in columns.items():
         more, unit, words = ARRAYS[name] if name in ARRAYS else ((), *NUMBERS[name])
         shape = (*design.shape, *column.shape[1:])
@@ -59,18 +62,20 @@ def dataset(store: Store, registry: Registry | None = None) -> xarray.Dataset:
     return xarray.Dataset(variables, _coordinates(store, registry or default_registry()), attributes)
 
 
-def _columns(store: Store) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """Variable -> (points, ...) float64, those that a finished point has; states (points,)."""
+def _columns(store: Store) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
+    """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,)."""
     size, found = store.design.size, dict[str, np.ndarray]()
-    status = np.full(size, "waiting", dtype=object)
+    status, warnings = np.full(size, "waiting", dtype=object), np.full(size, np.nan)
     for number, row in enumerate(store.rows()):
         status[number] = row["status"]
+        if row["status"] == "done":
+            warnings[number] = len(row["warnings"])
         for name, value in row["values"].items():
             if name not in found:
                 found[name] = np.full((size, *np.shape(value)), np.nan)
             found[name][number] = value
     order = [*NUMBERS, *ARRAYS]
-    return {name: found[name] for name in order if name in found}, status
+    return {name: found[name] for name in order if name in found}, status, warnings
 
 
 def _coordinates(store: Store, registry: Registry) -> dict[str, Any]:
@@ -112,7 +117,7 @@ def write_netcdf(store: Store) -> Path:
     except (ImportError, ValueError) as why:
         if isinstance(why, ValueError) and "h5netcdf" not in str(why):
             raise
-        raise RacewayError(f"NetCDF needs h5netcdf and h5py: pip install 'raceway[sweep]' ({why})") from None
+        raise RacewayError(f"NetCDF needs h5netcdf and h5py: {extra('sweep')} ({why})") from None
     return write_whole(content, store.path / RESULTS)
 
 
@@ -144,12 +149,20 @@ def _lines(store: Store) -> Iterator[list[Any]]:
         "displacement": [(name,) for name in DOF],
         "stiffness": [(a, b) for a in DOF for b in DOF],
     }
-    yield [*keys, "status", "reason", *NUMBERS, *(f"{name}_{'_'.join(p)}" for name in ARRAYS for p in places[name])]
+    yield [
+        *keys,
+        "status",
+        "reason",
+        "warnings",
+        *NUMBERS,
+        *(f"{name}_{'_'.join(p)}" for name in ARRAYS for p in places[name]),
+    ]
     for row in store.rows():
         values = row["values"]
         arrays = [np.ravel(values[name]).tolist() if name in values else [""] * len(places[name]) for name in ARRAYS]
         point = [v if isinstance(v, str) or is_number(v) else json.dumps(v) for v in row["point"].values()]
-        yield [*point, row["status"], row["reason"], *(values.get(n, "") for n in NUMBERS), *(v for a in arrays for v in a)]
+        words = [row["status"], row["reason"], "; ".join(row["warnings"])]
+        yield [*point, *words, *(values.get(n, "") for n in NUMBERS), *(v for a in arrays for v in a)]
 
 
 def csv_text(store: Store) -> str:
@@ -163,5 +176,5 @@ def _xarray() -> Any:
     try:
         import xarray
     except ImportError as why:
-        raise RacewayError(f"labelled results need xarray: pip install 'raceway[sweep]' ({why})") from None
+        raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
     return xarray

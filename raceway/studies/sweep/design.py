@@ -18,6 +18,8 @@ from raceway.studies.axes import Axis, parse_axes, shown
 
 #: Most points of a sweep: beyond it, files of results are no longer something to open.
 MOST_POINTS = 1_000_000
+#: Values of an axis that a message names one by one.
+_MOST_SHOWN = 9
 _FORM = 'must be a TOML file with a table [grid], for instance "load.axial" = [400, 1000], or with tables [[points]]'
 
 
@@ -91,10 +93,38 @@ class Design:
         axes = tuple(Axis(one["key"], tuple(one["values"])) for one in tables.get("axes", ()))
         return cls(axes, tuple(tables.get("points", ())))
 
+    def differences(self, other: Design) -> list[str]:
+        """In words what this design has and the other one has not: axes with their values, or listed points."""
+        if self == other:
+            return []
+        if not self.axes or not other.axes:
+            changed = [k for k, (a, b) in enumerate(zip(self.listed, other.listed, strict=False), 1) if a != b]
+            if self.keys != other.keys or self.size != other.size or not changed:
+                return [f"{self.in_words()} there, {other.in_words()} here"]
+            first, k = changed[0], changed[0] - 1
+            return [f"point {first}: {point_words(self.listed[k])} there, {point_words(other.listed[k])} here"]
+        old, new = ({axis.key: axis.values for axis in design.axes} for design in (self, other))
+        words = []
+        for key in [*old, *(key for key in new if key not in old)]:
+            if key not in new:
+                words.append(f"{key} = {_few(old[key])} there, no axis here")
+            elif key not in old:
+                words.append(f"{key} = {_few(new[key])} here, no axis there")
+            elif old[key] != new[key]:
+                words.append(f"{key}: {_few(old[key])} there, {_few(new[key])} here")
+        return words or [f"axes {', '.join(old)} there, {', '.join(new)} here"]
+
     def in_words(self) -> str:
         if not self.axes:
             return f"{self.size} listed points over {', '.join(self.keys)}"
         return f"{' x '.join(str(n) for n in self.shape)} points over {', '.join(self.keys)}"
+
+
+def _few(values: Sequence[Any]) -> str:
+    """Values of an axis; of a long one the ends and how many."""
+    if len(values) <= _MOST_SHOWN:
+        return ", ".join(shown(value) for value in values)
+    return f"{shown(values[0])}, {shown(values[1])}, ..., {shown(values[-1])} ({len(values)} values)"
 
 
 def grid(texts: Iterable[str]) -> Design:

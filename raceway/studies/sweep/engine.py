@@ -19,7 +19,7 @@ from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.identity import differences, identity
 from raceway.studies.sweep.store import Store, exists, open_store, written
 from raceway.studies.sweep.survey import Survey, survey
-from raceway.studies.sweep.work import Work, registry_of
+from raceway.studies.sweep.work import Work, registry_of, unfinished_row
 
 #: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
 _LONGEST, _CHAIN_S = 16, 1.0
@@ -150,9 +150,7 @@ def _rows(answer: Any, numbers: list[int]) -> list[dict[str, Any]]:
     if isinstance(answer, Refused):
         raise PluginError(f"worker {answer.worker} cannot compute these points: {answer.reason}")
     if isinstance(answer, Lost):
-        return [
-            {"number": n, "state": "failed", "reason": answer.reason, "key": "", "values": {}, "cost": {}} for n in numbers
-        ]
+        return [unfinished_row(n, answer.reason) for n in numbers]
     return answer
 
 
@@ -160,8 +158,8 @@ def _refuse_other(there: Store, facts: Mapping[str, Any], store: Path) -> None:
     """A store that holds something else is named and left alone."""
     reasons = _changed(there.scene, facts["scene"]) or _changed(there.facts.get("tables", {}), facts.get("tables", {}))
     what = "another scene"
-    if not reasons and there.design != Design.from_dict(facts["design"]):
-        what, reasons = "another sweep", [there.design.in_words()]
+    if not reasons:
+        what, reasons = "another sweep", there.design.differences(Design.from_dict(facts["design"]))
     if not reasons and there.facts["files"] != facts["files"]:
         what, reasons = "another content of the files that the scene names", sorted({*there.facts["files"], *facts["files"]})
     if not reasons:

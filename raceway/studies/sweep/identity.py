@@ -33,6 +33,7 @@ def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> dict[str, A
         "python": platform.python_version(),
         "numpy": version("numpy"),
         "numba": version("numba"),
+        "scipy": version("scipy"),
         "program": program_key(registry, there),
         "plugins": {f"{e.kind}:{e.name}": f"{e.distribution} {e.version}" for e in entries},
     }
@@ -53,7 +54,7 @@ def differences(wanted: Mapping[str, Any], there: Mapping[str, Any]) -> list[str
             words.append(f"{plugin} of {owner} is missing")
         elif has != owner:
             words.append(f"{plugin} is of {has} instead of {owner}")
-    for name in ("raceway", "python", "numpy", "numba"):
+    for name in ("raceway", "python", "numpy", "numba", "scipy"):
         if wanted[name] != there[name]:
             words.append(f"{name} {there[name]} instead of {wanted[name]}")
     if not words and wanted["program"] != there["program"]:

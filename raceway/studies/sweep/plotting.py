@@ -74,6 +74,8 @@ def layout(
     RacewayError
         Nothing varies, or nothing is finished.
     """
+    if not names(selection.dataset):
+        raise RacewayError("no point is done yet: compute them with raceway sweep ... --resume")
     data, name = quantity(selection.dataset, value)
     axes = selection.axes
     if not axes:

@@ -24,14 +24,15 @@ from raceway.studies.sweep.design import Design
 if TYPE_CHECKING:
     import xarray
 
-SCHEMA = 1
+SCHEMA = 2
 STATES = ("waiting", "running", "done", "failed")
 #: A commit waits for the disk, twice: states of what is running are not worth more than a few of them a second.
 _MOMENT_S = 0.2
 POINTS, LOCK = "points.sqlite", ".lock"
 _TABLES = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
-    "CREATE TABLE points (number INTEGER PRIMARY KEY, state TEXT NOT NULL, reason TEXT, key TEXT, content TEXT, cost TEXT)",
+    "CREATE TABLE points (number INTEGER PRIMARY KEY, state TEXT NOT NULL, reason TEXT, key TEXT, content TEXT, "
+    "warnings TEXT, cost TEXT)",
     "CREATE INDEX points_by_state ON points (state)",
 )
 
@@ -89,8 +90,8 @@ class Store:
         return {**{state: found.get(state, 0) for state in STATES}, "total": self.design.size}
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """``{point, status, reason, values, key, cost}`` of every point, in the order of the design."""
-        asked = "SELECT number, state, reason, key, content, cost FROM points ORDER BY number"
+        """``{point, status, reason, values, warnings, key, cost}`` of every point, in the order of the design."""
+        asked = "SELECT number, state, reason, key, content, warnings, cost FROM points ORDER BY number"
         with self._told(), self._lock:
             cursor = self._connection.execute(asked)
         while True:
@@ -98,12 +99,13 @@ class Store:
                 some = cursor.fetchmany(256)
             if not some:
                 return
-            for number, state, reason, key, content, cost in some:
+            for number, state, reason, key, content, warnings, cost in some:
                 yield {
                     "point": self.design.point(number),
                     "status": state,
                     "reason": reason or "",
                     "values": json.loads(content) if content else {},
+                    "warnings": json.loads(warnings) if warnings else [],
                     "key": key or "",
                     "cost": json.loads(cost) if cost else {},
                 }
@@ -139,10 +141,14 @@ class Store:
             A disk that takes no more; what was kept before stays readable.
         """
         lines = [
-            (row["state"], row["reason"], row["key"], _text(row["values"]), _text(row["cost"]), row["number"])
+            (
+                *(row["state"], row["reason"], row["key"]),
+                *(_text(row[name]) for name in ("values", "warnings", "cost")),
+                row["number"],
+            )
             for row in rows
         ]
-        asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, cost = ? WHERE number = ?"
+        asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, warnings = ?, cost = ? WHERE number = ?"
         with self._told(), self._lock:
             try:
                 self._connection.executemany(asked, lines)

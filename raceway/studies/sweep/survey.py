@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -50,11 +50,11 @@ def survey(tables: Mapping[str, Any], design: Design, registry: Registry) -> Sur
     notes: list[str] = []
     first = scene_from_dict(tables_at(tables, design.point(0), registry, notes), registry)
     used, files, mistakes = set(plugins_of(first)), set(files_of(first)), []
-    for where, point in _others(design):
+    for where, changed, point in _others(design):
         try:
             scene = scene_from_dict(tables_at(tables, point, registry, notes), registry)
         except SceneError as error:
-            chosen = [m for m in error.mistakes if m.path in point] if design.axes else error.mistakes
+            chosen = _blamed(error.mistakes, point, changed) if design.axes else error.mistakes
             mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in chosen]
             if len(mistakes) >= _MOST_MISTAKES:
                 break
@@ -66,13 +66,26 @@ def survey(tables: Mapping[str, Any], design: Design, registry: Registry) -> Sur
     return Survey(first, frozenset(used), {name: _hash(name) for name in sorted(files)}, tuple(notes))
 
 
-def _others(design: Design) -> Iterator[tuple[str, dict[str, Any]]]:
+def _blamed(mistakes: Iterable[Mistake], point: Mapping[str, Any], changed: str) -> list[Mistake]:
+    """Those that the changed value makes by itself: of a swept key, or of its whole table where no other axis has a part."""
+    found = []
+    for mistake in mistakes:
+        inside = [key for key in point if key.startswith(f"{mistake.path}.")]
+        if mistake.path in point:
+            found.append(mistake)
+        elif inside == [changed]:
+            found.append(Mistake(changed, point[changed], f"{mistake.path}: {mistake.message}"))
+    return found
+
+
+def _others(design: Design) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """(where, key that differs from the first point, point)."""
     first = design.point(0)
     for axis in design.axes:
         for value in axis.values[1:]:
-            yield "", {**first, axis.key: value}
+            yield "", axis.key, {**first, axis.key: value}
     for number, point in enumerate(design.listed[1:], 2):
-        yield f"point {number}: ", point
+        yield f"point {number}: ", "", point
 
 
 def _hash(name: str) -> str:

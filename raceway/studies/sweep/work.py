@@ -41,7 +41,7 @@ class Work:
 
     Notes
     -----
-    A row is ``{"number", "state": "done" | "failed", "reason", "key", "values", "cost"}``.
+    A row is ``{"number", "state": "done" | "failed", "reason", "key", "values", "warnings", "cost"}``.
     """
 
     tables: dict[str, Any]
@@ -78,13 +78,14 @@ class Work:
         from raceway.run import run
 
         wall, cpu = time.perf_counter(), time.process_time()
-        row: dict[str, Any] = {"number": number, "state": "failed", "reason": "", "key": "", "values": {}, "cost": {}}
+        row = unfinished_row(number, "")
         result = None
         try:
             scene = scene_from_dict(tables_at(self.tables, point, registry), registry)
             row["key"] = row_key(scene, registry, None, self.wanted["program"])
             result = run(scene, registry, near=before)
             row["values"] = values_of(result)
+            row["warnings"] = list(result.warnings)
             row["state"] = "done"
             counted = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
             row["cost"] = counted
@@ -98,6 +99,11 @@ class Work:
             "worker": _worker(),
         }
         return row, result
+
+
+def unfinished_row(number: int, reason: str) -> dict[str, Any]:
+    """A row of a point that failed, or that has nothing yet."""
+    return {"number": number, "state": "failed", "reason": reason, "key": "", "values": {}, "warnings": [], "cost": {}}
 
 
 def registry_of(files: tuple[str, ...]) -> Registry:

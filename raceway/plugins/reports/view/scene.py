@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.errors import RacewayError
+from raceway.errors import RacewayError, extra
 from raceway.plugins.reports.view.bearing import Bearing, Part, State
 
 LOADS, PRESSURES = "viridis", "inferno"
@@ -33,7 +33,7 @@ def pyvista_of(otherwise: str) -> Any:
     try:
         import pyvista
     except ImportError:
-        raise RacewayError(f'this picture needs pyvista: pip install "raceway[view]"{otherwise}') from None
+        raise RacewayError(f"this picture needs pyvista: {extra('view')}{otherwise}") from None
     return pyvista
 
 
