@@ -153,6 +153,20 @@ def test_a_missing_package_is_named_before_anything_is_computed(tmp_path, monkey
     assert package in found.output and "pip install '.[view]'" in found.output
 
 
+def test_an_animation_that_the_page_has_no_room_for_lies_beside_it(tmp_path, result):
+    from raceway.studies.view.study import _page
+
+    text = {"title": "t", "subtitle": "s", "when": "at rest", "lead": "l", "notes": []}
+    for size, inside in ((10_000, True), (4_000_000, False)):
+        files = {"mesh.png": (b"\x89PNG" + bytes(40), "the mesh"), "orbit.gif": (b"GIF89a" + bytes(size), "the turn")}
+        for name, (content, _) in files.items():
+            (tmp_path / name).write_bytes(content)
+        pictures = {name: (tmp_path / name, seen, "caption") for name, (_, seen) in files.items()}
+        html = _page(Bearing.of(result), at_rest(result), text, pictures).html()
+        assert 'alt="the mesh"' in html and ('alt="the turn"' in html) is inside
+        assert ("lies beside it" in html) is not inside and len(html.encode()) < 5e6
+
+
 def test_what_does_not_move_is_not_animated(tmp_path):
     scene = tmp_path / "still.toml"
     scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n')

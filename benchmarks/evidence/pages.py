@@ -1,4 +1,4 @@
-"""Pages of the program in a real browser: what `raceway view` and `raceway study map` write, at two widths, from a file."""
+"""Pages of the program in a real browser: what `raceway view` and the studies write, at two widths, from a file."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from benchmarks.evidence import Row, below
 from raceway.cli import main
 from tests.browser.chromium import WIDTHS, Browser
+from tests.browser.pages import PAGES as CHEAP
 
 TITLE = "Pages in headless chromium: whole, readable, without a network"
 PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "view"
@@ -19,6 +20,8 @@ PAGES = {
     "view": (("view", "examples/b7206.toml", "--html", "--animate"), "view.html"),
     "map": (("study", "map"), "map.html"),
 }
+#: Pages as the tests make them: the article's around invented curves, the rig's of one speed and load; what is looked at.
+SMALL = {"study article": "article, invented curves", "study rig": "rig, one point"}
 #: Pictures of ``raceway view`` that its document shows.
 SHOWN = ("bearing-peak.png", "contacts.png")
 
@@ -30,6 +33,9 @@ def rows() -> list[Row]:
         for name, (words, file) in PAGES.items():
             with tempfile.TemporaryDirectory() as place:
                 out += _page(name, words, Path(place) / name, file, browser)
+        for command, name in SMALL.items():
+            with tempfile.TemporaryDirectory() as place:
+                out += _look(name, f"raceway {command}", CHEAP[command](Path(place)), browser)
     finally:
         browser.close()
     return out
@@ -41,9 +47,18 @@ def _page(name: str, words: tuple[str, ...], folder: Path, file: str, browser: B
     done = CliRunner().invoke(main, [*words, "--out", str(folder)])
     seconds = _cpu() - before
     out = [Row(f"{name}: exit code", float(done.exit_code), "0", done.exit_code == 0, command)]
-    path = folder / file
-    out.append(below(f"{name}: size of {file}, MB", path.stat().st_size / 1e6, 5.0, command))
     out.append(Row(f"{name}: processor time of the command, s", round(seconds, 1), "reported", True, command))
+    out += _look(name, command, folder / file, browser)
+    if name == "view":
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        for shown in SHOWN:
+            (PICTURES / shown).write_bytes((folder / shown).read_bytes())
+    return out
+
+
+def _look(name: str, command: str, path: Path, browser: Browser) -> list[Row]:
+    """What the browser makes of a page at every width."""
+    out = [below(f"{name}: size of {path.name}, MB", path.stat().st_size / 1e6, 5.0, command)]
     for width in WIDTHS:
         look = browser.look(path, width)
         faults = look.faults()
@@ -54,10 +69,6 @@ def _page(name: str, words: tuple[str, ...], folder: Path, file: str, browser: B
             Row(f"{name} at {width} px: figures with a size", f"{figures - _missing(faults)} of {figures}", "all", not faults, command, "; ".join(faults)),
             below(f"{name} at {width} px: width of the content over the window's", look.found["scroll"] / look.found["width"], 1.0, command),
         ]  # fmt: skip
-    if name == "view":
-        PICTURES.mkdir(parents=True, exist_ok=True)
-        for shown in SHOWN:
-            (PICTURES / shown).write_bytes((folder / shown).read_bytes())
     return out
 
 

@@ -50,9 +50,8 @@ def view(
         from raceway.studies.view.study import Wanted, draw
 
         result = run(loaded, registry, progress)
-        content = draw(result, folder, Wanted(page, frames if animate else 0), progress)
-        if loaded.bodies.kind == "elastic":
-            content["files"].append(str(_mesh(loaded, folder)))
+        mesh = _mesh(loaded, folder) if loaded.bodies.kind == "elastic" else None
+        content = draw(result, folder, Wanted(page, frames if animate else 0, mesh), progress)
     show(content, as_json, None, lambda screen: _screen(screen, content))
     return 0
 

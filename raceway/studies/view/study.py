@@ -15,6 +15,7 @@ from raceway.plugins.reports.view.contacts import contacts
 from raceway.plugins.reports.view.scene import overview
 from raceway.result import Result
 from raceway.simulate import OnProgress
+from raceway.studies.page import Page
 from raceway.studies.view.page import view_page
 from raceway.studies.view.states import at_peak, at_rest, last_turn
 
@@ -25,11 +26,16 @@ class Wanted:
 
     Attributes
     ----------
-    page : the HTML page;  frames : of the animation, 0 for none
+    page : the HTML page;  frames : of the animation, 0 for none;  mesh : a picture of it that stands there already
     """
 
     page: bool = False
     frames: int = 0
+    mesh: Path | None = None
+
+
+#: A page larger than this [bytes] has its animation beside it; some room is left below the 5 MB that a page may have.
+LARGEST_PAGE = 4_900_000
 
 
 def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) -> dict[str, Any]:
@@ -77,13 +83,14 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         )
         told = f"The last turn; motions of ring and balls {turn.factor:g} times as large as they are, the orbit in the bore to fit it"
         pictures["orbit.gif"] = path, "the turning load, ball loads and orbit", told
+    if wanted.mesh is not None:
+        pictures[wanted.mesh.name] = wanted.mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away"
     if wanted.page:
         text = {
             "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown), "notes": _notes(bearing)
         }  # fmt: skip
-        images = [(path.read_bytes(), seen, told) for path, seen, told in pictures.values()]
-        page = view_page(bearing, shown, text, images).write(folder / "view.html")
-        pictures["view.html"] = page, "", ""
+        path = _page(bearing, shown, text, pictures).write(folder / "view.html")
+        pictures["view.html"] = path, "", ""
     z = result.model.system.ball_count
     return {
         "title": result.title,
@@ -95,6 +102,16 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         "warnings": list(result.warnings),
         "files": [str(path) for path, _, _ in pictures.values()],
     }
+
+
+def _page(bearing: Bearing, state: State, text: dict[str, Any], pictures: dict[str, tuple[Path, str, str]]) -> Page:
+    """The page with all pictures, the animation among them where it has room."""
+    images = {name: (path.read_bytes(), seen, told) for name, (path, seen, told) in pictures.items()}
+    page = view_page(bearing, state, text, list(images.values()))
+    if "orbit.gif" not in images or len(page.html().encode()) <= LARGEST_PAGE:
+        return page
+    note = f"orbit.gif, {1e-6 * len(images.pop('orbit.gif')[0]):.1f} MB, is too large for this page and lies beside it; fewer `--frames` bring it in."
+    return view_page(bearing, state, {**text, "notes": [*text["notes"], note]}, list(images.values()))
 
 
 def _loads(state: State) -> str:
