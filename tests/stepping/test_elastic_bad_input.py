@@ -104,7 +104,9 @@ def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one
     stepped, start = moving(cubes(gap=1e-7, penalty=1e16))
     stepped.begin(start)
     step = 0.8 * stepped.stable_step()
-    with pytest.raises(StabilityError, match="s at t = .* s, where contacts have closed or stiffened. Take at least") as caught:
+    with pytest.raises(
+        StabilityError, match="s at t = .* s, where contacts have closed or stiffened. Take at least"
+    ) as caught:
         CentralDifference().advance(stepped, start, Schedule(step, 400, 1))
     named = float(re.search(r"differences, (\S+) s at", str(caught.value))[1])
     assert named < 0.5 * step

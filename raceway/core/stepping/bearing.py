@@ -9,7 +9,6 @@ import numpy as np
 from raceway.core.record import Motion
 from raceway.core.stepping.protocol import Observation, State
 
-
 #: Growth of the tangent's diagonal that asks for the stable step anew.
 _STIFFER = 1.02
 
