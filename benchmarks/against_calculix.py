@@ -20,6 +20,7 @@ from typing import Any
 from benchmarks import calculix
 from benchmarks.groove import HERTZ, MODULUS, POISSON, YOUNG, meshes, solve
 from raceway.core.elastic.penalty import penalty_stiffness
+from raceway.errors import RacewayError, SceneError
 
 #: Meshes of about 10 000 elements at 4 elements per semi-axis and 300 N.
 MESH = {"growth": 1.35, "coarse": 0.8e-3}
@@ -29,14 +30,29 @@ TOLERANCE = 1e-4
 
 def main(words: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.against_calculix", description=__doc__.splitlines()[0])
-    parser.add_argument("--load", type=float, default=300.0, help="of the ball [N], default 300")
-    parser.add_argument("--nodes", type=float, default=4.0, help="elements per semi-axis, default 4")
+    parser.add_argument("--load", type=_positive, default=300.0, help="of the ball [N], default 300")
+    parser.add_argument("--nodes", type=_positive, default=4.0, help="elements per semi-axis, default 4")
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--deck", type=Path, help="write CalculiX's input here and run nothing")
     parser.add_argument("--scene", type=Path, help="with --deck: the bearing of this scene in place of the groove")
     asked = parser.parse_args(words)
     if asked.scene is not None and asked.deck is None:
         parser.error("--scene needs --deck FILE: decks of whole bearings are written, not run")
+    try:
+        return _answer(asked)
+    except (RacewayError, OSError) as why:
+        print(f"error: {why}", file=sys.stderr)
+        return 2
+
+
+def _positive(word: str) -> float:
+    value = float(word)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{word} must be greater than 0")
+    return value
+
+
+def _answer(asked: argparse.Namespace) -> int:
     if asked.scene is not None:
         asked.deck.write_text(scene_deck(asked.scene))
         print(f"wrote {asked.deck}", file=sys.stderr)
@@ -95,6 +111,8 @@ def scene_deck(path: Path) -> str:
     from raceway.meshing import mesh_scene, scene_mesher
 
     scene = load_scene(path)
+    if scene.mesh is None or scene.mesh.name != "structured":
+        raise SceneError.at("mesh", None, "is required for a deck: [mesh] with kind = 'structured'")
     rings, balls = scene.bearing.rings, scene.bearing.balls
     modulus = contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)
     mesher = scene_mesher(scene)

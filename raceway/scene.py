@@ -201,7 +201,10 @@ class Bodies:
         rule=one_of("one_point", "full", "incompatible"),
     )
     hourglass: float = option(
-        0.05, help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu", rule=positive()
+        0.05,
+        help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu; impacts want 0.005 and elements "
+        "of at most 0.6 of the contact's radius",
+        rule=positive(),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import io
 import json
 
 import numpy as np
@@ -12,6 +13,7 @@ from raceway.errors import RacewayError, SceneError
 from raceway.plan import make_plan
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
+from raceway.unused import unused
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.
 TINY = {
@@ -74,6 +76,33 @@ def test_a_static_scene_balances_and_tells_what_it_found(static):
     assert model["energies_j"]["elastic"] > 0.0
     assert abs(model["cage_force_n"]) < 1e-2
     assert any("equilibrium, residual" in text for text in seen)
+
+
+def test_the_screen_names_all_peak_pressures_and_tells_how_good_the_balance_is(static):
+    from rich.console import Console
+
+    from raceway.commands.screen.result import run_screen
+
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(run_screen(static[0].as_dict(), ()))
+    text = console.export_text()
+    ball = max(static[0].as_dict()["equilibrium"]["balls"], key=lambda one: one["load_inner_n"])
+    for key, word in (("points_inner", "points"), ("nodal_inner", "nodal"), ("inner", "by Hertz")):
+        assert f"{1e-6 * ball[f'peak_pressure_{key}_pa']:.0f} MPa {word}" in text
+    for row in ("penetration share", "unbalanced force", "energies", "hourglass"):
+        assert row in text
+
+
+def test_an_hourglass_coefficient_without_hourglass_modes_is_told():
+    (told,) = unused(scene(bodies={"formulation": "incompatible", "hourglass": 0.01}))
+    assert "`bodies.hourglass` has no effect" in told and "only 'one_point'" in told
+
+
+def test_a_bed_under_the_outer_ring_yields_under_the_load(static):
+    bed = run(scene(supports={"outer_seat": 1e14})).as_dict()
+    held = static[0].as_dict()
+    assert bed["model"]["reaction_n"]["x"] == pytest.approx(-2500.0, rel=1e-5)  # Newton's residual, as above
+    assert bed["equilibrium"]["displacement"]["x"] > 1.01 * held["equilibrium"]["displacement"]["x"]
 
 
 def test_the_tangent_is_symmetric_and_positive(static):

@@ -52,6 +52,25 @@ def test_deck_of_a_bearing_holds_two_contacts_for_each_ball(tmp_path):
     assert any(key.startswith("*RIGID BODY, NSET=BORE") for key, _ in blocks)
 
 
+@pytest.mark.parametrize("words", [["--load", "-5"], ["--load", "nan"], ["--nodes", "0"]])
+def test_loads_and_nodes_below_zero_are_refused(words, capsys):
+    with pytest.raises(SystemExit) as caught:
+        against_calculix.main(words)
+    assert caught.value.code == 2
+    assert "must be greater than 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"), [(None, "nowhere.toml"), ('[bearing]\npreset = "B7206C"\n', "`mesh`: is required")]
+)
+def test_scenes_that_are_missing_or_without_a_mesh_end_with_a_message(text, said, tmp_path, capsys):
+    scene = tmp_path / "nowhere.toml"
+    if text is not None:
+        scene.write_text(text)
+    assert against_calculix.main(["--scene", str(scene), "--deck", str(tmp_path / "deck.inp")]) == 2
+    assert said in capsys.readouterr().err
+
+
 def test_answers_are_read():
     text = (
         "\n total force (fx,fy,fz) for set MIDDLE and time  0.1000000E+01\n\n       -2.8E+00 -2.9E+00 -7.5E+01\n"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,7 @@ from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh import FACES, boundary
 from raceway.core.record import Schedule
 from raceway.core.stepping.elastic import SteppedElastic
+from raceway.core.stepping.energy import drift
 from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.errors import ConvergenceError, MeshError, StabilityError
 from raceway.integrators.central_difference import CentralDifference
@@ -95,6 +98,25 @@ def test_a_step_above_the_stable_limit_of_elements_and_contact_is_refused_with_t
     assert limit < 0.8 * min(body.operator.stable_step() for body in system.assembly.bodies)  # the contact's part
     with pytest.raises(StabilityError, match=f"limit of central differences, {limit:.4g} s"):
         CentralDifference().advance(stepped, start, Schedule(1.01 * limit, 10, 1))
+
+
+def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one():
+    stepped, start = moving(cubes(gap=1e-7, penalty=1e16))
+    stepped.begin(start)
+    step = 0.8 * stepped.stable_step()
+    with pytest.raises(
+        StabilityError, match="s at t = .* s, where contacts have closed or stiffened. Take at least"
+    ) as caught:
+        CentralDifference().advance(stepped, start, Schedule(step, 400, 1))
+    named = float(re.search(r"differences, (\S+) s at", str(caught.value))[1])
+    assert named < 0.5 * step
+    assert np.isfinite(caught.value.state["q"]).all()
+    # What the message asks for runs through.
+    again, start = moving(cubes(gap=1e-7, penalty=1e16))
+    record = CentralDifference().advance(again, start, Schedule(0.8 * named, 400, 1))
+    assert record.contact_force.max() > 0.0
+    # A whole face touches within one step, which costs a sixth of the energy there; above the limit it grew beyond the first.
+    assert drift(record.energies) < 0.5
 
 
 @pytest.mark.parametrize("method", [CentralDifference(), Newmark()], ids=["central_difference", "newmark"])

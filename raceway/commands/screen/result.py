@@ -76,13 +76,21 @@ def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
         index, ball = pick(balls, key=lambda item: item[1]["load_inner_n"])
         angle = ball["contact_angle_inner_deg"]
         at = f"ball {index} at {ball['azimuth_deg']:.4g} deg"
-        pressure = f"{1e-6 * ball['peak_pressure_inner_pa']:.0f} MPa, {angle:.2f} deg" if angle is not None else "open"
+        pressure = f"{_pressure(ball)}, {angle:.2f} deg" if angle is not None else "open"
         rows.append((f"{word} loaded ball", number(ball["load_inner_n"], "N"), f"{at}; inner race {pressure}"))
     rows.append(("tangent kxx", number(1e-6 * k[0][0], "N/µm"), "axial, all other motions held"))
     rows.append(("tangent kyy", number(1e-6 * k[1][1], "N/µm"), "radial, tilt and all other motions held"))
     if tilt != "locked":
         rows.append((f"kyy, {tilt_words(tilt)}", number(1e-6 * _condensed(k, tilt), "N/µm"), "tilts follow, x and z held"))
     return rows
+
+
+def _pressure(ball: Mapping[str, Any]) -> str:
+    """Of the inner race; where finite elements tell their own, both of theirs and Hertz's by name."""
+    names = {"points": "peak_pressure_points_inner_pa", "nodal": "peak_pressure_nodal_inner_pa"}
+    told = [f"{1e-6 * ball[key]:.0f} MPa {word}" for word, key in names.items() if ball.get(key) is not None]
+    hertz = f"{1e-6 * ball['peak_pressure_inner_pa']:.0f} MPa"
+    return ", ".join([*told, f"{hertz} by Hertz"]) if told else hertz
 
 
 def _small(metres: float) -> str:
@@ -167,6 +175,16 @@ def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
     if along is not None:
         how = "not estimated" if change is None else f"{mesh['how']}: {change:.1e}"
         rows.append(("nodes per semi-axis", number(along, digits=3), how))
+    share, unbalanced, energies = (model.get(name) for name in ("penetration_share", "unbalanced_n", "energies_j"))
+    if share is not None:
+        rows.append(
+            ("penetration share", number(100.0 * share, "%", 3), "of the approach, at most: what the law lets overlap")
+        )
+    if unbalanced is not None:
+        rows.append(("unbalanced force", number(unbalanced, "N", 2), "largest, reaction against load"))
+    if energies is not None:
+        shown = ", ".join(f"{name} {1e3 * value:.3g}" for name, value in energies.items())
+        rows.append(("energies", "", f"{shown} mJ"))
     inertia = model.get("inertia")
     if inertia is not None:
         rows += _inertia(inertia)

@@ -12,6 +12,8 @@ from raceway.core.elastic.facets import Facets
 from raceway.core.elastic.gap import forces_and_tangents, gaps
 from raceway.core.elastic.surface import SurfacePoints
 
+#: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
+_STIFFER = 1.02
 #: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
 _MOVED = 0.02
 
@@ -103,6 +105,8 @@ class NodalContact:
         self.outside = np.zeros(n)
         self._projected = np.full((n, 3), np.inf)
         self._short = np.zeros(n)
+        self._stiffest = np.zeros(n)
+        self._one: Any = None
         self._move: Any = None
         self.update(self.place)
 
@@ -142,7 +146,7 @@ class NodalContact:
         self._projected = where.copy()
         rows = np.arange(0, 8 * n + 1, 8)
         one = csr_array((weights.ravel(), columns.ravel(), rows), shape=(n, self._nodes))
-        self._move = kron(one, np.eye(3), format="csr")
+        self._one, self._move = one, kron(one, np.eye(3), format="csr")
         return True
 
     def evaluate(self, dt: float, u: np.ndarray, v: np.ndarray | None = None, share: float = 0.0) -> np.ndarray:
@@ -225,12 +229,22 @@ class NodalContact:
         -----
         By Gershgorin's theorem on M^-1 B^T D B: 2 / sqrt(largest row sum).
         """
-        size = np.abs(self.stiffness).sum(axis=2).max(axis=1)
-        if not size.any():
+        size = self._sizes()
+        np.maximum(self._stiffest, size, out=self._stiffest)
+        touching = np.flatnonzero(size)
+        if not len(touching):
             return np.inf
-        one = abs(self._move[::3][:, ::3])
-        rows = one.T @ (size * np.asarray(one.sum(axis=1)).ravel())
+        one = abs(self._one[touching])
+        rows = one.T @ (size[touching] * np.asarray(one.sum(axis=1)).ravel())
         return float(2.0 / np.sqrt((rows / mass).max()))
+
+    def stiffened(self) -> bool:
+        """Whether a point has closed or become stiffer than at any ``stable_step`` before."""
+        return bool((self._sizes() > _STIFFER * self._stiffest).any())
+
+    def _sizes(self) -> np.ndarray:
+        """(n,) largest row sum of each point's stiffness [N/m]."""
+        return np.asarray(np.abs(self.stiffness).sum(axis=2).max(axis=1))
 
     def commit(self) -> None:
         self.memory, self._trial = self._trial, self.memory

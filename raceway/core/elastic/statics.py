@@ -54,7 +54,8 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
                 step *= 0.5
                 if step < SMALLEST_PART:
                     raise ConvergenceError(
-                        f"no equilibrium: {why} Last good state: {100 * part:.3g} % of the load, {len(history)} iterations in all",
+                        f"no equilibrium: {why} Last good state: {100 * part:.3g} % of the load, {len(history)} iterations in all. "
+                        "Take a softer penalty (`contact.stiffness`), a finer mesh at the contacts, or a smaller load.",
                         {"y": good, "load_part": part, "residuals": history},
                     ) from why
                 continue

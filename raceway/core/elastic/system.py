@@ -132,6 +132,10 @@ class ElasticSystem:
         mine = np.inf if self.contact is None else self.contact.stable_step(self.assembly.node_mass)
         return float(1.0 / np.sqrt(1.0 / self._element_step**2 + 1.0 / mine**2))
 
+    def stiffened(self) -> bool:
+        """Whether a contact is stiffer than at any ``stable_step`` before: elements stay as they are."""
+        return self.contact is not None and self.contact.stiffened()
+
     def commit(self) -> None:
         if self.contact is not None:
             self.contact.commit()

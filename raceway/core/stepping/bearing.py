@@ -9,6 +9,9 @@ import numpy as np
 from raceway.core.record import Motion
 from raceway.core.stepping.protocol import Observation, State
 
+#: Growth of the tangent's diagonal that asks for the stable step anew.
+_STIFFER = 1.02
+
 
 class SteppedBearing:
     """``SteppedSystem`` around a system with the interface of ``raceway.core.system.System``.
@@ -37,6 +40,7 @@ class SteppedBearing:
         self._memory = system.law_state.copy()
         self._now: Any = None
         self._guess: np.ndarray | None = None
+        self._stiffest = np.zeros(5)
 
     def begin(self, motion: Motion) -> State:
         self._ball, self._before = motion.ball.copy(), motion.ball_before.copy()
@@ -91,7 +95,11 @@ class SteppedBearing:
         return max(float(-gap.min()), 0.0), max(float(force.max()), 0.0), float(np.abs(force).sum())
 
     def stable_step(self) -> float:
+        np.maximum(self._stiffest, np.diag(self._now.stiffness), out=self._stiffest)
         return float(self.system.critical_time_step(self._now.stiffness))
+
+    def stiffened(self) -> bool:
+        return bool((np.diag(self._now.stiffness) > _STIFFER * self._stiffest).any())
 
     def commit(self) -> None:
         self._before, self._ball, self._memory = self._ball, self._now.ball, self._now.memory

@@ -16,7 +16,8 @@ def central_difference(system: SteppedSystem, recorder: Recorder, coefficients: 
     Raises
     ------
     StabilityError
-        A step above the stable limit of the start, with the limit, or a motion that grows without bound.
+        A step above the stable limit, with the limit: of the start, or of a later state whose contacts have closed or
+        stiffened; or a motion that grows without bound.
     """
     dt = recorder.schedule.dt
     _refuse_long_step(system, recorder)
@@ -30,6 +31,8 @@ def central_difference(system: SteppedSystem, recorder: Recorder, coefficients: 
             rest = recorder.load(t) - system.internal(t, dt, u, guess)
         except ConvergenceError as why:
             raise recorder.stalled([], str(why)) from why
+        if system.stiffened():
+            _compare(system.stable_step(), system, recorder, f" at t = {t:.6g} s, where contacts have closed or stiffened")
         # The constant damping acts on the velocity of the step's end, contacts that depend on the rate see the guess.
         a = system.divide_mass(rest + 0.5 * dt * system.damping_times(before.a), 0.5 * dt)
         if not (np.isfinite(a).all() and np.abs(u).max() < BOUND):
@@ -42,11 +45,16 @@ def _refuse_long_step(system: SteppedSystem, recorder: Recorder) -> None:
     system.internal(recorder.time_of(0), schedule.dt, start.u, start.v)
     limit = system.stable_step()
     system.rollback()
+    _compare(limit, system, recorder, "")
+
+
+def _compare(limit: float, system: SteppedSystem, recorder: Recorder, where: str) -> None:
+    schedule = recorder.schedule
     if schedule.dt >= limit:
-        motion = system.motion(start)
+        motion = system.motion(recorder.state)
         raise StabilityError(
             f"`integrator.steps_per_turn` = {schedule.steps_per_turn} makes a step of {schedule.dt:.4g} s, above the stable "
-            f"limit of central differences, {limit:.4g} s. Take at least "
+            f"limit of central differences, {limit:.4g} s{where}. Take at least "
             f"{int(schedule.steps_per_turn * schedule.dt / (0.8 * limit)) + 1}.",
             {"q": motion.q, "ball": motion.ball},
         )

@@ -104,6 +104,9 @@ class SteppedElastic:
     def stable_step(self) -> float:
         return float(self.system.stable_step())
 
+    def stiffened(self) -> bool:
+        return bool(self.system.stiffened())
+
     def commit(self) -> None:
         self.system.commit()
 
