@@ -33,7 +33,11 @@ def rows() -> list[Row]:
     for name in dict.fromkeys(row["case"] for row in found):
         own = [row for row in found if row["case"] == name]
         good = sum(row["verdict"] == "as expected" for row in own)
-        out.append(Row(name, f"{good} of {len(own)}", "all", good == len(own), f"raceway stability --only {shlex.quote(name)} --all"))
+        out.append(
+            Row(
+                name, f"{good} of {len(own)}", "all", good == len(own), f"raceway stability --only {shlex.quote(name)} --all"
+            )
+        )
     return out
 
 
