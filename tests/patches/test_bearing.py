@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import attrs
 import numpy as np
 import pytest
@@ -134,6 +136,16 @@ def test_the_result_tells_pressures_approaches_and_points(free):
     field = case.bodies.pressure_field(case, found, 0)
     assert field.pressure.max() == pytest.approx(nodal, rel=1e-6)
     assert case.system.without(CAGE).pool is case.system.pool
+
+
+def test_the_mesh_error_is_that_of_the_state(free, monkeypatch):
+    """Each state is dropped before the next, so that its place in memory is used again."""
+    case, _ = free
+    compared = staticmethod(lambda coarser, model, equilibrium: (float(equilibrium.displacement[0]), ""))
+    monkeypatch.setattr(type(case.bodies), "_compared", compared)
+    parts = (1.0, 0.2, 0.05)
+    told = [case.bodies._change_from_coarser(case, SimpleNamespace(displacement=np.full(5, part)))[0] for part in parts]
+    assert told == list(parts)
 
 
 REFUSED = {
