@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import asin, pi, sqrt
+from typing import Any
 
 from raceway.scene import Scene
 
@@ -62,3 +63,18 @@ def radial_growth(scene: Scene) -> float:
 def shoulder_height(scene: Scene) -> float:
     """Depth of the grooves [m]: given, or 0.2 D."""
     return scene.bearing.shoulder_height or 0.2 * scene.bearing.ball_diameter
+
+
+def load_at_edge(ellipse: Any, ball_radius: float, angle: float) -> float:
+    """Load of a ball [N] at which its contact ellipse reaches the groove's edge.
+
+    Parameters
+    ----------
+    ellipse : of the contact, with ``semi_axes(load)`` [m]
+    angle : from the contact to the edge, seen from the ball's centre [rad]
+
+    Notes
+    -----
+    The semi-major axis grows with the cube root of the load; the edge is reached where a = R angle.
+    """
+    return float((max(ball_radius * angle, 0.0) / float(ellipse.semi_axes(1.0)[0])) ** 3)

@@ -11,7 +11,7 @@ from raceway.core.bodies.ring import CAGE
 from raceway.core.system import COORDINATES
 from raceway.errors import ConvergenceError
 from raceway.model import Model
-from raceway.ring import shoulder_height
+from raceway.ring import load_at_edge, shoulder_height
 
 
 @attrs.frozen(eq=False)
@@ -158,11 +158,14 @@ def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force:
         ("outer", model.outer, outer, force[z:]),
     ):
         half = ellipse.semi_axes(load)[0] / (0.5 * d)
-        reach = np.nanmax(np.abs(angle) + half, initial=0.0)
+        over = np.abs(angle) + half
+        reach = np.nanmax(over, initial=0.0)
         if reach > edge:
+            begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
             assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
             found.append(
                 f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
-                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality"
+                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
+                f"contact angle from {begins:.3g} N a ball"
             )
     return found

@@ -55,6 +55,12 @@ def test_rows_judge():
     assert below("e", 1e-10, 1e-9, "c").ok and not below("e", float("nan"), 1e-9, "c").ok
 
 
+def test_rows_without_a_limit_are_counted_apart():
+    judged, other = near("x", 1.0, 1.0, 0.01, "c"), Row("y", 2.0, "reported", True, "c")
+    count = [_files.holding({"rows": [attrs.asdict(row) for row in rows]}) for rows in ([judged, other], [judged], [other])]
+    assert count == ["1 of 1, 1 reported", "1 of 1", "1 reported"]
+
+
 def test_unknown_report_is_exit_code_2(capsys):
     assert main(["expected_valeus"]) == 2
     assert "expected_values" in capsys.readouterr().err

@@ -26,7 +26,8 @@ def rows() -> list[Row]:
         Row("runs with a dynamic stiffness", f"{len(stiffness)} of {len(stiffness) + failed}", "all", not failed, COMMAND)
     ]
     seated = _stiffness(compare(_on_beds(), [SPEEDS, "supports.tilt=locked,free"]))
-    beds = "raceway compare SCENE with supports.outer_seat = inner_seat = 500e9"
+    seats = " ".join(f"--set {path}={value:g}" for path, value in SEATS.items())
+    beds = f"raceway compare {SCENE} {seats} " + " ".join(f"--vary {axis}" for axis in VARY[1:])
     for tilt in ("locked", "free"):
         rigid, elastic = (_along(stiffness, kind, tilt) for kind in ("rigid", "condensed"))
         soft = _along(seated, "condensed", tilt)

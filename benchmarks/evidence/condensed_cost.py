@@ -26,7 +26,7 @@ TITLE = "Error against cost on one scene: B7206C, 1000 N axial, 500 N radial, ti
 COMMAND = "python -m benchmarks.condensed"
 #: Points along a semi-axis of the reference.
 REFERENCE = 12
-#: Another program, general and with faceted contact surfaces, on this bearing: what a careful user of it got.
+#: Another program, general and with faceted contact surfaces, on this bearing: typed here, not computed by this package.
 OTHER = {
     "setting": "CalculiX, C3D8R, 63 000 elements", "displacement": 1.0, "stiffness": None, "set_up_s": None, "solve_s": 334.0,
     "note": "factor 2 off: facets of the concave groove cut into the balls (measured with that program; no part of this package)",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
@@ -9,6 +10,9 @@ from typing import Any
 from rich.console import RenderableType
 
 from raceway.commands.screen.text import sections
+
+#: Compliances that are listed one by one; a study keeps thousands.
+_SHOWN = 10
 
 
 def cache_screen(found: Mapping[str, Any]) -> RenderableType:
@@ -20,10 +24,16 @@ def cache_screen(found: Mapping[str, Any]) -> RenderableType:
         rows.append((found["current"], "empty", "current: the next run compiles, which takes some ten seconds"))
     total, most = found["arrays_bytes"] / 2**20, found["arrays_limit_bytes"] / 2**20
     rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {found['arrays_root']}"))
-    for entry in found["arrays"]:
+    arrays = sorted(found["arrays"], key=lambda entry: -entry["used"])
+    for entry in arrays[:_SHOWN]:
         used = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
         remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {used}"
         rows.append((entry["kind"], f"{entry['bytes'] / 2**20:.2f} MiB", remark))
-    if not found["arrays"]:
+    if len(arrays) > _SHOWN:
+        rows.append(("", "", f"the {_SHOWN} last used of {len(arrays)}; all: raceway cache --json; by sort:"))
+        for kind, count in sorted(Counter(entry["kind"] for entry in arrays).items()):
+            size = sum(entry["bytes"] for entry in arrays if entry["kind"] == kind) / 2**20
+            rows.append((kind, f"{size:.2f} MiB", f"{count} in all"))
+    if not arrays:
         rows.append(("none", "empty", "a condensed bearing makes them in seconds"))
     return sections(rows)
