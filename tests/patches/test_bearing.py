@@ -139,7 +139,6 @@ def test_the_result_tells_pressures_approaches_and_points(free):
     assert case.system.without(CAGE).pool is case.system.pool
 
 
-<<<<<<< HEAD
 def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
     size, how = contact_error(*free)
     assert size == 0.0 and "overlap" in how, "unilateral"
@@ -151,7 +150,8 @@ def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
     assert 0.005 < size < 0.03 and "not part of the total" in how
     columns = case.bodies.ball_columns(case, found)
     assert size >= (columns["approach_penetration_inner_m"] / columns["approach_inner_m"])[0]
-=======
+
+
 def test_the_mesh_error_is_that_of_the_state(free, monkeypatch):
     """Each state is dropped before the next, so that its place in memory is used again."""
     case, _ = free
@@ -160,7 +160,6 @@ def test_the_mesh_error_is_that_of_the_state(free, monkeypatch):
     parts = (1.0, 0.2, 0.05)
     told = [case.bodies._change_from_coarser(case, SimpleNamespace(displacement=np.full(5, part)))[0] for part in parts]
     assert told == list(parts)
->>>>>>> m6
 
 
 REFUSED = {
