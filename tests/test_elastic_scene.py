@@ -131,6 +131,8 @@ def test_explicit_steps_run_from_the_scene():
     assert 0.3 < 6e-6 / steps / stability["critical_time_step_s"] < 1.0
     # Of second order, and the motion takes hundreds of steps.
     assert stability["energy_drift"] < 1e-4
+    planned = make_plan(scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"}))
+    assert 0.5 < planned.predicted_steps / steps < 2.0  # what the plan's cost rests on
 
 
 def test_a_step_above_the_stable_limit_is_refused_with_the_limit():

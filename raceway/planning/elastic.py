@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from math import ceil, pi
 
 import attrs
 
@@ -24,6 +25,9 @@ _FACTORS = 60_000
 _BUILD_S, _SETUP_S, _SOLVE_S = 2.0e-5, (2.0e-4, 1.5e-4), (4.0e-5, 2.2e-4)
 #: Processor seconds a cell of an explicit step, hexahedra of one point and others, and of its Python beside.
 _FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
+#: Thinnest element of a ball over the width of its cells under the patch; first layer of its cells over the finest length
+#: that is asked for.  Both from meshes of 1 cell to the semi-axis, whose steps are 8.5e-9 and 2.1e-8 s by elements.
+_THINNEST, _DEPTH = 0.43, 0.6
 #: Linear solves of an equilibrium from rigid bodies with its stiffness, of one from its neighbour, of a time step.
 _EQUILIBRIUM, _NEIGHBOUR, _STEP = 10, 5, 5
 #: Imports of what solves [s].
@@ -72,21 +76,41 @@ def elastic_cost(scene: Scene) -> ElasticCost | None:
 
 
 def _stable_step(scene: Scene) -> float:
-    """Of the smallest element, h sqrt(rho / M), M = E (1 - nu) / ((1 + nu) (1 - 2 nu)), at h = the finest length that the mesher is asked for."""
+    """Of the ball's thinnest element and the contacts, whose 1/dt^2 add up [s].
+
+    Notes
+    -----
+    Elements: h sqrt(rho / M), M = E (1 - nu) / ((1 + nu) (1 - 2 nu)), at h = 0.43 of the width of the cells under the
+    patch, for the ball's core, half as wide, is thinner than its surface.  Contacts: a surface point of stiffness k_n A on
+    nodes of mass rho A h / 2, both sides, by Gershgorin's theorem: 4 / dt^2 = 4.8 k_n / (rho h).
+    """
     from raceway.core.geometry import BallBearing
     from raceway.core.hertz import contact_modulus
 
-    b = scene.bearing
+    b, mesh, law = scene.bearing, scene.mesh, scene.contact.law
     row = BallBearing(
         b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer
     )
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
-    load = getattr(scene.mesh, "ball_load", None) or axial_approach(scene)[1] or 300.0
-    minor = min(float(e.semi_axes(load)[1]) for e in row.ellipses(modulus))
-    fine = minor / float(getattr(scene.mesh, "nodes_per_semi_axis", 4))
+    carried = axial_approach(scene)[1] or 300.0
+    load = getattr(mesh, "ball_load", None) or carried
+    ellipses = row.ellipses(modulus)
+    minors = [float(e.semi_axes(load)[1]) for e in ellipses]
+    fine = min(minors) / float(getattr(mesh, "nodes_per_semi_axis", 4))
+    zone = float(getattr(mesh, "patch", 1.25)) * max(minors)
+    width = min(zone / ceil(zone / fine), float(getattr(mesh, "element_size", fine)))
     steel, nu = b.balls, b.balls.poisson
     wave = (steel.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / steel.density) ** 0.5
-    return 0.6 * min(fine, getattr(scene.mesh, "element_size", fine)) / wave
+    penalty = getattr(law, "stiffness", None)
+    if penalty is None:
+        at = getattr(law, "calibrate_at", None) or carried
+        # As raceway.contact_laws.stiffness.point_stiffness: the penetration is 1 % of Hertz's approach.
+        penalty = max(
+            300.0 * float(e.curvatures[0] * e.curvatures[1]) ** 0.5 * at / (pi * float(e.approach(at)) ** 2)
+            for e in ellipses
+        )
+    elements, contacts = _THINNEST * width / wave, 2.0 * (steel.density * _DEPTH * fine / (4.8 * penalty)) ** 0.5
+    return float((elements**-2 + contacts**-2) ** -0.5)
 
 
 def machine_bytes() -> float:
