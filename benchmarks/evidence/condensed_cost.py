@@ -29,7 +29,7 @@ REFERENCE = 12
 #: Another program, general and with faceted contact surfaces, on this bearing: typed here, not computed by this package.
 OTHER = {
     "setting": "CalculiX, C3D8R, 63 000 elements", "displacement": 1.0, "stiffness": None, "set_up_s": None, "solve_s": 334.0,
-    "note": "factor 2 off: facets of the concave groove cut into the balls (measured with that program; no part of this package)",
+    "note": "factor 2 off: facets of the concave groove cut into the balls (typed from earlier measurements with that program; deck and date not kept)",
 }  # fmt: skip
 NOTES = {"elastic": "one node along a semi-axis: contacts are not resolved, and no mesh that resolves them is as cheap"}
 
