@@ -99,10 +99,12 @@ def test_an_hourglass_coefficient_without_hourglass_modes_is_told():
 
 
 def test_a_bed_under_the_outer_ring_yields_under_the_load(static):
-    bed = run(scene(supports={"outer_seat": 1e14})).as_dict()
+    bed = run(scene(supports={"outer_seat": 1e12})).as_dict()
     held = static[0].as_dict()
     assert bed["model"]["reaction_n"]["x"] == pytest.approx(-2500.0, rel=1e-5)  # Newton's residual, as above
-    assert bed["equilibrium"]["displacement"]["x"] > 1.01 * held["equilibrium"]["displacement"]["x"]
+    # The ring slides by the load over the bed's stiffness on the whole cylinder at least (62 mm by 16 mm), and widens besides.
+    slide = 2500.0 / (1e12 * np.pi * 0.062 * 0.016)
+    assert bed["equilibrium"]["displacement"]["x"] > held["equilibrium"]["displacement"]["x"] + slide
 
 
 def test_the_tangent_is_symmetric_and_positive(static):

@@ -201,5 +201,5 @@ def _pyamg() -> Any:
     try:
         import pyamg
     except ImportError:
-        raise RacewayError('large elastic bodies need pyamg: pip install "raceway[mesh]"') from None
+        raise RacewayError("large elastic bodies need pyamg: pip install '.[mesh]' in a checkout of Raceway") from None
     return pyamg

@@ -62,7 +62,7 @@ def test_unreadable_files_are_named(form, content, tmp_path):
 
 def test_formats_without_meshio_name_the_extra(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "meshio", None)
-    with pytest.raises(MeshError, match=r"pip install 'raceway\[mesh\]'"):
+    with pytest.raises(MeshError, match=r"pip install '.\[mesh\]'"):
         Vtu().write(tmp_path / "x.vtu", block())
 
 
@@ -208,5 +208,5 @@ def test_damaged_step_files_are_told_in_one_message(tmp_path, capfd):
 
 def test_without_gmsh_the_extra_is_named(solids, monkeypatch):
     monkeypatch.setitem(sys.modules, "gmsh", None)
-    with pytest.raises(MeshError, match=r"pip install 'raceway\[gmsh\]'"):
+    with pytest.raises(MeshError, match=r"pip install '.\[gmsh\]'"):
         Gmsh(inner_ring=str(solids / "box.step")).mesh(BEARING)

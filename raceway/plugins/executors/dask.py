@@ -70,7 +70,7 @@ class Dask:
             client = Client(self.scheduler, timeout=self.patience)
         except (OSError, ValueError, TypeError) as why:
             raise PluginError(
-                f"no dask scheduler answers at `{self.scheduler}` within {self.patience:g} s: {why or type(why).__name__}. "
+                f"no dask scheduler answers at `{self.scheduler}` within {self.patience:g} s: {str(why) or type(why).__name__}. "
                 "Start one with `dask scheduler`, or correct --scheduler."
             ) from None
         with client:
