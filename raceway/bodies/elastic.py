@@ -1,14 +1,16 @@
-"""Elastic rings and balls whose every node is a degree of freedom, in nodal contact."""
+"""Elastic rings and balls whose every node is a degree of freedom: pressures at points, or a calibrated force a contact."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, Built, made_by, make_basis
-from raceway.bodies.elastic_report import ElasticBodies
+from raceway.bodies.elastic_points import ElasticPoints
+from raceway.bodies.elastic_resultants import ElasticResultants
 from raceway.bodies.rigid import place_ring, probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.contracts import ContactPairs
@@ -19,12 +21,14 @@ from raceway.core.elastic.setup import Setup
 from raceway.core.plugin_kernel import plugin_kernel
 from raceway.core.signatures import LAW
 from raceway.core.system import System
-from raceway.errors import PluginError
+from raceway.errors import ConvergenceError, PluginError, SceneError
 from raceway.meshing import mesh_scene
 from raceway.plan import Plan
 from raceway.ring import radial_growth
 from raceway.scene import Scene
 
+#: Loads of a ball over the mean one under which a law has to keep some compliance of its own.
+_ENOUGH = 5.0
 
 def build(scene: Scene, plan: Plan) -> Built:
     """The system of a scene with elastic bodies; see ``raceway.model.build_model``.
@@ -34,17 +38,57 @@ def build(scene: Scene, plan: Plan) -> Built:
     MeshError
         Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
     """
-    basis = make_basis(scene)
-    contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
-    as_rigid = attrs.evolve(scene, contact=contact)
+    basis, whole = make_basis(scene), scene.contact.discretisation == "resultant"
+    as_rigid = scene
+    if not whole:
+        contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+        as_rigid = attrs.evolve(scene, contact=contact)
     rigid = rigid_system(as_rigid, plan, basis).without(FRICTION)
     probe(as_rigid, basis, rigid)
     guess = place_ring(as_rigid, basis, rigid)
-    bodies = ElasticBearing(mesh_scene(scene), _setup(scene, basis, rigid))
+    setup = _setup(scene, basis, rigid)
+    if whole:
+        params = rigid.law_params
+        setup = attrs.evolve(setup, angles=_angles(scene, plan, rigid, guess), params=lambda pair, area: params[pair])
+    bodies = ElasticBearing(mesh_scene(scene), setup)
+    if whole:
+        _refuse_stiff_law(scene, basis, bodies)
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
     held_by = scene.load.axial if scene.supports.axial == "displacement" else None
     system = ElasticRing(**fields, bodies=bodies, held_by=held_by)
-    return Built(basis, system, guess, ElasticBodies(bodies, rigid, guess))
+    report = ElasticResultants if whole else ElasticPoints
+    return Built(basis, system, guess, report(bodies, rigid, guess))
+
+
+def _angles(scene: Scene, plan: Plan, rigid: System, guess: np.ndarray) -> np.ndarray:
+    """(2 Z,) contact angles with rigid bodies, inner races first; the free one where a ball carries nothing."""
+    angles = np.full(2 * rigid.ball_count, scene.bearing.contact_angle)
+    try:
+        q, ball, _ = rigid.settle(guess)
+    except ConvergenceError:  # said better where the equilibrium is looked for
+        return angles
+    inner = outer = rigid.centre_vectors(q)[0]
+    if plan.centrifugal:
+        inner, outer = inner - ball[:, :2], ball[:, :2]
+    found = np.concatenate([np.arctan2(way[:, 0], way[:, 1]) for way in (inner, outer)])
+    return np.where(rigid.evaluate(q, ball=ball).contact_force > 0.0, found, angles)
+
+
+def _refuse_stiff_law(scene: Scene, basis: Basis, bodies: ElasticBearing) -> None:
+    """A law that has less compliance than the mesh under its contacts."""
+    contact: Any = bodies.system.contact
+    n, load = len(contact.local), _ENOUGH * basis.ball_load
+    gap = np.full(n, -float(basis.inner.approach(load)))
+    force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
+    contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
+    if (-d_gap * contact.local).max() >= 1.0:
+        raise SceneError.at(
+            "contact.kind",
+            scene.contact.kind,
+            f"its contact of {-1e-6 * d_gap.min():.3g} N/µm under some {load:.3g} N is stiffer than the mesh below it, which gives "
+            f"{1e9 * contact.local.max():.3g} nm/N itself: nothing is left for the law. Use 'hertz' or a softer law, or "
+            "contact.discretisation = 'nodal'",
+        )
 
 
 def _setup(scene: Scene, basis: Basis, rigid: System) -> Setup:

@@ -65,32 +65,59 @@ def solve_static(
     ConvergenceError
         A rigid motion that nothing holds, a load or matrix that is not finite, or iterations that end too early.
     """
-    import scipy.sparse.linalg as sparse
-
-    mask = np.asarray(held, dtype=bool).reshape(-1)
-    displacement = np.where(mask, np.broadcast_to(values, held.shape).reshape(-1), 0.0)
+    mask = np.asarray(held, dtype=bool)
+    given = np.where(mask, np.broadcast_to(values, held.shape), 0.0)
     matrix = stiffness.tocsr()
-    if not (np.isfinite(load).all() and np.isfinite(displacement).all() and np.isfinite(matrix.data).all()):
+    if not (np.isfinite(load).all() and np.isfinite(given).all() and np.isfinite(matrix.data).all()):
         raise ConvergenceError("the static system has loads, prescribed displacements or stiffness that are not finite")
-    _refuse_free_motion(matrix, points, mask)
-    free = np.flatnonzero(~mask)
-    right = (np.asarray(load, dtype=float).reshape(-1) - matrix @ displacement)[free]
-    size = float(np.linalg.norm(right))
-    if size == 0.0:
-        return Solution(displacement.reshape(-1, 3), 0, 0.0)
-    inner = matrix[free][:, free]
-    iterations = 0
-    if len(free) <= DIRECT_UNKNOWNS:
-        found = sparse.splu(inner.tocsc(), permc_spec="MMD_AT_PLUS_A").solve(right)
-    else:
-        precondition = Preconditioner(matrix, points, mask)
-        found, iterations = _conjugate_gradients(inner, right, precondition, tolerance)
-    residual = float(np.linalg.norm(inner @ found - right)) / size
-    displacement[free] = found
-    if not residual <= 10.0 * tolerance:  # the true residual may lag behind the recursive one, and NaN fails too
-        message = f"the static solution stopped after {iterations} iterations at a residual of {residual:.1e}"
-        raise ConvergenceError(f"{message}, {tolerance:g} was asked for", {"displacement": displacement.reshape(-1, 3)})
-    return Solution(displacement.reshape(-1, 3), iterations, residual)
+    _refuse_free_motion(matrix, points, mask.reshape(-1))
+    return StaticSolver(matrix, points, mask).solve(load, given, tolerance)
+
+
+class StaticSolver:
+    """Factors or multigrid of a body, for many loads.
+
+    Parameters
+    ----------
+    stiffness : (3 n, 3 n) CSR, positive definite on the degrees of freedom that are not held [N/m]
+    points : (n, 3) float [m];  held : (n, 3) bool
+    """
+
+    def __init__(self, stiffness: csr_matrix, points: np.ndarray, held: np.ndarray) -> None:
+        from scipy.sparse.linalg import splu
+
+        mask = np.asarray(held, dtype=bool).reshape(-1)
+        self._matrix, self._free = stiffness, np.flatnonzero(~mask)
+        self._inner = stiffness[self._free][:, self._free]
+        direct = len(self._free) <= DIRECT_UNKNOWNS
+        self._factors = splu(self._inner.tocsc(), permc_spec="MMD_AT_PLUS_A") if direct and len(self._free) else None
+        self._precondition = None if direct else Preconditioner(stiffness, points, mask)
+
+    def solve(self, load: np.ndarray, values: np.ndarray | float = 0.0, tolerance: float = 1e-8) -> Solution:
+        """Displacements under nodal forces (n, 3), where held as prescribed (n, 3).
+
+        Raises
+        ------
+        ConvergenceError
+            Iterations that end too early.
+        """
+        displacement = np.array(np.broadcast_to(values, load.shape), dtype=float).reshape(-1)
+        displacement[self._free] = 0.0
+        right = (np.asarray(load, dtype=float).reshape(-1) - self._matrix @ displacement)[self._free]
+        size = float(np.linalg.norm(right))
+        if size == 0.0:
+            return Solution(displacement.reshape(-1, 3), 0, 0.0)
+        iterations = 0
+        if self._precondition is None:
+            found = self._factors.solve(right)
+        else:
+            found, iterations = _conjugate_gradients(self._inner, right, self._precondition, tolerance)
+        residual = float(np.linalg.norm(self._inner @ found - right)) / size
+        displacement[self._free] = found
+        if not residual <= 10.0 * tolerance:  # the true residual may lag behind the recursive one, and NaN fails too
+            message = f"the static solution stopped after {iterations} iterations at a residual of {residual:.1e}"
+            raise ConvergenceError(f"{message}, {tolerance:g} was asked for", {"displacement": displacement.reshape(-1, 3)})
+        return Solution(displacement.reshape(-1, 3), iterations, residual)
 
 
 class Preconditioner:

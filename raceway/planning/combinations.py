@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.planning.elastic import elastic_faults, memory_faults
+from raceway.planning.elastic import UNREFINED, elastic_faults, memory_faults, refined
 from raceway.planning.mesh import mesh_faults
 from raceway.planning.patches import patch_faults
 from raceway.planning.sections import seat_faults, section_faults
@@ -81,6 +81,7 @@ def _refuse_condensed(scene: Scene, refuse: Callable[[bool, str, Any, str], None
     if scene.mesh is not None:
         why = "condensed bodies are bodies of revolution, swept from their sections: use mesh.kind = 'structured'"
         refuse(scene.mesh.name != "structured", "mesh.kind", scene.mesh.name, why)
+        refuse(not refined(scene), "mesh.nodes_per_semi_axis", 0, UNREFINED.format("sections of condensed bodies"))
     for key in ("bore", "outer_diameter", "width"):
         value = getattr(scene.bearing, key)
         refuse(value is None, f"bearing.{key}", value, "is needed by elastic rings: give it, or take bodies.kind = 'rigid'")

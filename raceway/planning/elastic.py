@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from math import ceil, pi
+from math import ceil, inf, pi
 
 import attrs
 
@@ -30,6 +30,8 @@ _FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
 _THINNEST, _DEPTH = 0.43, 0.6
 #: Linear solves of an equilibrium from rigid bodies with its stiffness, of one from its neighbour, of a time step.
 _EQUILIBRIUM, _NEIGHBOUR, _STEP = 10, 5, 5
+#: What 0 cells along a semi-axis cannot do.
+UNREFINED = "{} need cells along a contact: take at least 1, or contact.discretisation = 'resultant' on elastic bodies"
 #: Imports of what solves [s].
 _IMPORTS_S = 1.5
 
@@ -96,9 +98,11 @@ def _stable_step(scene: Scene) -> float:
     load = getattr(mesh, "ball_load", None) or carried
     ellipses = row.ellipses(modulus)
     minors = [float(e.semi_axes(load)[1]) for e in ellipses]
-    fine = min(minors) / float(getattr(mesh, "nodes_per_semi_axis", 4))
+    width = size = float(getattr(mesh, "element_size", inf))
+    fine = min(minors) / float(getattr(mesh, "nodes_per_semi_axis", 4)) if refined(scene) else size
     zone = float(getattr(mesh, "patch", 1.25)) * max(minors)
-    width = min(zone / ceil(zone / fine), float(getattr(mesh, "element_size", fine)))
+    if refined(scene):
+        width = min(zone / ceil(zone / fine), size)
     steel, nu = b.balls, b.balls.poisson
     wave = (steel.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / steel.density) ** 0.5
     penalty = getattr(law, "stiffness", None)
@@ -109,6 +113,8 @@ def _stable_step(scene: Scene) -> float:
             300.0 * float(e.curvatures[0] * e.curvatures[1]) ** 0.5 * at / (pi * float(e.approach(at)) ** 2)
             for e in ellipses
         )
+    if scene.contact.discretisation == "resultant":  # on discs of many cells: far softer than elements
+        return _THINNEST * width / wave
     elements, contacts = _THINNEST * width / wave, 2.0 * (steel.density * _DEPTH * fine / (4.8 * penalty)) ** 0.5
     return float((elements**-2 + contacts**-2) ** -0.5)
 
@@ -119,6 +125,11 @@ def machine_bytes() -> float:
         return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
     except (AttributeError, ValueError, OSError):
         return float("inf")
+
+
+def refined(scene: Scene) -> bool:
+    """Whether a structured mesh has cells along a contact ellipse; those of other meshers are not known."""
+    return bool(getattr(scene.mesh, "nodes_per_semi_axis", 1))
 
 
 def elastic_faults(scene: Scene) -> list[Mistake]:
@@ -133,8 +144,10 @@ def elastic_faults(scene: Scene) -> list[Mistake]:
     kinematics, b, contact = scene.kinematics, scene.bearing, scene.contact
     why = f"is required by elastic bodies: for instance [mesh] with kind = 'structured', {other}"
     refuse(scene.mesh is None, "mesh", None, why)
-    why = f"elastic bodies touch at surface points: use 'nodal', {other}"
-    refuse(contact.discretisation == "resultant", "contact.discretisation", contact.discretisation, why)
+    whole = contact.discretisation == "resultant"
+    why = f"what a coarse mesh gives way along the surface is not known well enough: set it 0, use 'nodal', {other}"
+    refuse(whole and contact.friction > 0.0, "contact.friction", contact.friction, why)
+    refuse(not whole and not refined(scene), "mesh.nodes_per_semi_axis", 0, UNREFINED.format("pressures at surface points"))
     why = "is a condition, not a pressure that a penetration makes: use 'hertz' or 'penalty', " + other
     refuse(getattr(contact.law, "constraint", False), "contact.kind", contact.kind, why)
     why = f"balls of elastic bodies stay at their azimuth: set it false, {other}"

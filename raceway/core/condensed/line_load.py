@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from raceway.core.half_space import normal_displacement
+
 
 def density(points: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points on (-1, 1) and weights of 3/4 (1 - x^2), the ellipse's pressure summed over its minor axis; sum 1."""
@@ -42,13 +44,6 @@ def half_space(depth: np.ndarray, half: float, young: float, poisson: float) -> 
     Parameters
     ----------
     depth : (n,) float [m];  half : half length of the load [m];  young : [Pa]
-
-    References
-    ----------
-    Johnson, Contact Mechanics (1985), equation 3.18b (Boussinesq): u = (1 + nu) / (2 pi E) (z^2 / r^3 + 2 (1 - nu) / r).
     """
     x, w = density(41)
-    z = np.asarray(depth, dtype=float)[:, None]
-    r = np.sqrt(z * z + (half * x) ** 2)
-    kernel = (1.0 + poisson) / (2.0 * np.pi * young) * (z * z / r**3 + 2.0 * (1.0 - poisson) / r)
-    return np.asarray(kernel @ w)
+    return np.asarray(normal_displacement(depth, half * x, young, poisson) @ w)

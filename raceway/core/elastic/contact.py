@@ -1,40 +1,16 @@
-"""Nodal contact: pressure at the points of one surface against another exact surface that moves with its body."""
+"""What all contacts of an elastic system share: forces and tangents from gaps, memory, friction, bounds of steps."""
 
 from __future__ import annotations
 
 from typing import Any, Protocol
 
-import attrs
 import numpy as np
 
 from raceway.core.contact import add_damping, stored_energy
-from raceway.core.elastic.facets import Facets
 from raceway.core.elastic.gap import forces_and_tangents, gaps
-from raceway.core.elastic.surface import SurfacePoints
 
 #: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
 _STIFFER = 1.02
-#: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
-_MOVED = 0.02
-
-
-@attrs.frozen(eq=False)
-class Pair:
-    """Two surfaces that may touch.
-
-    Attributes
-    ----------
-    name : str
-    points : SurfacePoints of the first surface; node numbers are the assembly's
-    surface : (8,) the second one, exact (``raceway.core.elastic.gap``)
-    facets : Facets of the second surface;  first_node : what to add to its node numbers for those of the assembly
-    """
-
-    name: str
-    points: SurfacePoints
-    surface: np.ndarray
-    facets: Facets
-    first_node: int
 
 
 class Friction(Protocol):
@@ -60,104 +36,95 @@ class Friction(Protocol):
     def restore(self, arrays: dict[str, np.ndarray]) -> None: ...
 
 
-class NodalContact:
-    """All pairs of an assembly.
+class Contact:
+    """Places at which forces act between two bodies: points of a surface, or whole contacts.
 
     Parameters
     ----------
-    pairs : list of Pair
-    nodes : int, of the assembly
+    place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for whole contacts
+    counts : (pairs,) places of each pair of surfaces;  surfaces : (pairs, 8), see ``raceway.core.elastic.gap``
     law, params, state_size : kernel of signature ``LAW``, (n, k) its parameters, columns of its memory
-    damping : (n,) or one number: normal damping, pressure per gap rate [N s/m3]
+    damping : normal damping, pressure per gap rate [N s/m3]; of whole contacts [N s/m]
     friction : Friction | None
+
+    Attributes
+    ----------
+    move : (3 n, 3 nodes) sparse B: displacement of the places against the second bodies
 
     Notes
     -----
-    With y = X + u_1(X) - u_2(projection of y), gap = g(y) of the exact surface, normal n = grad g, the force on a point of
-    the first surface is A p n, and the opposite goes to the second one's nodes with the interpolation's weights: no
-    momentum is lost.  y = X + B u with a sparse B, hence f = -B^T F and the tangent B^T D B with 3 x 3 blocks D.
+    With y = X + B u, gap = g(y) of the exact surface and its normal n = grad g, the force on a place of the first body is
+    A p n: forces on the nodes are f = -B^T F and the tangent is B^T D B with 3 x 3 blocks D.  No momentum is lost.
     """
+
+    #: Whether each place is a whole contact: few of them, and each on many nodes.
+    whole = False
 
     def __init__(
         self,
-        pairs: list[Pair],
-        nodes: int,
+        place: np.ndarray,
+        area: np.ndarray,
+        counts: np.ndarray,
+        surfaces: np.ndarray,
         law: Any,
         params: np.ndarray,
         state_size: int = 0,
         damping: float = 0.0,
         friction: Friction | None = None,
     ) -> None:
-        self.pairs, self._nodes, self.law = pairs, nodes, law
+        self.place, self.area, self.counts, self.law = place, area, counts, law
         self.params = np.ascontiguousarray(params, dtype=float)
         self.damping, self.friction = float(damping), friction
-        self.counts = np.array([len(pair.points.area) for pair in pairs])
-        self.pair = np.repeat(np.arange(len(pairs)), self.counts)
-        self.place = np.concatenate([pair.points.place for pair in pairs])
-        self.area = np.concatenate([pair.points.area for pair in pairs])
-        self.surfaces = np.ascontiguousarray([pair.surface for pair in pairs])
-        n = len(self.area)
+        self.pair = np.repeat(np.arange(len(counts)), counts)
+        self.surfaces = np.ascontiguousarray(surfaces)
+        n = len(area)
         self.memory = np.zeros((n, state_size))
         self._trial = self.memory.copy()
         self.gap, self.pressure, self.d_gap, self.d_rate = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
         self.normal, self.bend = np.zeros((n, 3)), np.zeros((n, 3, 3))
         self.force, self.stiffness, self.rate_stiffness = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
-        self.outside = np.zeros(n)
-        self._projected = np.full((n, 3), np.inf)
-        self._short = np.zeros(n)
         self._stiffest = np.zeros(n)
-        self._one: Any = None
-        self._move: Any = None
-        self.update(self.place)
+        self.move: Any = None
+        #: (n, nodes) sparse: at least the row sums of B's blocks.
+        self._reach: Any = None
+
+    # What kinds of contacts differ in
 
     @property
     def projected(self) -> np.ndarray:
-        """(n, 3) where the points lay when their places were last looked up [m]."""
-        return self._projected
-
-    @property
-    def move(self) -> Any:
-        """(3 n, 3 nodes) sparse B: displacement of the points against the second surface."""
-        return self._move
+        """(n, 3) where the places lay when B was last made [m]."""
+        return self.place
 
     def restore(self, projected: np.ndarray, memory: np.ndarray) -> None:
-        """Where the points were looked up last, and the law's memory, as another contact had them."""
-        self._projected[:] = np.inf
-        self.update(projected)
+        """B and the law's memory as another contact had them."""
         self.memory[:] = memory
 
     def update(self, where: np.ndarray) -> bool:
-        """Look up where the points lie on the second surface; whether anything changed."""
-        away = np.abs(where - self._projected).max(axis=1)
-        if not (away > _MOVED * self._short).any():
-            return False
-        from scipy.sparse import csr_array, kron
+        """Make B anew for places at ``where`` (n, 3) [m]; whether anything changed."""
+        return False
 
-        n = len(self.area)
-        columns, weights = np.empty((n, 8), dtype=np.int64), np.empty((n, 8))
-        begin = 0
-        for pair, count in zip(self.pairs, self.counts, strict=True):
-            part = slice(begin, begin + count)
-            begin += count
-            facet, values, self.outside[part] = pair.facets.locate(where[part])
-            self._short[part] = pair.facets.short[facet]
-            columns[part, :4], weights[part, :4] = pair.points.nodes, pair.points.weights
-            columns[part, 4:], weights[part, 4:] = pair.facets.quads[facet] + pair.first_node, -values
-        self._projected = where.copy()
-        rows = np.arange(0, 8 * n + 1, 8)
-        one = csr_array((weights.ravel(), columns.ravel(), rows), shape=(n, self._nodes))
-        self._one, self._move = one, kron(one, np.eye(3), format="csr")
-        return True
+    def nodes_of(self, pair: int) -> tuple[int, int]:
+        """A node of the first and one of the second body of a pair."""
+        raise NotImplementedError
+
+    def overlap(self, pair: int) -> tuple[str, float, float]:
+        """Name of a pair, how deep it overlaps at the last gaps [m], and the length of an element there [m]."""
+        raise NotImplementedError
+
+    def press(self, gap: np.ndarray, rate: np.ndarray, dt: float) -> np.ndarray:
+        """Sets ``pressure``, ``d_gap`` and ``d_rate`` at gaps (n,) and their rates; what is left of the gaps for the law (n,)."""
+        self.law(gap, rate, self.params, self.memory, self._trial, dt, self.pressure, self.d_gap, self.d_rate)
+        return gap
 
     def evaluate(self, dt: float, u: np.ndarray, v: np.ndarray | None = None, share: float = 0.0) -> np.ndarray:
         """(3 nodes,) internal forces of the contacts [N] at displacements u (3 nodes,) [m] and velocities v.
 
         Parameters
         ----------
-        share : points less deep than this share of their pair's deepest one count as open
+        share : places less deep than this share of their pair's deepest one count as open
             Of an overlap that nothing has deformed yet, half the depth bounds the contact area.
         """
-        moved = (self._move @ u).reshape(-1, 3)
+        moved = (self.move @ u).reshape(-1, 3)
         where = self.place + moved
         gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
         gap = self.gap
@@ -166,8 +133,8 @@ class NodalContact:
             gap = np.where(gap > share * np.minimum(deepest, 0.0)[self.pair], np.maximum(gap, 0.0), gap)
         rate = np.zeros(len(gap))
         if v is not None and dt > 0.0:
-            rate = np.einsum("ia,ia->i", (self._move @ v).reshape(-1, 3), self.normal)
-        self.law(gap, rate, self.params, self.memory, self._trial, dt, self.pressure, self.d_gap, self.d_rate)
+            rate = np.einsum("ia,ia->i", (self.move @ v).reshape(-1, 3), self.normal)
+        gap = self.press(gap, rate, dt)
         if dt > 0.0:
             add_damping(self.damping, gap, rate, self.pressure, self.d_gap, self.d_rate)
         forces_and_tangents(
@@ -182,12 +149,12 @@ class NodalContact:
             traction, tangent = self.friction.evaluate(moved, self.normal, self.pressure, self.d_gap)
             self.force += self.area[:, None] * traction
             self.stiffness += self.area[:, None, None] * tangent
-        return np.asarray(-(self._move.T @ self.force.reshape(-1)))
+        return np.asarray(-(self.move.T @ self.force.reshape(-1)))
 
     def tangent_times(self, blocks: np.ndarray, u: np.ndarray) -> np.ndarray:
         """(3 nodes,) B^T D B u with blocks D (n, 3, 3)."""
-        moved = (self._move @ u).reshape(-1, 3)
-        return np.asarray(self._move.T @ np.einsum("iab,ib->ia", blocks, moved).reshape(-1))
+        moved = (self.move @ u).reshape(-1, 3)
+        return np.asarray(self.move.T @ np.einsum("iab,ib->ia", blocks, moved).reshape(-1))
 
     def tangent(self, blocks: np.ndarray) -> Any:
         """(3 nodes, 3 nodes) sparse B^T D B, of the points whose block is not zero."""
@@ -195,7 +162,7 @@ class NodalContact:
 
         chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
         rows = (3 * chosen[:, None] + np.arange(3)).ravel()
-        move = self._move[rows]
+        move = self.move[rows]
         size = len(chosen)
         middle = bsr_array(
             (np.ascontiguousarray(blocks[chosen]), np.arange(size), np.arange(size + 1)), shape=(3 * size, 3 * size)
@@ -204,7 +171,7 @@ class NodalContact:
 
     def resultants(self) -> np.ndarray:
         """(pairs, 3) forces on the first bodies [N]."""
-        return np.stack([np.bincount(self.pair, self.force[:, a], len(self.pairs)) for a in range(3)], axis=1)
+        return np.stack([np.bincount(self.pair, self.force[:, a], len(self.counts)) for a in range(3)], axis=1)
 
     def deepest(self) -> np.ndarray:
         """(pairs,) smallest gap [m]."""
@@ -234,7 +201,7 @@ class NodalContact:
         touching = np.flatnonzero(size)
         if not len(touching):
             return np.inf
-        one = abs(self._one[touching])
+        one = self._reach[touching]
         rows = one.T @ (size[touching] * np.asarray(one.sum(axis=1)).ravel())
         return float(2.0 / np.sqrt((rows / mass).max()))
 

@@ -34,6 +34,7 @@ class Setup:
     ball_force : outward force on each ball [N], centrifugal
     growth : how much larger in radius the inner raceway is than meshed [m]: fit, temperature, rotation
     caged : whether an ideal cage holds the balls at their azimuth
+    angles : (2 Z,) contact angles [rad] at which whole contacts press on the meshes, inner races first; None: pressures at points
     friction : Coulomb's coefficient;  stick : stiffness of sticking points [N/m3], None: Mindlin's ratio times the penalty's
     """
 
@@ -58,6 +59,7 @@ class Setup:
     ball_force: float = 0.0
     growth: float = 0.0
     caged: bool = True
+    angles: np.ndarray | None = None
     friction: float = 0.0
     stick: float | None = None
 
@@ -72,3 +74,21 @@ class Setup:
         direction = np.array([np.sin(g.contact_angle), np.cos(g.contact_angle)])
         middle = np.array([0.0, 0.5 * g.pitch_diameter])
         return middle + g.offset_inner * direction, middle - g.offset_outer * direction
+
+    @property
+    def ball_count(self) -> int:
+        return len(self.azimuth)
+
+    def radial(self, ball: int) -> np.ndarray:
+        """(3,) from the axis to a ball, of length 1."""
+        psi = self.azimuth[ball]
+        return np.array([0.0, np.cos(psi), np.sin(psi)])
+
+    def line(self, ball: int, angle: float) -> np.ndarray:
+        """(3,) from a ball to the outer race, of length 1, at a contact angle [rad]."""
+        return np.sin(angle) * np.array([1.0, 0.0, 0.0]) + np.cos(angle) * self.radial(ball)
+
+    def turn(self, ball: int) -> np.ndarray:
+        """(3, 3) about the axis, from azimuth zero to a ball's."""
+        y, z = self.radial(ball)[1:]
+        return np.array([[1.0, 0.0, 0.0], [0.0, y, -z], [0.0, z, y]])

@@ -8,8 +8,9 @@ import numpy as np
 
 from raceway.core.blocks import BlockMatrix
 from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.contact import NodalContact
+from raceway.core.elastic.contact import Contact
 from raceway.core.elastic.factorised import MOST_OF_A_BODY, MOST_UNKNOWNS, Factorised
+from raceway.core.elastic.whole_contacts import WholeContacts
 from raceway.core.linear_statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
@@ -35,9 +36,10 @@ class LinearSolver:
     each other: Phi^T A Phi, a few numbers, and multigrid for w (bodies, contacts, masses).
     """
 
-    def __init__(self, assembly: Assembly, contact: NodalContact | None, modulus: float) -> None:
+    def __init__(self, assembly: Assembly, contact: Contact | None, modulus: float) -> None:
         self.assembly, self.contact, self.modulus = assembly, contact, modulus
         self._multigrid: Preconditioner | Factorised | None = None
+        self._whole: WholeContacts | None = None
         self._built = 0.0
         self._fresh = False
         self._extra = 0
@@ -62,7 +64,7 @@ class LinearSolver:
             self._make(c_k, c_m)
         wanted = np.where(a.unknown, right, 0.0)
         apply = self.image(c_k, c_c, c_m)
-        precondition = self._preconditioner(c_k, apply)
+        precondition = self._preconditioner(c_k, c_c, apply)
         found, self.last_iterations = _conjugate_gradients(apply, wanted, precondition, tolerance)
         self._fresh = False
         self._extra += max(self.last_iterations - FEW_ITERATIONS, 0)
@@ -81,7 +83,7 @@ class LinearSolver:
     def _make(self, c_k: float, c_m: float) -> None:
         a = self.assembly
         matrix = a.stiffness()
-        if self.contact is not None:
+        if self.contact is not None and not self.contact.whole:
             matrix = matrix + self.contact.tangent(self.contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
         if a.cage is not None:
@@ -94,6 +96,7 @@ class LinearSolver:
         largest = 3 * int(np.diff(a.starts).max())
         small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
         self._multigrid = Factorised(whole, held) if small else Preconditioner(whole, a.points, held, FEWEST_NODES)
+        self._whole = WholeContacts(self.contact, self._multigrid, a.free) if self.contact and self.contact.whole else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)
@@ -102,15 +105,13 @@ class LinearSolver:
         """How the free nodes follow each frame: the solution of the whole for a unit motion of the frame."""
         a, m = self.assembly, self.assembly.frame_size
         self._follow = self._ride.copy()
-        apply = self.image(c_k, 0.0, c_m)
-        multigrid, scale = self._multigrid, 1.0 / c_k
-        assert multigrid is not None
+        apply, multigrid = self.image(c_k, 0.0, c_m), self._inverse(c_k, 0.0)
         for k in np.flatnonzero(a.frame_free):
             start = np.concatenate([np.eye(m)[k], self._ride[:, k]])
             more, used = _conjugate_gradients(
                 lambda w: apply(np.concatenate([np.zeros(m), w]))[m:],
                 -apply(start)[m:],
-                lambda r: scale * multigrid(r),
+                multigrid,
                 _FOLLOW_TOLERANCE,
             )
             self._follow[:, k] += more
@@ -152,12 +153,18 @@ class LinearSolver:
 
         return apply
 
-    def _preconditioner(
-        self, c_k: float, operator: Callable[[np.ndarray], np.ndarray]
-    ) -> Callable[[np.ndarray], np.ndarray]:
-        a, m, multigrid = self.assembly, self.assembly.frame_size, self._multigrid
+    def _inverse(self, c_k: float, c_c: float) -> Callable[[np.ndarray], np.ndarray]:
+        """Approximate inverse for the free nodes (m,), frames held."""
+        multigrid, scale = self._multigrid, 1.0 / c_k
         assert multigrid is not None
-        scale, follow = 1.0 / c_k, self._follow
+        inner = multigrid if self._whole is None else self._whole.inverse(multigrid, c_c / c_k)
+        return lambda r: scale * inner(r)
+
+    def _preconditioner(
+        self, c_k: float, c_c: float, operator: Callable[[np.ndarray], np.ndarray]
+    ) -> Callable[[np.ndarray], np.ndarray]:
+        a, m, multigrid = self.assembly, self.assembly.frame_size, self._inverse(c_k, c_c)
+        follow = self._follow
         inverse = np.zeros((m, m))
         if a.frame_free.any():
             chosen = np.flatnonzero(a.frame_free)
@@ -167,7 +174,7 @@ class LinearSolver:
 
         def apply(r: np.ndarray) -> np.ndarray:
             out = np.empty_like(r)
-            out[m:] = scale * multigrid(r[m:])
+            out[m:] = multigrid(r[m:])
             if m:
                 out[:m] = inverse @ (r[:m] + follow.T @ r[m:])
                 out[m:] += follow @ out[:m]

@@ -1,4 +1,4 @@
-"""Elastic bodies in nodal contact as one system: settled, or stepped in time."""
+"""Elastic bodies in contact as one system: settled, or stepped in time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.contact import NodalContact
+from raceway.core.elastic.contact import Contact
 from raceway.core.elastic.solver import LinearSolver
 from raceway.core.elastic.statics import TOLERANCE, Settled, settle
 from raceway.errors import ConvergenceError, MeshError
@@ -22,7 +22,7 @@ class ElasticSystem:
 
     Parameters
     ----------
-    assembly : Assembly;  contact : NodalContact | None
+    assembly : Assembly;  contact : Contact | None
     modulus : E* of the contacts [Pa]
     load : (size,) constant forces [N, N m]
     excitation : function of t -> (frame unknowns,) forces on the first frame's motions, or None
@@ -33,7 +33,7 @@ class ElasticSystem:
     def __init__(
         self,
         assembly: Assembly,
-        contact: NodalContact | None,
+        contact: Contact | None,
         modulus: float,
         load: np.ndarray,
         excitation: Callable[[float], np.ndarray] | None = None,
@@ -77,7 +77,7 @@ class ElasticSystem:
         return out
 
     def static_internal(self, y: np.ndarray, share: float = 0.0) -> np.ndarray:
-        """(size,) internal forces at rest; ``share``: see ``NodalContact.evaluate``."""
+        """(size,) internal forces at rest; ``share``: see ``Contact.evaluate``."""
         a = self.assembly
         self._y, self._u = y.copy(), a.nodal(y)
         out = a.internal(y, self._u)
@@ -158,7 +158,7 @@ class ElasticSystem:
         """
         touching = []
         if self.contact is not None:
-            touching = [self._bodies_of(index) for index in range(len(self.contact.pairs))]
+            touching = [self._bodies_of(index) for index in range(len(self.contact.counts))]
         loose = self.assembly.loose_motions(touching)
         if loose:
             raise ConvergenceError("nothing holds " + "; ".join(loose))
@@ -199,20 +199,18 @@ class ElasticSystem:
 
     def _bodies_of(self, pair: int) -> tuple[int, int]:
         assert self.contact is not None
-        p = self.contact.pairs[pair]
-        first = int(np.searchsorted(self.assembly.starts, p.points.nodes[0, 0], side="right") - 1)
-        return first, int(np.searchsorted(self.assembly.starts, p.first_node, side="right") - 1)
+        first, second = np.searchsorted(self.assembly.starts, self.contact.nodes_of(pair), side="right") - 1
+        return int(first), int(second)
 
     def _refuse_overlap(self) -> None:
         """Surfaces that overlap by more than an element before anything has moved were put in the wrong place."""
         if self.contact is None:
             return
         self.contact.evaluate(0.0, self._u)
-        for index, pair in enumerate(self.contact.pairs):
-            gap = self.contact.gap[self.contact.pair == index]
-            depth, size = -float(gap.min()), float(np.sqrt(4.0 * pair.points.area[gap.argmin()]))  # a facet has four points
+        for index in range(len(self.contact.counts)):
+            name, depth, size = self.contact.overlap(index)
             if depth > size:
                 raise MeshError(
-                    f"{pair.name}: the surfaces overlap by {1e6 * depth:.3g} um before anything is loaded, more than an "
+                    f"{name}: the surfaces overlap by {1e6 * depth:.3g} um before anything is loaded, more than an "
                     f"element there ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
                 )

@@ -35,7 +35,7 @@ class SteppedElastic:
         self.conservative = contact is None or contact.friction is None
         self.size: int = system.size
         if look is None and contact is not None:
-            self.ball_count = (len(contact.pairs) + 1) // 2
+            self.ball_count = (len(contact.counts) + 1) // 2
 
     def begin(self, motion: Motion) -> State:
         whole = dict(motion.whole or {})
@@ -123,7 +123,7 @@ class SteppedElastic:
         contact, z = self.system.contact, self.ball_count
         gap, force = np.zeros(2 * z), np.zeros(2 * z)
         if contact is not None:
-            n = len(contact.pairs)
+            n = len(contact.counts)
             gap[:n] = contact.deepest()
             force[:n] = np.linalg.norm(contact.resultants(), axis=1)
         return np.zeros(5), np.zeros(5), gap, force, np.zeros((z, 2))

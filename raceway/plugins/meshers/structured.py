@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, pi
+from math import ceil, inf, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -29,8 +29,9 @@ class Structured:
     element_size: float = option(0.5e-3, unit="m", help="no edge of a cell is longer", rule=positive())
     nodes_per_semi_axis: int = option(
         4,
-        help="cells along each semi-axis of a ball's contact ellipse, and along the major one of a race's",
-        rule=between(1, 64),
+        help="cells along each semi-axis of a ball's contact ellipse, and along the major one of a race's; 0: no refinement, for "
+        "elastic bodies whose contacts are resultants",
+        rule=between(0, 64),
     )
     growth: float = option(1.3, help="ratio of neighbouring cells between patch and bulk", rule=between(1.02, 3.0))
     patch: float = option(1.25, help="refined zone, in semi-axes of the contact ellipse", rule=between(0.5, 5.0))
@@ -145,20 +146,24 @@ class Structured:
 
         # Both contacts of a ball share the cube's lines: the larger ellipse sets the zone, the smaller one the size.
         pairs = [self._semi_axes(bearing, inner) for inner in (True, False)]
-        radius, size, n = 0.5 * bearing.ball_diameter, self.element_size, self.nodes_per_semi_axis
+        radius, size = 0.5 * bearing.ball_diameter, self.element_size
         arc = 0.25 * pi * radius
         lines = []
         for axis in (1, 0):
-            zone, fine = self.patch * max(p[axis] for p in pairs), min(p[axis] for p in pairs) / n
-            zone = min(zone, 0.8 * arc)
+            zone, fine = self.patch * max(p[axis] for p in pairs), self._fine(min(p[axis] for p in pairs))
+            zone = min(zone, 0.8 * arc) if self.nodes_per_semi_axis else arc
             lines.append(graded(-1.0, 1.0, -zone / arc, zone / arc, fine / arc, size / arc, self.growth))
         half = growing(1.0, size / arc, size / arc, self.growth)
         w = np.concatenate([-half[:0:-1], half])
         length = (1.0 - CUBE) * radius
-        fine = min(p[1] for p in pairs) / n
+        fine = self._fine(min(p[1] for p in pairs))
         layers = 1.0 - growing(1.0, fine / length, size / length, self.growth)[::-1]
-        patch = self.patch * max(p[1] for p in pairs), self.patch * max(p[0] for p in pairs)
-        return lines[0], lines[1], w, layers, patch
+        across, along = (max(self.patch * max(p[axis] for p in pairs), min(fine, size)) for axis in (1, 0))
+        return lines[0], lines[1], w, layers, (across, along)
+
+    def _fine(self, semi_axis: float) -> float:
+        """Length of cells along a semi-axis [m]; infinite where nothing is refined."""
+        return semi_axis / self.nodes_per_semi_axis if self.nodes_per_semi_axis else inf
 
     def _ring_lines(
         self, bearing: Any, shape: RingShape
@@ -170,12 +175,14 @@ class Structured:
         size, (low, high) = self.element_size, shape.edges
         half = self.patch * major / shape.groove
         band = max(shape.contact - half, 0.98 * low), min(shape.contact + half, 0.98 * high)
-        fine = major / self.nodes_per_semi_axis
+        if not self.nodes_per_semi_axis:
+            band = low, high
+        fine = self._fine(major)
         arc = graded(low, high, *band, fine / shape.groove, size / shape.groove, self.growth)
         left, right = (shape.outline.shares(side, size) for side in ("left", "right"))
         # As fine in depth as along the groove: a uniform azimuth does not follow the minor semi-axis.
         if self.azimuth_cells == "graded":
-            fine = minor / self.nodes_per_semi_axis
+            fine = self._fine(minor)
         thickness = shape.thickness
         layers = growing(1.0, min(fine, size) / thickness, size / thickness, self.growth)
         return left, arc, right, layers, band
@@ -188,11 +195,11 @@ class Structured:
 
         wanted, count = self.azimuth_cells, bearing.ball_count
         pitch = 2.0 * pi / count
-        if wanted == "graded":
+        if wanted == "graded" and self.nodes_per_semi_axis:
             minor = self._semi_axes(bearing, shape.inner)[1]
             radius = abs(shape.centre_r + shape.sign * shape.groove)
             half = self.patch * minor / radius
-            fine, coarse = minor / self.nodes_per_semi_axis / radius, self.element_size / max(shape.seat, shape.land)
+            fine, coarse = self._fine(minor) / radius, self.element_size / max(shape.seat, shape.land)
             one = graded(-0.5 * pitch, 0.5 * pitch, -half, half, fine, coarse, self.growth)[:-1]
         else:
             cells = ceil(2.0 * pi * max(shape.seat, shape.land) / self.element_size) if isinstance(wanted, str) else wanted

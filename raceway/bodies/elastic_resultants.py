@@ -1,0 +1,80 @@
+"""What a result tells of elastic bodies with a calibrated force a contact: what was taken off the mesh, and how sure that is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from raceway.bodies.elastic_report import ElasticBodies
+
+if TYPE_CHECKING:
+    from raceway.model import Model
+    from raceway.statics import Equilibrium
+
+#: Turn of a contact [rad] that puts it a quarter of its disc away from where the mesh was asked: a compliance other by 1e-3.
+_FAR_RAD = 0.05
+#: Share of a contact's compliance that may be uncertain before a finer mesh is asked for.
+_UNSURE = 0.02
+
+
+class ElasticResultants(ElasticBodies):
+    """A force for each ball and race."""
+
+    def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
+        contact: Any = self.bearing.system.contact
+        out, z = super().ball_columns(model, equilibrium), model.system.ball_count
+        for race, word in enumerate(("inner", "outer")):
+            part = slice(race * z, (race + 1) * z)
+            out[f"approach_replaced_{word}_m"] = contact.local[part] * equilibrium.contact_force[part]
+        return out
+
+    def contact_table(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+        contact: Any = self.bearing.system.contact
+        z = model.system.ball_count
+        return {
+            "bodies": "elastic: every node of rings and balls, contacts as resultants calibrated to Hertz",
+            "mesh": {
+                "replaced_inner_m_per_n": float(contact.local[:z].mean()),
+                "replaced_outer_m_per_n": float(contact.local[z:].mean()),
+                "replaced_spread_m_per_n": float(max(one.spread for one in contact.touches)),
+                "replaced_uncertainty": self._uncertainty(model, equilibrium),
+                "largest_turn_deg": float(np.degrees(self._turned(model, equilibrium))),
+            },
+        }
+
+    def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
+        """Meshes that do not tell the contacts' compliance from the bodies', contacts that moved away; elements that lock."""
+        found = super().warnings(model, equilibrium)
+        unsure = self._uncertainty(model, equilibrium)
+        if unsure > _UNSURE:
+            found.append(
+                f"the mesh is too coarse to tell its own compliance under a contact to better than {100 * unsure:.2g} % of the "
+                "contact's: take a smaller mesh.element_size, or bodies.kind = 'condensed'"
+            )
+        turned = self._turned(model, equilibrium)
+        if turned > _FAR_RAD:
+            found.append(
+                f"a contact angle lies {np.degrees(turned):.2g} deg from that with rigid bodies, where the mesh's own compliance "
+                "was looked at: compare with bodies.kind = 'condensed', which follows the angle"
+            )
+        return found
+
+    def _uncertainty(self, model: Model, equilibrium: Equilibrium) -> float:
+        """Half the spread over depths of what is taken off, over the compliance of the most loaded contact."""
+        contact: Any = self.bearing.system.contact
+        worst = int(np.argmax(equilibrium.contact_force))
+        ellipse = model.inner if worst < model.system.ball_count else model.outer
+        load = float(equilibrium.contact_force[worst])
+        if load <= 0.0:
+            return 0.0
+        compliance = float(ellipse.approach(load)) / (1.5 * load)
+        return float(0.5 * contact.touches[worst].spread / compliance)
+
+    def _turned(self, model: Model, equilibrium: Equilibrium) -> float:
+        """Largest angle between a loaded contact's line and that at which its footprints lie [rad]."""
+        angles = self.bearing.setup.angles
+        assert angles is not None
+        found = np.concatenate([equilibrium.angle_inner, equilibrium.angle_outer])
+        loaded = equilibrium.contact_force > 0.0
+        return float(np.abs(found - angles)[loaded].max(initial=0.0))

@@ -1,0 +1,91 @@
+"""Nodal contact: pressure at the points of one surface against another exact surface that moves with its body."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.elastic.contact import Contact, Friction
+from raceway.core.elastic.facets import Facets
+from raceway.core.elastic.surface import SurfacePoints
+
+#: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
+_MOVED = 0.02
+
+
+@attrs.frozen(eq=False)
+class Pair:
+    """Two surfaces that may touch.
+
+    Attributes
+    ----------
+    name : str
+    points : SurfacePoints of the first surface; node numbers are the assembly's
+    surface : (8,) the second one, exact (``raceway.core.elastic.gap``)
+    facets : Facets of the second surface;  first_node : what to add to its node numbers for those of the assembly
+    """
+
+    name: str
+    points: SurfacePoints
+    surface: np.ndarray
+    facets: Facets
+    first_node: int
+
+
+class NodalContact(Contact):
+    """Points of all pairs of an assembly.
+
+    Parameters
+    ----------
+    pairs : list of Pair
+    nodes : int, of the assembly
+    law, params, state_size, damping, friction : see ``Contact``
+
+    Notes
+    -----
+    A point moves by y = X + u_1(X) - u_2(projection of y); the force on it goes to the nodes of its facet, and the opposite
+    to those of the second one's, with the interpolation's weights.
+    """
+
+    def __init__(
+        self,
+        pairs: list[Pair],
+        nodes: int,
+        law: Any,
+        params: np.ndarray,
+        state_size: int = 0,
+        damping: float = 0.0,
+        friction: Friction | None = None,
+    ) -> None:
+        self.pairs, self._nodes = pairs, nodes
+        counts = np.array([len(pair.points.area) for pair in pairs])
+        place = np.concatenate([pair.points.place for pair in pairs])
+        area = np.concatenate([pair.points.area for pair in pairs])
+        surfaces = np.array([pair.surface for pair in pairs])
+        super().__init__(place, area, counts, surfaces, law, params, state_size, damping, friction)
+        self.outside = np.zeros(len(area))
+        self._projected = np.full((len(area), 3), np.inf)
+        self._short = np.zeros(len(area))
+        self.update(self.place)
+
+    @property
+    def projected(self) -> np.ndarray:
+        return self._projected
+
+    def restore(self, projected: np.ndarray, memory: np.ndarray) -> None:
+        self._projected[:] = np.inf
+        self.update(projected)
+        super().restore(projected, memory)
+
+    def nodes_of(self, pair: int) -> tuple[int, int]:
+        one = self.pairs[pair]
+        return int(one.points.nodes[0, 0]), one.first_node
+
+    def overlap(self, pair: int) -> tuple[str, float, float]:
+        gap, one = self.gap[self.pair == pair], self.pairs[pair]
+        # A facet has four points.
+        return one.name, -float(gap.min()), float(np.sqrt(4.0 * one.points.area[gap.argmin()]))
+
+

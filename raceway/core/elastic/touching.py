@@ -1,0 +1,146 @@
+"""The contacts of a ball bearing: points of the balls' surfaces on the grooves, or a whole contact for each ball and race."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway.core.elastic.assembly import Assembly
+from raceway.core.elastic.facets import Facets
+from raceway.core.elastic.footprint import Footprint, footprint
+from raceway.core.elastic.friction import CoulombFriction
+from raceway.core.elastic.gap import groove
+from raceway.core.elastic.nodal import NodalContact, Pair
+from raceway.core.elastic.penalty import penalty_stiffness
+from raceway.core.elastic.resultant import ResultantContact, Touch
+from raceway.core.elastic.separation import LoadedBody
+from raceway.core.elastic.setup import Setup
+from raceway.core.elastic.surface import SurfacePoints, surface_points
+from raceway.core.mesh import HexMesh
+from raceway.core.sphere import ball_compliance
+
+#: Points of a ball count as contact points where the undeformed gap is below this many Hertz approaches at four times the
+#: reference load: the ellipse may then move along the groove by twice its own length.
+REACH = 5.0
+#: Reach of a ball over its diameter, and radius of the disc that a whole contact presses on over the reach.
+_BALL_REACH, _DISC = 0.34, 0.3
+#: Distance of nodes over the ball's diameter at which two balls are the same mesh.
+_SAME = 1e-9
+
+
+def nodal_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> NodalContact:
+    """Pressures at points; ``meshes``: inner ring, outer ring, balls."""
+    s, g, pairs = setup, setup.geometry, []
+    for race, word in enumerate(("inner", "outer")):
+        surface = _groove(s, race)
+        facets = Facets(meshes[race].points, meshes[race].facet_nodes("raceway"))
+        ellipse = g.ellipses(s.modulus)[race]
+        reach = REACH * float(ellipse.approach(4.0 * s.reference_load))
+        for k, ball in enumerate(meshes[2:]):
+            middle = 0.5 * g.pitch_diameter * s.radial(k)
+            found = surface_points(ball.points, ball.facet_nodes("surface"), middle)
+            side = (found.place - middle) @ s.line(k, g.contact_angle)
+            found = _near(found, (side < 0.0) == (race == 0), surface, reach)
+            found = SurfacePoints(found.place, found.area, found.nodes + assembly.starts[k + 2], found.weights)
+            pairs.append(Pair(f"ball {k}, {word} race", found, surface, facets, int(assembly.starts[race])))
+    which = np.repeat(np.arange(len(pairs)), [len(p.points.area) for p in pairs])
+    area = np.concatenate([p.points.area for p in pairs])
+    damping = 0.0
+    if s.contact_damping > 0.0:
+        a, b = g.ellipses(s.modulus)[0].semi_axes(s.reference_load)
+        damping = s.contact_damping / (np.pi * float(a) * float(b))
+    friction = CoulombFriction(s.friction, _sticking(s, area)) if s.friction > 0.0 else None
+    return NodalContact(pairs, assembly.nodes, s.law, s.params(which, area), s.state_size, damping, friction)
+
+
+def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> ResultantContact:
+    """A force for each ball and race, at the contact angles of ``setup``; ``meshes``: inner ring, outer ring, balls."""
+    s, g = setup, setup.geometry
+    assert s.angles is not None
+    balls = [Facets(ball.points, ball.facet_nodes("surface")) for ball in meshes[2:]]
+    loaded = _loaded_balls(s, meshes, assembly)
+    touches = []
+    for race, word in enumerate(("inner", "outer")):
+        conformity = g.conformity_inner if race == 0 else g.conformity_outer
+        surface = _groove(s, race)
+        surface[5] -= 0.5 * g.ball_diameter
+        facets = Facets(meshes[race].points, meshes[race].facet_nodes("raceway"))
+        seat = float(np.hypot(*meshes[race].points[meshes[race].nodes("seat"), 1:].T).mean())
+        ring = _loaded(assembly, race, s.rings)
+        semi_axes = (float(x) for x in g.ellipses(s.modulus)[race].semi_axes(s.reference_load))
+        sphere = ball_compliance(0.5 * g.ball_diameter, *s.balls[:2], *semi_axes)[0]
+        for k, ball in enumerate(meshes[2:]):
+            # From the ball into the ring.
+            normal = s.line(k, float(s.angles[race * s.ball_count + k])) * (1.0 if race else -1.0)
+            centre = s.offsets[race][0] * np.array([1.0, 0.0, 0.0]) + s.offsets[race][1] * s.radial(k)
+            pole = centre + conformity * g.ball_diameter * normal
+            thick = min(abs(float(np.hypot(*pole[1:])) - seat), _BALL_REACH * g.ball_diameter)
+            on_ring = footprint(facets, pole, normal, centre, _DISC * thick)
+            below = ring.separated(on_ring, pole, normal, _DISC * thick, thick)
+            middle, deep = 0.5 * g.pitch_diameter * s.radial(k), _BALL_REACH * g.ball_diameter
+            top = middle + 0.5 * g.ball_diameter * normal
+            on_ball = footprint(balls[k], top, -normal, middle, _DISC * deep)
+            # Balls that are the same mesh know each other's answers.
+            turned = s.turn(k) @ s.turn(loaded[k][0]).T
+            above = loaded[k][1].replaced(on_ball, turned.T @ -normal, sphere)
+            name, place = f"ball {k}, {word} race", int(assembly.starts[k + 2])
+            touches.append(
+                Touch(
+                    name, _moved(on_ball, place), _moved(on_ring, int(assembly.starts[race])), middle, surface,
+                    below.local + above, below.spread, float(facets.short.mean()),
+                )  # fmt: skip
+            )
+    params = s.params(np.arange(len(touches)), np.ones(len(touches)))
+    return ResultantContact(touches, assembly.nodes, s.law, params, s.state_size, s.contact_damping)
+
+
+def _loaded_balls(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> list[tuple[int, LoadedBody]]:
+    """For each ball the first one with the same mesh, turned about the bearing's axis, and that one's answers."""
+    out: list[tuple[int, LoadedBody]] = []
+    for k, ball in enumerate(meshes[2:]):
+        for first, answers in out:
+            other = meshes[first + 2]
+            there = other.points @ setup.turn(first)
+            same = other.points.shape == ball.points.shape and np.array_equal(other.cells, ball.cells)
+            if same and np.abs(ball.points @ setup.turn(k) - there).max() < _SAME * setup.geometry.ball_diameter:
+                out.append((first, answers))
+                break
+        else:
+            out.append((k, _loaded(assembly, k + 2, setup.balls, floating=True)))
+    return out
+
+
+def _loaded(
+    assembly: Assembly, index: int, material: tuple[float, float, float], floating: bool = False
+) -> LoadedBody:
+    rows, body = assembly.part(index), assembly.bodies[index]
+    held = np.ones(3 * assembly.nodes, dtype=bool)
+    held[assembly.free] = False
+    stiffness = assembly.stiffness()[rows][:, rows]
+    mass = body.operator.lumped_mass() if floating else None
+    return LoadedBody(body.points, body.operator.cells, stiffness, held[rows].reshape(-1, 3), mass, material)
+
+
+def _moved(contact: Footprint, first: int) -> Footprint:
+    return Footprint(contact.nodes + first, contact.weights, contact.share)
+
+
+def _groove(setup: Setup, race: int) -> np.ndarray:
+    g, centre = setup.geometry, setup.offsets[race]
+    radius = (g.conformity_outer if race else g.conformity_inner) * g.ball_diameter
+    return groove(np.array([centre[0], 0.0, 0.0]), centre[1] + (0.0 if race else setup.growth), radius)
+
+
+def _sticking(setup: Setup, area: np.ndarray) -> np.ndarray:
+    """(n,) stiffness of sticking points [N/m3]; by default 2 (1 - nu) / (2 - nu) of a penalty's (Mindlin 1949)."""
+    if setup.stick is not None:
+        return np.full(len(area), setup.stick)
+    nu = 0.5 * (setup.rings[1] + setup.balls[1])
+    return 2.0 * (1.0 - nu) / (2.0 - nu) * penalty_stiffness(setup.modulus, 2.0 * np.sqrt(area))
+
+
+def _near(points: SurfacePoints, side: np.ndarray, surface: np.ndarray, reach: float) -> SurfacePoints:
+    """Points on one side of the ball whose gap in the groove is below ``reach`` [m]; whole facets, four points each."""
+    x, radius = points.place[:, 0] - surface[1], np.hypot(points.place[:, 1], points.place[:, 2])
+    gap = surface[5] - np.hypot(x, radius - surface[4])
+    chosen = (side & (gap < reach)).reshape(-1, 4).any(axis=1)
+    return points[np.repeat(chosen, 4)]
