@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -121,7 +121,7 @@ def stability(
     reused = len(found)
     places = {id(case): place for place, case in enumerate(cases)}
     waiting = [case for place, case in enumerate(cases) if place not in found]
-    for case, rows, _ in _run(waiting, processes, registry, plugins):
+    for case, rows in _run(waiting, processes, registry, plugins):
         place = places[id(case)]
         found[place] = rows
         kept.put(keys[place], {"rows": [attrs.asdict(row) for row in rows]})
@@ -133,9 +133,9 @@ def stability(
     return Stability(title, in_order, len(cases), reused, *taken, processes, kept.fault)
 
 
-def _run(cases: list[Case], processes: int, registry: Registry, plugins: Sequence[Path]) -> Any:
+def _run(cases: list[Case], processes: int, registry: Registry, plugins: Sequence[Path]) -> Iterator[tuple[Case, list[Row]]]:
     if processes == 0:
-        return ((case, rows_of(case, registry), 0.0) for case in cases)
+        return ((case, rows_of(case, registry)) for case in cases)
     return in_parallel(cases, processes, plugins)
 
 
