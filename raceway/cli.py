@@ -15,7 +15,17 @@ import click
 from raceway import __version__
 from raceway.commands.cache import cache
 from raceway.commands.console import Commands, print_json
-from raceway.commands.frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    on_scene,
+    out_folder,
+    plugin_files,
+    registry_with,
+    show,
+    show_progress,
+)
 from raceway.commands.inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
 from raceway.commands.mesh import mesh
 from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
@@ -29,8 +39,6 @@ from raceway.errors import ConvergenceError, RacewayError, SceneError
 
 if TYPE_CHECKING:
     from raceway.scene import Scene
-
-_RESULTS = Path("raceway-out")
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -78,7 +86,7 @@ def run(
     """
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    folder = writable(out or _RESULTS / slug(loaded.title))
+    folder = writable(out or RESULTS / slug(loaded.title))
     if pictures:
         require_matplotlib("leave out --pictures")
     tell_faults(registry)
@@ -183,7 +191,7 @@ def compare(
     if mistakes:
         raise SceneError(mistakes)
     title = str(tables["title"])
-    folder = writable(out or _RESULTS / f"{slug(title)}-compare")
+    folder = writable(out or RESULTS / f"{slug(title)}-compare")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     with show_progress() as progress:

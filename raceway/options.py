@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import attrs
@@ -56,8 +56,13 @@ def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
         if not test(value):
             raise ValueError(f"must be {words}")
 
-    check.words = words  # type: ignore[attr-defined]
-    check.facts = facts  # type: ignore[attr-defined]
+    return worded(check, words, facts)
+
+
+def worded(check: Rule, words: str, facts: Mapping[str, Any] | None = None) -> Rule:
+    """A rule of one's own with what ``--help``, the documents and the JSON schema say of it."""
+    check.words = words  # type: ignore[attr-defined]  # functions take attributes, their type has none
+    check.facts = dict(facts or {})  # type: ignore[attr-defined]
     return check
 
 
@@ -94,9 +99,7 @@ def one_of(*choices: str) -> Rule:
         if value not in choices:
             raise ValueError(f"must be one of {listed}{nearest(value, choices)}")
 
-    check.words = f"one of {listed}"  # type: ignore[attr-defined]
-    check.facts = {"enum": list(choices)}  # type: ignore[attr-defined]
-    return check
+    return worded(check, f"one of {listed}", {"enum": list(choices)})
 
 
 def word_or(rule: Rule, *choices: str) -> Rule:
@@ -111,9 +114,7 @@ def word_or(rule: Rule, *choices: str) -> Rule:
         else:
             rule(instance, attribute, value)
 
-    check.words = f"{listed} or a number {number}"  # type: ignore[attr-defined]
-    check.facts = {"words": list(choices), **getattr(rule, "facts", {})}  # type: ignore[attr-defined]
-    return check
+    return worded(check, f"{listed} or a number {number}", {"words": list(choices), **getattr(rule, "facts", {})})
 
 
 def optional(rule: Rule) -> Rule:
@@ -121,9 +122,7 @@ def optional(rule: Rule) -> Rule:
         if value is not None:
             rule(instance, attribute, value)
 
-    check.words = getattr(rule, "words", "")  # type: ignore[attr-defined]
-    check.facts = getattr(rule, "facts", {})  # type: ignore[attr-defined]
-    return check
+    return worded(check, getattr(rule, "words", ""), getattr(rule, "facts", {}))
 
 
 def unused_options(plugin: Any) -> dict[str, str]:

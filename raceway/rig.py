@@ -6,16 +6,15 @@ from math import pi
 
 import attrs
 
-from raceway.options import at_least, between, finite, inside, one_of, option, optional, positive
+from raceway.options import Rule, at_least, between, finite, inside, one_of, option, optional, positive, worded
 
 
-def _each(low: float, words: str) -> object:
+def _each(low: float, words: str) -> Rule:
     def check(_instance: object, _attribute: object, value: tuple[float, ...]) -> None:
         if not value or min(value) <= low or len(set(value)) < len(value):
             raise ValueError(f"must be {words}, each once")
 
-    check.words = words  # type: ignore[attr-defined]
-    return check
+    return worded(check, words)
 
 
 @attrs.frozen
@@ -74,11 +73,11 @@ class Rig:
     )  # fmt: skip
     speeds_rpm: tuple[float, ...] = option(
         (11_000.0, 13_000.0, 15_000.0), unit="r/min", help="that the study runs at",
-        rule=_each(0.0, "a list of speeds greater than 0"),  # type: ignore[arg-type]
+        rule=_each(0.0, "a list of speeds greater than 0"),
     )  # fmt: skip
     axial_loads: tuple[float, ...] = option(
         (400.0, 2000.0), unit="N", help="that the study runs under",
-        rule=_each(0.0, "a list of loads greater than 0"),  # type: ignore[arg-type]
+        rule=_each(0.0, "a list of loads greater than 0"),
     )  # fmt: skip
     signals: Signals = attrs.field(factory=Signals, metadata={"help": "what the sensors write down"})
 

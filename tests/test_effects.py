@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from raceway.studies.compare.effects import Factorial, corners_from_effects, factorial_effects, trend, whole_part
+from raceway.studies.compare.effects import Factorial, factorial_effects, trend, whole_part
 
 ROUNDING = 1e-13  # a few additions of numbers of order 1
 
@@ -23,6 +23,16 @@ def test_known_effects_are_found():
     expected = {(0, 0, 0): 3.0, (1, 0, 0): a, (0, 1, 0): b, (1, 1, 0): ab, (1, 1, 1): abc}
     for place in product((0, 1), repeat=3):
         assert found[place] == pytest.approx(expected.get(place, 0.0), abs=ROUNDING)
+
+
+def corners_from_effects(effects):
+    """The inverse of ``factorial_effects``."""
+    out = 0.5 * effects
+    out[(0,) * out.ndim] *= 2.0
+    for place in range(out.ndim):
+        mean, half = np.take(out, 0, axis=place), np.take(out, 1, axis=place)
+        out = np.stack([mean - half, mean + half], axis=place)
+    return out
 
 
 @pytest.mark.parametrize("k", [1, 2, 5, 8])

@@ -107,7 +107,7 @@ def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
     (row,) = rows_of(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
     cases = [case("hang"), case("die"), case("answer", value=1.05), case("answer", value=2.0)]
-    found = {(one.name, one.arguments.get("value")): rows for one, rows, _ in in_parallel(cases, 2, (), patience=6.0)}
+    found = {(one.name, one.arguments.get("value")): rows for one, rows in in_parallel(cases, 2, (), patience=6.0)}
     notes = {key: rows[0].note for key, rows in found.items()}
     assert "it hangs" in notes["hang", None] and "exit code 7" in notes["die", None]
     assert found["answer", 1.05][0].verdict == AS_EXPECTED and found["answer", 2.0][0].verdict == FAILED

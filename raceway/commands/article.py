@@ -10,15 +10,25 @@ import click
 from click.core import ParameterSource
 
 from raceway.commands.console import warn
-from raceway.commands.frame import attempt, common, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_option,
+    plugin_files,
+    processes_at_a_time,
+    registry_with,
+    scene_if_any,
+    set_keys,
+    show,
+    show_progress,
+)
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
 
-_RESULTS = Path("raceway-out")
-
 
 @click.command(short_help="The article's figures 9 to 12 and a verdict on each of its claims.")
-@click.argument("scene", type=click.Path(path_type=Path, readable=False), required=False)
+@scene_if_any
 @click.option(
     "--bodies",
     type=click.Choice(["rigid", "condensed", "both"]),
@@ -31,11 +41,9 @@ _RESULTS = Path("raceway-out")
 )
 @click.option("--axial", default="400:2000:9", show_default=True, metavar="LIST", help="Axial loads in N.")
 @click.option("--shaft", type=float, metavar="N·M/RAD", help="Tilt stiffness of the shaft [the scene's, or the rig's].")
-@click.option(
-    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
-)
-@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
-@click.option("--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/article].")
+@processes_at_a_time
+@set_keys
+@out_option(f"{RESULTS}/article")
 @click.option("--pictures/--no-pictures", default=True, help="Draw figures and write the page (default).")
 @plugin_files
 @common
@@ -73,7 +81,7 @@ def article(
             raise SceneError(mistakes)
     command = _command(click.get_current_context())
     name = "article" if scene is None else f"{slug(str((tables or {})['title']))}-article"
-    folder = writable(out or _RESULTS / name)
+    folder = writable(out or RESULTS / name)
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "article-rows.jsonl"

@@ -62,7 +62,7 @@ def guarded(command: Callable[[], Any], words: list[str]) -> int:
         except BrokenPipeError:
             _silence_stdout()
             return 1
-        except Exception as error:  # noqa: BLE001  the last resort: no traceback reaches the user unless asked for
+        except Exception as error:  # the last resort: no traceback reaches the user unless asked for
             if debug:
                 traceback.print_exc()
             return report(error, as_json)

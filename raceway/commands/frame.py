@@ -15,13 +15,30 @@ from raceway.registry import default_registry
 if TYPE_CHECKING:
     from raceway.registry import Registry
 
-_scene = click.argument("scene", type=click.Path(path_type=Path, readable=False))
-_set = click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+#: Where results go unless --out says otherwise.
+RESULTS = Path("raceway-out")
+#: A file or folder that need not be there yet: what reads it says what is wrong with it.
+PATH = click.Path(path_type=Path, readable=False)
 
-out_folder = click.option(
-    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR",
-    help="Folder of the results [raceway-out/TITLE].",
-)  # fmt: skip
+scene_file = click.argument("scene", type=PATH)
+#: For studies that have a scene of their own.
+scene_if_any = click.argument("scene", type=PATH, required=False)
+set_keys = click.option(
+    "--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more."
+)
+processes_at_a_time = click.option(
+    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
+)
+
+
+def out_option(
+    default: str, what: str = "Folder", metavar: str = "DIR"
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """--out; ``default`` is only shown, the command chooses it."""
+    return click.option("--out", type=PATH, metavar=metavar, help=f"{what} [{default}].")
+
+
+out_folder = out_option(f"{RESULTS}/TITLE", "Folder of the results")
 
 plugin_files = click.option(
     "--plugin", "plugins", multiple=True, type=click.Path(path_type=Path), metavar="FILE.py",
@@ -45,7 +62,7 @@ def registry_with(files: tuple[Path, ...]) -> Registry:
 
 def on_scene(command: Callable[..., Any]) -> Callable[..., Any]:
     """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
-    return _scene(_set(command))
+    return scene_file(set_keys(command))
 
 
 def common(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -9,14 +9,26 @@ from typing import Any
 import click
 
 from raceway.commands.console import warn
-from raceway.commands.frame import attempt, common, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_folder,
+    plugin_files,
+    processes_at_a_time,
+    registry_with,
+    scene_if_any,
+    set_keys,
+    show,
+    show_progress,
+)
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
 
 
 @click.command("map", short_help="Hardening or softening of k(speed) over axial load, tilt and contact angle.")
-@click.argument("scene", type=click.Path(path_type=Path, readable=False), required=False)
-@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+@scene_if_any
+@set_keys
 @click.option(
     "--vary", multiple=True, metavar="A.B=X,Y",
     help="Values of an axis: load.axial, excitation.speed_rpm, supports.tilt, bearing.contact_angle_deg.",
@@ -25,9 +37,7 @@ from raceway.errors import ConvergenceError, SceneError
     "--method", type=click.Choice(["quasi_static", "periodic"]), default="quasi_static", show_default=True,
     help="Equilibria under the force as given, or the steady orbit with inertia (ten times slower).",
 )  # fmt: skip
-@click.option(
-    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
-)
+@processes_at_a_time
 @out_folder
 @click.option("--pictures/--no-pictures", default=True, help="Write map.html and its pictures (default).")
 @plugin_files
@@ -54,7 +64,7 @@ def study_map(
     if mistakes:
         raise SceneError(mistakes)
     planned = design(tables, vary, method, registry)
-    folder = writable(out or Path("raceway-out") / f"{slug(str(tables['title']))}-map")
+    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-map")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "map-rows.jsonl"

@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import click
 
-from raceway.commands.frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show
+from raceway.commands.frame import RESULTS, attempt, common, on_scene, out_folder, plugin_files, registry_with, show
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError
@@ -34,7 +34,7 @@ def mesh(
     """
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    folder = writable(out or Path("raceway-out") / slug(loaded.title))
+    folder = writable(out or RESULTS / slug(loaded.title))
     tell_faults(registry)
     with ProgressBar("meshing") as progress:
         from raceway.meshing import mesh_scene

@@ -7,15 +7,26 @@ from pathlib import Path
 import click
 
 from raceway.commands.console import warn
-from raceway.commands.frame import attempt, common, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_option,
+    plugin_files,
+    processes_at_a_time,
+    registry_with,
+    scene_file,
+    scene_if_any,
+    set_keys,
+    show,
+    show_progress,
+)
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
 
-_RESULTS = Path("raceway-out")
-
 
 @click.command(short_help="Error against run time: which setting is good enough.")
-@click.argument("scene", type=click.Path(path_type=Path, readable=False))
+@scene_file
 @click.option("--vary", multiple=True, metavar="A.B=X,Y", help="Axis; all combinations are run. Without: a default design.")
 @click.option("--reference", multiple=True, metavar="A.B=C", help="Key of the reference; found by itself without.")
 @click.option("--repeats", type=click.IntRange(1, 1000), default=3, show_default=True, help="Runs of each setting.")
@@ -23,10 +34,8 @@ _RESULTS = Path("raceway-out")
     "--limit", type=click.FloatRange(min=0.0, min_open=True), default=30.0, show_default=True, metavar="SECONDS",
     help="Leave out what is predicted to take longer.",
 )  # fmt: skip
-@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
-@click.option(
-    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/TITLE-precision]."
-)
+@set_keys
+@out_option(f"{RESULTS}/TITLE-precision")
 @click.option("--pictures/--no-pictures", default=True, help="Draw error against run time as PNG (default).")
 @plugin_files
 @common
@@ -55,7 +64,7 @@ def precision(
     tables, mistakes = changed_tables(scene, changes, registry)
     if mistakes:
         raise SceneError(mistakes)
-    folder = writable(out or _RESULTS / f"{slug(str(tables['title']))}-precision")
+    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-precision")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "precision-rows.jsonl"
@@ -76,16 +85,12 @@ def precision(
 
 
 @click.command(short_help="Stiff and extreme cases: what must hold, holds.")
-@click.argument("scene", type=click.Path(path_type=Path, readable=False), required=False)
+@scene_if_any
 @click.option("--only", metavar="WORDS", help="Cases whose name holds these words, instead of all.")
-@click.option(
-    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
-)
+@processes_at_a_time
 @click.option("--all", "every", is_flag=True, help="Show every row, not only a line a case.")
-@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
-@click.option(
-    "--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/stability]."
-)
+@set_keys
+@out_option(f"{RESULTS}/stability")
 @plugin_files
 @common
 def stability(
@@ -119,7 +124,7 @@ def stability(
     elif changes:
         raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
     name = "stability" if tables is None else f"{slug(str(tables['title']))}-stability"
-    folder = writable(out or _RESULTS / name)
+    folder = writable(out or RESULTS / name)
     tell_faults(registry)
     kept = folder / "stability-rows.jsonl"
     with show_progress() as progress:

@@ -6,11 +6,22 @@ from pathlib import Path
 
 import click
 
-from raceway.commands.frame import attempt, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import (
+    PATH,
+    RESULTS,
+    attempt,
+    common,
+    on_scene,
+    out_folder,
+    out_option,
+    plugin_files,
+    registry_with,
+    set_keys,
+    show,
+    show_progress,
+)
 from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, writable
 from raceway.errors import SceneError
-
-_RESULTS = Path("raceway-out")
 
 
 @click.command(short_help="A test rig's signals, and the bearing read back from them.")
@@ -43,7 +54,7 @@ def rig(
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     own = rig_of(loaded)
-    folder = writable(out or _RESULTS / f"{slug(loaded.title)}-rig")
+    folder = writable(out or RESULTS / f"{slug(loaded.title)}-rig")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     with show_progress() as progress:
@@ -68,18 +79,18 @@ def rig(
 
 
 @click.command(short_help="K and C of a bearing from measured signals.")
-@click.argument("signals", type=click.Path(path_type=Path, readable=False))
+@click.argument("signals", type=PATH)
 @click.option(
-    "--scene", required=True, type=click.Path(path_type=Path, readable=False), metavar="SCENE",
+    "--scene", required=True, type=PATH, metavar="SCENE",
     help="The rig: a scene with a table [rig]; load.axial as in the measurement.",
 )  # fmt: skip
 @click.option(
-    "--slow-roll", type=click.Path(path_type=Path, readable=False), metavar="FILE.csv",
+    "--slow-roll", type=PATH, metavar="FILE.csv",
     help="Signals at a low speed, whose run-out is subtracted.",
 )  # fmt: skip
 @click.option("--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [um] and angle from the mark [deg].")
-@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
-@click.option("--out", type=click.Path(path_type=Path, readable=False), metavar="DIR", help="Folder [raceway-out/SIGNALS].")
+@set_keys
+@out_option(f"{RESULTS}/SIGNALS")
 @click.option("--pictures", is_flag=True, help="Also draw signals, spectrum and orbits as PNG.")
 @plugin_files
 @common
@@ -112,7 +123,7 @@ def identify(
     own, vector = rig_of(loaded), _vector(run_out)
     if vector is not None and slow_roll is not None:
         raise SceneError.at("--run-out", run_out, "the slow roll tells it already: leave one of them out")
-    folder = writable(out or _RESULTS / f"{slug(signals.stem)}-identified")
+    folder = writable(out or RESULTS / f"{slug(signals.stem)}-identified")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     with show_progress() as progress:

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.console import warn
-from raceway.commands.frame import attempt, common, show
+from raceway.commands.frame import PATH, attempt, common, show
 from raceway.commands.inputs import require_matplotlib, slug, writable
 
 if TYPE_CHECKING:
     from raceway.studies.sweep.selection import Selection
 
-_store = click.argument("store", type=click.Path(path_type=Path, readable=False))
+_store = click.argument("store", type=PATH)
 _at = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a value of an axis; repeat for more.")
 
 
@@ -29,9 +29,7 @@ _at = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a va
     type=click.Choice(["curves", "map", "surface"]),
     help="[map where both axes have more than 8 values, else curves]",
 )
-@click.option(
-    "--out", type=click.Path(path_type=Path, readable=False), metavar="FILE", help="A .png or .svg [STORE/NAME-KIND.png]."
-)
+@click.option("--out", type=PATH, metavar="FILE", help="A .png or .svg [STORE/NAME-KIND.png].")
 @common
 def plot(
     store: Path,
@@ -80,7 +78,7 @@ def plot(
 @click.command(short_help="Write a sweep's coefficients for a rotor program.")
 @_store
 @click.option(
-    "--ross", type=click.Path(path_type=Path, readable=False), metavar="FILE", required=True,
+    "--ross", type=PATH, metavar="FILE", required=True,
     help="A .toml or .json that ross.BearingElement.load reads.",
 )  # fmt: skip
 @_at

@@ -10,7 +10,18 @@ import attrs
 import click
 
 from raceway.commands.console import warn
-from raceway.commands.frame import attempt, common, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_option,
+    plugin_files,
+    registry_with,
+    scene_file,
+    set_keys,
+    show,
+    show_progress,
+)
 from raceway.commands.inputs import changed_tables, has_netcdf, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
 
@@ -18,21 +29,17 @@ if TYPE_CHECKING:
     from raceway.registry import Registry
     from raceway.studies.sweep import Design, Store
 
-_RESULTS = Path("raceway-out")
-
 
 @click.command(short_help="One scene at thousands of points, kept in a store; parallel, resumable.")
-@click.argument("scene", type=click.Path(path_type=Path, readable=False))
+@scene_file
 @click.option("--grid", "axes", multiple=True, metavar="A.B=X,Y", help="Axis: x,y,z or start:stop:count; all combinations.")
 @click.option("--list", "listed", type=click.Path(path_type=Path), metavar="FILE", help="Points: .csv, .json or .toml.")
 @click.option("--design", type=click.Path(path_type=Path), metavar="FILE.toml", help="A table [grid], or tables [[points]].")
-@click.option("--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more.")
+@set_keys
 @click.option("--executor", default="serial", show_default=True, metavar="NAME", help="serial, joblib, dask, or a plug-in.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Processes of joblib or dask [2].")
 @click.option("--scheduler", metavar="ADDRESS", help="A running dask scheduler, tcp://HOST:8786.")
-@click.option(
-    "--out", type=click.Path(path_type=Path, readable=False), metavar="STORE", help="Folder [raceway-out/TITLE-sweep]."
-)
+@out_option(f"{RESULTS}/TITLE-sweep", metavar="STORE")
 @click.option("--resume", is_flag=True, help="Go on with a store: compute what is not finished.")
 @click.option("--retry-failed", is_flag=True, help="With a store that is there: failed points again, too.")
 @click.option("--csv", "as_csv", is_flag=True, help="Write STORE/results.csv, too.")
@@ -74,7 +81,7 @@ def sweep(
     tables, mistakes = changed_tables(scene, changes, registry)
     if mistakes:
         raise SceneError(mistakes)
-    folder = writable(out or _RESULTS / f"{slug(str(tables['title']))}-sweep")
+    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-sweep")
     tell_faults(registry)
     if (resume or retry_failed) and not exists(folder):
         warn(f"`{folder}` holds no sweep to go on with: it is begun anew", label="")

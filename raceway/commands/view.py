@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from raceway.commands.frame import common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import RESULTS, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.errors import RacewayError, SceneError, extra
 
@@ -38,7 +38,7 @@ def view(
     """
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    folder = writable(out or Path("raceway-out") / slug(loaded.title))
+    folder = writable(out or RESULTS / slug(loaded.title))
     for package in ("pyvista", "matplotlib"):
         if find_spec(package) is None:
             raise RacewayError(f"pictures need {package}: {extra('view')}")

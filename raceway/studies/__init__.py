@@ -5,4 +5,5 @@ verify             every case against this program's own numbers; verify_bearing
 compare            one scene varied along axes: the table and what causes what; axes, effects, findings, explain, causes,
                    inertia, phrases, comparison: its parts, from the numbers to words and picture
 sweep              one scene at thousands of points: a package, with its store, what executors compute, and data sets
+processes          tasks of a study in processes of their own
 """

@@ -16,19 +16,14 @@ from raceway.scene import Scene
 PATIENCE_S = 10.0
 _PROCESS = Path("/proc/self")
 
-#: What a study compares: name, unit, words.
-QUANTITIES = {
-    "z_real": ("N/m", "Re Z"),
-    "z_imag": ("N/m", "Im Z"),
-    "equivalent_stiffness": ("N/m", "K"),
-    "axial_displacement": ("m", "mean axial displacement"),
-    "peak_ball_load": ("N", "peak ball load"),
-    "p0": ("Pa", "peak pressure"),
-}
-
 
 def quantities(result: dict[str, Any]) -> dict[str, float]:
-    """``QUANTITIES`` of a result.json; those that it has."""
+    """What a study compares, as far as a result.json has it.
+
+    Returns
+    -------
+    quantities : Re Z, Im Z and K [N/m], mean axial displacement [m], peak ball load [N], peak pressure [Pa]
+    """
     found: dict[str, float] = {}
     known, motion = result["identification"], result["motion"]
     if known is not None:

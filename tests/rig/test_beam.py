@@ -12,7 +12,7 @@ from raceway.studies.shaft.beam import beam
 from raceway.studies.shaft.rotor import shaft
 
 E, NU, RHO, D = 212e9, 0.29, 7810.0, 0.03
-I, A = pi / 64.0 * D**4, pi / 4.0 * D**2  # noqa: E741  the textbook's letter
+SECOND_MOMENT, AREA = pi / 64.0 * D**4, pi / 4.0 * D**2
 HELD = 1e16  # N/m: 1e-8 of a shaft's own compliance
 
 
@@ -33,20 +33,20 @@ def test_a_simply_supported_beam_bends_as_in_the_textbook():
     found = static(line, 0.5 * span)
     for k, x in enumerate(line.nodes[:5]):
         # Timoshenko, Strength of Materials: P x (3 L^2 - 4 x^2) / (48 E I); nodes of cubic elements are exact.
-        assert found[2 * k] == pytest.approx(x * (3 * span**2 - 4 * x**2) / (48 * E * I), rel=1e-6, abs=1e-15)
+        assert found[2 * k] == pytest.approx(x * (3 * span**2 - 4 * x**2) / (48 * E * SECOND_MOMENT), rel=1e-6, abs=1e-15)
 
 
 def test_shear_adds_its_closed_form():
     span = 0.175
     kappa = 6.0 * (1.0 + NU) / (7.0 + 6.0 * NU)
-    extra = span / (4.0 * kappa * E / (2.0 * (1.0 + NU)) * A)
+    extra = span / (4.0 * kappa * E / (2.0 * (1.0 + NU)) * AREA)
     thick, thin = (static(supported(span, shear=shear), 0.5 * span)[8] for shear in (True, False))
     assert thick - thin == pytest.approx(extra, rel=1e-6)
 
 
 def test_the_article_s_formula_is_the_beam_s_for_twice_the_span():
     span, a = 0.175, 0.025
-    printed = a * (3 * (2 * span) ** 2 - 16 * a**2) / (192 * E * I)
+    printed = a * (3 * (2 * span) ** 2 - 16 * a**2) / (192 * E * SECOND_MOMENT)
     line = beam(np.array([0.0, a, 0.5 * span, span]), D, E, NU, RHO, False).with_spring(0.0, HELD).with_spring(span, HELD)
     assert static(line, 0.5 * span)[2] == pytest.approx(printed, rel=1e-6)
 
@@ -54,12 +54,12 @@ def test_the_article_s_formula_is_the_beam_s_for_twice_the_span():
 def test_first_critical_speed_of_a_jeffcott_rotor():
     span, mass = 0.175, 4.0
     line = supported(span, density=1e-6).with_disc(0.5 * span, mass, 0.0, 0.0)
-    assert line.critical_speeds()[0] == pytest.approx(sqrt(48 * E * I / span**3 / mass), rel=1e-6)
+    assert line.critical_speeds()[0] == pytest.approx(sqrt(48 * E * SECOND_MOMENT / span**3 / mass), rel=1e-6)
 
 
 def test_natural_frequencies_of_a_slender_beam_converge_with_the_fourth_power():
     span = 0.5
-    exact = (pi / span) ** 2 * sqrt(E * I / (RHO * A))
+    exact = (pi / span) ** 2 * sqrt(E * SECOND_MOMENT / (RHO * AREA))
     errors = []
     for elements in (2, 4, 8):
         line = supported(span, elements)
@@ -74,7 +74,7 @@ def test_gyroscopic_moments_of_an_overhung_disc():
     length, mass, transverse, polar = 0.1, 3.0, 0.01, 0.005
     line = beam(np.array([0.0, length]), D, E, NU, 1e-6, False).with_spring(0.0, HELD, HELD)
     line = line.with_disc(length, mass, transverse, polar)
-    k = E * I / length**3 * np.array([[12.0, -6.0 * length], [-6.0 * length, 4.0 * length**2]])
+    k = E * SECOND_MOMENT / length**3 * np.array([[12.0, -6.0 * length], [-6.0 * length, 4.0 * length**2]])
     exact = np.linalg.eigvals(np.linalg.solve(np.diag([mass, transverse - polar]), k)).real
     assert line.critical_speeds()[:2] == pytest.approx(np.sqrt(np.sort(exact)), rel=1e-6)
     # A disc that is flat (I_p > I_t) has one critical speed of forward whirl only.
@@ -89,7 +89,7 @@ def test_a_stiff_hub_bends_less():
     stiff = np.array([D, 100.0 * D, 100.0 * D, D])
     line = beam(places, D, E, NU, RHO, False, stiff).with_spring(0.0, HELD).with_spring(span, HELD)
     # Castigliano: the square of the bending moment over the part that bends, P^2 x^2 / 4 up to the hub on both sides.
-    exact = (0.5 * (span - hub)) ** 3 / (6.0 * E * I)
+    exact = (0.5 * (span - hub)) ** 3 / (6.0 * E * SECOND_MOMENT)
     assert static(line, 0.5 * span)[4] == pytest.approx(exact, rel=1e-6)
 
 

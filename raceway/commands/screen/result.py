@@ -12,8 +12,6 @@ from rich.text import Text
 from raceway.commands.screen.text import Row, number, sections, tilt_words, written
 
 _LEFT_OUT_SHOWN = 3
-#: Columns of numbers in the table of ``verify`` and their significant digits.
-_VERIFIED = (("reference", 5), ("computed", 5), ("error", 2), ("tolerance", 2))
 
 
 def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableType:

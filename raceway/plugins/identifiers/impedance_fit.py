@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import option
+from raceway.options import option, worded
 from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
@@ -20,9 +20,6 @@ def _speeds(_instance: Any, _attribute: Any, value: tuple[float, ...]) -> None:
         raise ValueError("must be a list of at least two different speeds greater than 0")
 
 
-_speeds.words = "at least two different speeds greater than 0"  # type: ignore[attr-defined]
-
-
 @attrs.frozen
 class ImpedanceFit:
     """Z(w) = K - m w^2 + j w C fitted by least squares to 1x lines at ``speeds_rpm``; nothing is assumed about the mass."""
@@ -31,7 +28,11 @@ class ImpedanceFit:
     needs: ClassVar[frozenset[str]] = frozenset({"record", "period", "speeds"})
     definition: ClassVar[str] = "secant: K, m and C of Z = K - m w^2 + j w C by least squares over several speeds"
 
-    speeds_rpm: tuple[float, ...] = option(unit="r/min", help="speeds that are run, at least two", rule=_speeds)
+    speeds_rpm: tuple[float, ...] = option(
+        unit="r/min",
+        help="speeds that are run, at least two",
+        rule=worded(_speeds, "at least two different speeds greater than 0"),
+    )
 
     @classmethod
     def examples(cls) -> list[ImpedanceFit]:

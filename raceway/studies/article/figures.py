@@ -77,7 +77,12 @@ def pictures(study: Article) -> list[Picture]:
     curves = study.curves
     found = []
     for kind in curves.design.bodies:
-        made = [*_excitations(curves, kind), *_over_speed(curves, kind), *_over_load(curves, kind), *_surfaces(curves, kind)]
+        made = [
+            *_excitations(curves, kind),
+            *_curves_of(curves, kind, 10, "speed at several axial loads", _over_speed),
+            *_curves_of(curves, kind, 11, "axial load", _over_load),
+            *_surfaces(curves, kind),
+        ]
         found += [attrs.evolve(one, name=named(one.name, curves.design.bodies, kind)) for one in made]
     found.append(_tilt_stiffness(study))
     if len(curves.design.bodies) > 1:
@@ -201,79 +206,65 @@ def _end_labels(axes: Any, x: float, labels: list[tuple[float, str, Any]]) -> No
                       annotation_clip=False)  # fmt: skip
 
 
-def _over_speed(curves: Curves, kind: str) -> list[Picture]:
-    """Figure 10: k over speed at several axial loads; dashed without ball inertia."""
-    w, found = np.array(curves.design.relative_speeds), list[Picture]()
-    places = _some(curves.design.loads)
-    colours = _colours(len(places))
-    for name, title, star in (
-        ("figure-10", "Figure 10: k*", True),
-        ("figure-10-newton-per-metre", "Figure 10 in N/m: K", False),
-    ):
-        panels = []
-        for tilt in TILTS:
-            surfaces = [
-                _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=i, bodies=kind), star) for i in (True, False)
-            ]
+def _curves_of(curves: Curves, kind: str, number: int, over: str, panel: Callable[..., Panel]) -> list[Picture]:
+    """Figure 10 or 11: k* and K in N/m along one axis, a panel for each tilt boundary; dashed without ball inertia."""
+    return [
+        Picture(
+            f"figure-{number}{name}",
+            f"Figure {number}{title} over {over}, rotating force m e w², {kind} bodies",
+            tuple(panel(curves, kind, tilt, star) for tilt in TILTS),
+        )
+        for name, title, star in (("", ": k*", True), ("-newton-per-metre", " in N/m: K", False))
+    ]
 
-            def draw(axes: Any, surfaces: list[np.ndarray] = surfaces, tilt: str = tilt, star: bool = star) -> None:
-                labels = []
-                for k, colour in zip(places, colours, strict=True):
-                    axes.plot(w, surfaces[0][k], "-", color=colour, linewidth=2.0)
-                    axes.plot(w, surfaces[1][k], "--", color=colour, linewidth=1.1)
-                    labels.append((float(surfaces[0][k][-1]), f"{curves.design.loads[k]:g} N", colour))
-                if star:
-                    axes.axhline(1.0, color="#8794a0", linewidth=0.8)
-                axes.set_xlim(0.0, 1.2)
-                axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0])
-                _finish(axes, TILT_WORDS[tilt], _SPEED, _STAR if star else _STIFFNESS)
-                _end_labels(axes, 1.0, labels)
 
-            words = "; ".join(f"{curves.design.loads[k]:g} N: {_ends(surfaces[0][k])}" for k in places)
-            panels.append(Panel(draw, f"{_STAR if star else _STIFFNESS} over w*, {TILT_WORDS[tilt]}, with ball inertia: {words}",
-                                "Dashed: weightless balls."))  # fmt: skip
-        found.append(Picture(name, f"{title} over speed at several axial loads, rotating force m e w², {kind} bodies",
-                             tuple(panels)))  # fmt: skip
-    return found
+def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
+    w, places = np.array(curves.design.relative_speeds), _some(curves.design.loads)
+    names = [f"{load:g} N" for load in curves.design.loads]
+    k, light = _with_and_without_inertia(curves, kind, tilt, star)
+    label = _STAR if star else _STIFFNESS
+
+    def draw(axes: Any) -> None:
+        ends = []
+        for place, colour in zip(places, _colours(len(places)), strict=True):
+            axes.plot(w, k[place], "-", color=colour, linewidth=2.0)
+            axes.plot(w, light[place], "--", color=colour, linewidth=1.1)
+            ends.append((float(k[place][-1]), names[place], colour))
+        if star:
+            axes.axhline(1.0, color="#8794a0", linewidth=0.8)
+        axes.set_xlim(0.0, 1.2)
+        axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0])
+        _finish(axes, TILT_WORDS[tilt], _SPEED, label)
+        _end_labels(axes, 1.0, ends)
+
+    words = "; ".join(f"{names[place]}: {_ends(k[place])}" for place in places)
+    return Panel(draw, f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {words}", "Dashed: weightless balls.")
+
+
+def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
+    loads, places = np.array(curves.design.loads), _some(curves.design.speeds)
+    names = [f"w* = {w:.2g}" for w in curves.design.relative_speeds]
+    k, light = _with_and_without_inertia(curves, kind, tilt, star)
+    label = _STAR if star else _STIFFNESS
+
+    def draw(axes: Any) -> None:
+        for place, colour in zip(places, _colours(len(places)), strict=True):
+            axes.plot(loads, light[:, place], "--", color=colour, linewidth=1.1)
+            axes.plot(loads, k[:, place], "-o", markersize=3, color=colour, linewidth=1.9, label=names[place])
+        _finish(axes, TILT_WORDS[tilt], _LOAD, label, legend=3)
+
+    words = "; ".join(f"{names[place]}: {_ends(k[:, place])}" for place in places)
+    return Panel(draw, f"{label} over the axial load, {TILT_WORDS[tilt]}: {words}", "Dashed: weightless balls.")
+
+
+def _with_and_without_inertia(curves: Curves, kind: str, tilt: str, star: bool) -> list[np.ndarray]:
+    return [_surface(curves, Setting(**ROTATING, tilt=tilt, inertia=i, bodies=kind), star) for i in (True, False)]
 
 
 def _surface(curves: Curves, setting: Setting, star: bool) -> np.ndarray:
     """(loads, speeds) k* or k [10^6 N/m]."""
     values = curves.surface(setting)[0]
     return np.asarray(values / values[:, :1] if star else values / 1e6)
-
-
-def _over_load(curves: Curves, kind: str) -> list[Picture]:
-    """Figure 11: k over axial load at several speeds; dashed without ball inertia."""
-    loads, found = np.array(curves.design.loads), list[Picture]()
-    places = _some(curves.design.speeds)
-    colours = _colours(len(places))
-    for name, title, star in (
-        ("figure-11", "Figure 11: k*", True),
-        ("figure-11-newton-per-metre", "Figure 11 in N/m: K", False),
-    ):
-        panels = []
-        for tilt in TILTS:
-            surface, light = (
-                _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=i, bodies=kind), star) for i in (True, False)
-            )
-
-            def draw(
-                axes: Any, surface: np.ndarray = surface, light: np.ndarray = light, tilt: str = tilt, star: bool = star
-            ) -> None:
-                for k, colour in zip(places, colours, strict=True):
-                    axes.plot(loads, light[:, k], "--", color=colour, linewidth=1.1)
-                    label = f"w* = {curves.design.relative_speeds[k]:.2g}"
-                    axes.plot(loads, surface[:, k], "-o", markersize=3, color=colour, linewidth=1.9, label=label)
-                _finish(axes, TILT_WORDS[tilt], _LOAD, _STAR if star else _STIFFNESS, legend=3)
-
-            words = "; ".join(f"w* = {curves.design.relative_speeds[k]:.2g}: {_ends(surface[:, k])}" for k in places)
-            label = _STAR if star else _STIFFNESS
-            panels.append(
-                Panel(draw, f"{label} over the axial load, {TILT_WORDS[tilt]}: {words}", "Dashed: weightless balls.")
-            )
-        found.append(Picture(name, f"{title} over axial load, rotating force m e w², {kind} bodies", tuple(panels)))
-    return found
 
 
 def _surfaces(curves: Curves, kind: str) -> list[Picture]:

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import multiprocessing
-import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
@@ -15,10 +12,11 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.registry import Registry, default_registry
+from raceway.registry import Registry
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
 from raceway.simulate import OnProgress
+from raceway.studies.processes import in_processes
 from raceway.studies.row_store import RowStore, program_key
 
 Row = dict[str, Any]
@@ -111,41 +109,21 @@ def work(
 
 
 def _here(tasks: Sequence[Task], waiting: Sequence[int], registry: Registry) -> Iterator[tuple[int, list[Row]]]:
-    return ((k, tasks[k].function(tasks[k].given, registry)) for k in waiting)
+    return ((k, _rows(tasks[k], registry)) for k in waiting)
 
 
 def _apart(
     tasks: Sequence[Task], waiting: Sequence[int], processes: int, plugins: Sequence[Path]
 ) -> Iterator[tuple[int, list[Row]]]:
-    """In processes that are started afresh: a fork would copy the progress bar's threads."""
-    if not waiting:
-        return
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(processes, len(waiting)), context, _begin, ([str(path) for path in plugins],))
     try:
-        pending: dict[Future[list[Row]], int] = {pool.submit(_do, tasks[k]): k for k in waiting}
-        for done in as_completed(pending):
-            yield pending[done], done.result()
+        for place, rows in in_processes(_rows, [tasks[k] for k in waiting], processes, plugins):
+            yield waiting[place], rows
     except BrokenProcessPool:
         raise RacewayError(
             "a process of the study was ended from outside, perhaps for want of memory; finished curves are kept: run the "
             "command again, with --processes 1"
         ) from None
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
 
 
-_registry: Registry | None = None
-
-
-def _begin(plugins: Sequence[str]) -> None:
-    """What a process does first; Ctrl-C is the parent's to answer, who lets the curves at work be finished."""
-    global _registry
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _registry = default_registry()
-    for file in plugins:
-        _registry.load_file(Path(file))
-
-
-def _do(task: Task) -> list[Row]:
-    return task.function(task.given, _registry or default_registry())
+def _rows(task: Task, registry: Registry) -> list[Row]:
+    return task.function(task.given, registry)

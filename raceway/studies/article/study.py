@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import time
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -21,6 +20,7 @@ from raceway.studies.article.claims import Verdict, verdicts
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import BODIES, LOADS, SPEEDS, TILTS, Design, Setting, article_tables, design
 from raceway.studies.article.runs import Row, Task, curve, work
+from raceway.studies.processes import processor_time
 from raceway.studies.reference import reference_cases
 from raceway.studies.row_store import RowStore
 from raceway.studies.verify import study as verification
@@ -153,7 +153,7 @@ def article(
     KeyboardInterrupt
         Finished curves are in ``store``.
     """
-    begun, cpu, own = time.monotonic(), _processor_time(), time.process_time()
+    begun, cpu, own = time.monotonic(), processor_time(), time.process_time()
     registry = registry or default_registry()
     made = design(tables if tables is not None else article_tables(), speeds, loads, shaft, bodies)
     settings = [(setting, load) for setting in made.settings() for load in made.loads]
@@ -167,7 +167,7 @@ def article(
     scan = {load: next(results) for load in causes.scan_loads(made)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(made) for row in next(results)]
     curves = Curves(made, dict(zip(settings, results, strict=True)))
-    taken = time.monotonic() - begun, _processor_time() - cpu, time.process_time() - own
+    taken = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own
     return Article(title, curves, tuple(rig), tuple(static), tuple(trends), scan, *taken, len(tasks), reused, kept.fault)
 
 
@@ -199,9 +199,3 @@ def _rig_settings(made: Design) -> list[Setting]:
 def static_pressures(case: str, registry: Registry) -> list[Row]:
     """The article's static verification, as ``raceway verify`` computes it; a task of ``runs.work``."""
     return [attrs.asdict(row) for row in verification.compute(reference_cases()[case], registry)]
-
-
-def _processor_time() -> float:
-    """Of this process and of those that it has ended [s]."""
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(one.ru_utime + one.ru_stime for one in used)

@@ -48,16 +48,6 @@ def factorial_effects(values: np.ndarray) -> np.ndarray:
     return out
 
 
-def corners_from_effects(effects: np.ndarray) -> np.ndarray:
-    """The inverse of ``factorial_effects``: y (2,) * k at the corners."""
-    out = 0.5 * np.asarray(effects, dtype=float)
-    out[(0,) * out.ndim] *= 2.0
-    for place in range(out.ndim):
-        mean, half = np.take(out, 0, axis=place), np.take(out, 1, axis=place)
-        out = np.stack([mean - half, mean + half], axis=place)
-    return out
-
-
 @attrs.frozen
 class Effect:
     """One term.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
+from math import pi
 from typing import Any
 
 import attrs
@@ -127,7 +128,7 @@ def amplitude_words(scene: Scene) -> str:
     if law == "unbalance":
         return (
             f"{part.name}, unbalance {part.unbalance:.4g} kg m x share {part.load_share:.3g}: the force grows with the square of "
-            f"the speed, {part.load_share * part.unbalance * (1e3 * 3.141592653589793) ** 2:.4g} N at 30 000 r/min"
+            f"the speed, {part.load_share * part.unbalance * (1e3 * pi) ** 2:.4g} N at 30 000 r/min"
         )
     if law == "constant":
         return f"{part.name}, constant {part.amplitude_n:.4g} N at every speed"

@@ -16,7 +16,7 @@ from raceway.registry import Registry, default_registry
 from raceway.simulate import OnProgress
 from raceway.studies.map.curves import LEVEL, SATURATED, curves, words
 from raceway.studies.map.design import SPEED, Design, amplitude_words
-from raceway.studies.map.workers import Numbered, in_processes, rows_of
+from raceway.studies.map.workers import Numbered, in_parallel, rows_of
 from raceway.studies.row_store import RowStore, row_key
 
 #: Points above which processes of their own are worth their start: importing the program takes as long as a hundred.
@@ -120,7 +120,7 @@ def study_map(
     else:
         # The first curve here: it compiles what is not in the cache yet, once.
         alone(tasks[:1])
-        for finished in in_processes(design, tasks[1:], processes, plugins):
+        for finished in in_parallel(design, tasks[1:], processes, plugins):
             keep(finished)
     rows = [{"point": point, **_copy(store.get(key))} for point, key in zip(points, keys, strict=True)]
     found = curves(rows)

@@ -1,19 +1,18 @@
-"""Curves of a map in processes of their own; the parent alone writes."""
+"""Curves of a map, here or in processes of their own."""
 
 from __future__ import annotations
 
-import multiprocessing
-import signal
 from collections.abc import Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from raceway.errors import ConvergenceError
-from raceway.registry import Registry, default_registry
+from raceway.registry import Registry
 from raceway.studies.map.design import Design
 from raceway.studies.map.point import point_row
+from raceway.studies.processes import in_processes
 
 Numbered = list[tuple[int, dict[str, Any]]]
 
@@ -23,31 +22,13 @@ def rows_of(design: Design, points: Numbered, registry: Registry) -> Numbered:
     return [(number, point_row(design.scene(point, registry), registry)) for number, point in points]
 
 
-def _begin(plugins: Sequence[Path]) -> None:
-    # Ctrl-C is the parent's business: it keeps what is finished and ends the others.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for file in plugins:
-        default_registry().load_file(file)
-
-
-def _work(design: Design, points: Numbered) -> Numbered:
-    return rows_of(design, points, default_registry())
-
-
-def in_processes(design: Design, tasks: Sequence[Numbered], processes: int, plugins: Sequence[Path]) -> Iterator[Numbered]:
+def in_parallel(design: Design, tasks: Sequence[Numbered], processes: int, plugins: Sequence[Path]) -> Iterator[Numbered]:
     """Rows of each task as it is finished."""
-    context = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
-    pool = ProcessPoolExecutor(processes, mp_context=context, initializer=_begin, initargs=(list(plugins),))
     try:
-        pending = {pool.submit(_work, design, task) for task in tasks}
-        while pending:
-            finished, pending = wait(pending, return_when=FIRST_COMPLETED)
-            for one in finished:
-                yield one.result()
+        for _, rows in in_processes(partial(rows_of, design), tasks, processes, plugins):
+            yield rows
     except BrokenProcessPool:
         message = (
             "a process of the map ended without an answer; finished points are kept. Run it again, or with --processes 0"
         )
         raise ConvergenceError(message) from None
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)

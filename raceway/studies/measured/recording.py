@@ -48,7 +48,8 @@ class Recording:
 
     def part(self, chosen: np.ndarray) -> Recording:
         """Some of the samples."""
-        return Recording(*(None if v is None else v[chosen] for v in attrs.astuple(self, recurse=False)))  # type: ignore[arg-type]
+        key, speed = (None if v is None else v[chosen] for v in (self.key, self.speed))
+        return Recording(self.time[chosen], self.y[chosen], self.z[chosen], key, speed)
 
 
 def read_recording(path: Path) -> Recording:

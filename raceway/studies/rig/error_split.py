@@ -49,7 +49,7 @@ def split(rig: Rig, held: Bearing, state: State) -> list[Cause]:
     causes = [Cause("none", "clean signals, order tracking, beam inverted", _error(identify(clean, rig, held).state, state))]
     causes += _correction(rig, held, state, clean)
     causes += _disturbed(rig, held, state, quiet)
-    causes += _window(rig, line, held, state, clean)
+    causes += _window(line, held, state, clean)
     causes += _model(rig, line, held, state)
     return causes
 
@@ -84,7 +84,7 @@ def _disturbed(rig: Rig, held: Bearing, state: State, quiet: Signals) -> list[Ca
     ]
 
 
-def _window(rig: Rig, line: Rotor, held: Bearing, state: State, clean: Recording) -> list[Cause]:
+def _window(line: Rotor, held: Bearing, state: State, clean: Recording) -> list[Cause]:
     """What a Fourier transform of all samples, whole turns or not, makes of the line."""
     y = clean.y - clean.y.mean()
     lines = 2.0 * np.fft.rfft(y) / len(y)

@@ -20,7 +20,6 @@ from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_
 from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
-SOURCES = ("rotating", "directions", "tangent")
 #: Entries by name: place in the 2x2 matrix over (y, z).
 ENTRIES = {"yy": (0, 0), "yz": (0, 1), "zy": (1, 0), "zz": (1, 1)}
 LEAST_POINTS = 5
@@ -37,7 +36,7 @@ class Coefficients:
     frequency : (m,) of the vibration [rad/s], None where it equals the speed or nothing depends on it
     stiffness, damping : (..., 2, 2) over y, z [N/m, N s/m]
     axial : (...,) kxx [N/m]
-    source : one of ``SOURCES``;  definition : what the numbers are, in words
+    source : "rotating", "directions" or "tangent";  definition : what the numbers are, in words
     notes : what the reader of the table has to know, a sentence each
     """
 
@@ -62,7 +61,7 @@ def coefficients(selection: Selection, source: str | None = None) -> Coefficient
 
     Parameters
     ----------
-    source : one of ``SOURCES``; by default what the sweep's excitation gives
+    source : "rotating", "directions" or "tangent"; by default what the sweep's excitation gives
 
     Raises
     ------

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import resource
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +18,7 @@ import attrs
 from raceway.errors import RacewayError, SceneError
 from raceway.options import nearest
 from raceway.registry import Registry, default_registry
+from raceway.studies.processes import processor_time
 from raceway.studies.row_store import RowStore, program_key
 from raceway.studies.stability.case import FAILED, Case, Row
 from raceway.studies.stability.catalogue import catalogue
@@ -104,7 +104,7 @@ def stability(
     SceneError
         A name that no case has, or a scene that cannot be put through the catalogue.
     """
-    begun, cpu = time.monotonic(), _processor_time()
+    begun, cpu = time.monotonic(), processor_time()
     registry = registry or default_registry()
     cases = catalogue(registry, tables)
     if only is not None:
@@ -121,7 +121,7 @@ def stability(
     reused = len(found)
     places = {id(case): place for place, case in enumerate(cases)}
     waiting = [case for place, case in enumerate(cases) if place not in found]
-    for case, rows, _ in _run(waiting, processes, registry, plugins):
+    for case, rows in _run(waiting, processes, registry, plugins):
         place = places[id(case)]
         found[place] = rows
         kept.put(keys[place], {"rows": [attrs.asdict(row) for row in rows]})
@@ -129,19 +129,13 @@ def stability(
             on_progress(case.name, len(found), len(cases))
     title = "Stiff and extreme cases" if tables is None else f"Stiff and extreme cases of {tables.get('title', 'the scene')}"
     in_order = tuple(row for place in range(len(cases)) for row in found[place])
-    taken = time.monotonic() - begun, _processor_time() - cpu
+    taken = time.monotonic() - begun, processor_time() - cpu
     return Stability(title, in_order, len(cases), reused, *taken, processes, kept.fault)
 
 
-def _processor_time() -> float:
-    """Of this process and of those that it has ended [s]."""
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(one.ru_utime + one.ru_stime for one in used)
-
-
-def _run(cases: list[Case], processes: int, registry: Registry, plugins: Sequence[Path]) -> Any:
+def _run(cases: list[Case], processes: int, registry: Registry, plugins: Sequence[Path]) -> Iterator[tuple[Case, list[Row]]]:
     if processes == 0:
-        return ((case, rows_of(case, registry), 0.0) for case in cases)
+        return ((case, rows_of(case, registry)) for case in cases)
     return in_parallel(cases, processes, plugins)
 
 

@@ -27,7 +27,7 @@ def rows_of(case: Case, registry: Registry) -> list[Row]:
     try:
         place = module if "." in module else f"raceway.studies.stability.{module}"
         rows: list[Row] = getattr(import_module(place), function)(case, registry)
-    except Exception as why:  # noqa: BLE001 - a traceback is what no case may end in: it is the finding
+    except Exception as why:  # a traceback is what no case may end in: it is the finding
         last = traceback.extract_tb(why.__traceback__)[-1]
         return [lost(case, f"{type(why).__name__} in {Path(last.filename).name}, line {last.lineno}: {short(why)}")]
     return rows
@@ -70,8 +70,8 @@ class _Worker:
 
 def in_parallel(
     cases: Sequence[Case], processes: int, plugins: Sequence[Path], patience: float = PATIENCE_S
-) -> Iterator[tuple[Case, list[Row], float]]:
-    """Cases with their rows and wall times [s], as they are finished; the heaviest are begun first.
+) -> Iterator[tuple[Case, list[Row]]]:
+    """Cases with their rows, as they are finished; the heaviest are begun first.
 
     A process that dies, or works longer than ``patience`` [s] at a case, costs that case only.
     """
@@ -106,7 +106,7 @@ def in_parallel(
                 if worker.pipe not in ready or not worker.process.is_alive():
                     worker.end()
                     workers.remove(worker)
-                yield case, rows, seconds
+                yield case, rows
     finally:
         for worker in workers:
             worker.end()

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
-import os
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.errors import RacewayError, extra
-from raceway.files import write_whole
+from raceway.files import scratch_file, write_whole
 from raceway.registry import Registry, default_registry
 from raceway.scene import Scene
 from raceway.scene_file import scene_from_dict
@@ -129,17 +126,8 @@ def write_csv(store: Store, path: Path) -> Path:
     RacewayError
         A file that cannot be written.
     """
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with scratch.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows(_lines(store))
-        scratch.replace(path)
-    except OSError as why:
-        raise RacewayError(f"`{path}` cannot be written: {why.strerror or why}. Choose another place.") from None
-    finally:
-        with suppress(OSError):
-            scratch.unlink(missing_ok=True)
+    with scratch_file(path, "Choose another place.") as scratch, scratch.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows(_lines(store))
     return path
 
 
@@ -163,13 +151,6 @@ def _lines(store: Store) -> Iterator[list[Any]]:
         point = [v if isinstance(v, str) or is_number(v) else json.dumps(v) for v in row["point"].values()]
         words = [row["status"], row["reason"], "; ".join(row["warnings"])]
         yield [*point, *words, *(values.get(n, "") for n in NUMBERS), *(v for a in arrays for v in a)]
-
-
-def csv_text(store: Store) -> str:
-    """The same as text."""
-    text = io.StringIO()
-    csv.writer(text).writerows(_lines(store))
-    return text.getvalue()
 
 
 def _xarray() -> Any:

@@ -16,7 +16,6 @@ from raceway.studies.sweep.selection import LIST, Selection, listed
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
 
-KINDS = ("curves", "map", "surface")
 #: First that is there: what a sweep is made for, then what a static scene has.
 _DEFAULTS = ("equivalent_stiffness", "z_real", "stiffness:y,y", "axial_displacement")
 _FIRST_X = ("excitation.speed_rpm", "kinematics.spin_speed_rpm")
@@ -65,7 +64,7 @@ def layout(
     Parameters
     ----------
     value : variable, with labels of its other dimensions after a colon: ``p0``, ``stiffness:y,y``, ``displacement:x``
-    kind : one of ``KINDS``
+    kind : "curves", "map" or "surface"
 
     Raises
     ------

@@ -88,7 +88,7 @@ def impact_of_spheres(case: Case, registry: Registry) -> Iterator[Number]:
         time: float | None = None
         try:
             force, time = worst_measured(entry.plugin(), impact, STEPS_PER_CONTACT)
-        except Exception as why:  # noqa: BLE001 - a third party's own code: it is reported by name
+        except Exception as why:  # a third party's own code: it is reported by name
             note = f"integrator '{entry.name}' of {entry.distribution} fails: {type(why).__name__}: {why}"
         yield Number(f"peak force, {entry.name} [N]", out["Fmax_N"], force, TRANSIENT_TOLERANCE, note)
         yield Number(f"contact time, {entry.name} [s]", out["tc_s"], time, TRANSIENT_TOLERANCE, note)
