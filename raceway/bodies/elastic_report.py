@@ -59,10 +59,11 @@ class ElasticBodies:
         contacts = self.contact_table(model, equilibrium)
         system: Any = model.system
         y, bodies = system.equilibrium, self.bearing.system
-        force = bodies.assembly.reactions(y)
+        cage = self.bearing.cage_forces(y)[:, 0]
+        across = np.stack([self.bearing.setup.turn(k)[:, 2] for k in range(len(cage))])
+        force = bodies.assembly.reactions(y) - cage @ across  # the ideal cage stands on the ground
         load = np.concatenate([model.system.load[:3], model.system.load[3:]])
         energies = bodies.energies(y, np.zeros_like(y)) | {"external": float(bodies.load @ y)}
-        pushed = np.abs(self.bearing.cage_forces(y)[:, 0]).max()
         scene = model.scene
         mesh = contacts.pop("mesh", {})
         return {
@@ -80,7 +81,7 @@ class ElasticBodies:
             },
             "reaction_n": dict(zip("xyz", force.tolist(), strict=True)),
             "unbalanced_n": float(np.abs((force + load[:3]) * model.system.free[:3]).max()),
-            "cage_force_n": float(pushed),
+            "cage_force_n": float(np.abs(cage).max()),
             "energies_j": energies,
             "hourglass_energy_ratio": energies["hourglass"] / max(energies["elastic"], 1e-300),
             **contacts,

@@ -20,6 +20,8 @@ FEW_ITERATIONS, WORTH_FACTORS = 3, 30
 #: Nodes of an aggregate.  Flat cells of contacts are put together in pairs or triples, whose six unknowns would make the next
 #: level dearer than the finest one: at 9600 cells 1.3 times the iterations, each at a quarter of the cost.
 FEWEST_NODES = 6
+#: Share of the springs in the cage's place that is left where the cage itself is added, so that loose balls have an inverse.
+_HARDLY = 1e-3
 #: Ratio of the mass' share of the matrix at which the multigrid is made anew.
 _OTHER_MASS = 4.0
 #: Relative residual to which the free nodes' following of a frame is solved.
@@ -55,7 +57,9 @@ class LinearSolver:
         a = self.assembly
         ratio = c_m / c_k
         stale = self._multigrid is None or self.last_iterations > MANY_ITERATIONS and not self._fresh
-        stale = stale or isinstance(self._multigrid, Factorised) and self._extra > WORTH_FACTORS
+        # Factors hold the contacts' stiffness of when they were made, unless whole contacts are added to them.
+        aged = isinstance(self._multigrid, Factorised) and self._whole is None
+        stale = stale or aged and self._extra > WORTH_FACTORS
         other = (
             abs(np.log((ratio + 1e-300) / (self._built + 1e-300))) > np.log(_OTHER_MASS)
             and max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
@@ -86,17 +90,18 @@ class LinearSolver:
         if self.contact is not None and not self.contact.whole:
             matrix = matrix + self.contact.tangent(self.contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
+        whole = self.contact is not None and self.contact.whole
         if a.cage is not None:
-            extra += a.cage.nodal
+            extra += (_HARDLY if whole else 1.0) * a.cage.nodal
         from scipy.sparse import diags_array
 
         held = np.ones(3 * a.nodes, dtype=bool)
         held[a.free] = False
-        whole = (matrix + diags_array(extra)).tocsr()
+        sprung = (matrix + diags_array(extra)).tocsr()
         largest = 3 * int(np.diff(a.starts).max())
         small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
-        self._multigrid = Factorised(whole, held) if small else Preconditioner(whole, a.points, held, FEWEST_NODES)
-        self._whole = WholeContacts(self.contact, self._multigrid, a.free) if self.contact and self.contact.whole else None
+        self._multigrid = Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, FEWEST_NODES)
+        self._whole = WholeContacts(self.contact, a.cage, self._multigrid, a.free) if self.contact and whole else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)

@@ -42,14 +42,15 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
     """
     load = system.load.copy()
     history: list[float] = []
+    # Points of an overlap that nothing has deformed yet: see ``Contact.evaluate``.  Whole contacts need their curvature.
+    share = 0.0 if getattr(system.contact, "whole", False) else 0.5
     good, part, step, count, before = guess.copy(), 0.0, 1.0, 0, system.solver.iterations
     try:
         while True:
             goal = min(1.0, part + step)
             system.load = goal * load
             try:
-                # Only the first state is an overlap that nothing has deformed yet.
-                y, used = _newton(system, good, tolerance, history, 0.5 if part == 0.0 else 0.0)
+                y, used = _newton(system, good, tolerance, history, share if part == 0.0 else 0.0)
             except ConvergenceError as why:
                 step *= 0.5
                 if step < SMALLEST_PART:
