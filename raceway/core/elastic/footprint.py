@@ -2,7 +2,8 @@
 
 Notes
 -----
-Along the normal the contact presses on a disc, wide enough for the half-space's answer to stay finite on any mesh.  Across it
+Along the normal the contact presses on an ellipse of its own, far wider than Hertz's, so that a mesh gives way less under it than
+a contact does: its compliance can be taken off a law without using it up.  Across it
 the surface moves as its surroundings do, as a rigid body taken to the centre of curvature: a ball that turns, and a groove that
 tilts about the centre of its own arc, leave the line between the two centres where it is.
 """
@@ -14,10 +15,8 @@ import numpy as np
 
 from raceway.core.elastic.facets import Facets
 
-#: Rings of the disc, points on each, and points on the circle that tells the surroundings' motion.
+#: Rings of the ellipse, points on each, and points on the circle that tells the surroundings' motion.
 _RINGS, _ANGLES, _AROUND = 6, 12, 8
-#: Radius of that circle over the disc's.
-_WIDER = 2.0
 
 
 @attrs.frozen(eq=False)
@@ -26,7 +25,7 @@ class Footprint:
 
     Attributes
     ----------
-    nodes : (k,) int of the body;  weights : (k,) float, of the disc: a unit force, and the mean displacement under it
+    nodes : (k,) int of the body;  weights : (k,) float, of the ellipse: a unit force, and the mean displacement under it
     share : (3, k, 3) float: displacement of the surface against which the other body moves
     """
 
@@ -35,25 +34,36 @@ class Footprint:
     share: np.ndarray
 
 
-def disc(radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 2) [m] of a disc and weights (n,) of a unit force, its pressure falling as 1 - (r / radius)^2."""
+def ellipse(semi_axes: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 2) [m] of an ellipse and weights (n,) of a unit force, its pressure falling as 1 - (x / a)^2 - (y / b)^2."""
     x, w = np.polynomial.legendre.leggauss(_RINGS)
     r = 0.5 * (x + 1.0)
     angle = 2.0 * np.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES
-    points = radius * np.stack([np.outer(r, np.cos(angle)).ravel(), np.outer(r, np.sin(angle)).ravel()], axis=1)
+    points = np.stack([np.outer(r, np.cos(angle)).ravel(), np.outer(r, np.sin(angle)).ravel()], axis=1)
     weights = np.repeat(w * r * (1.0 - r * r), _ANGLES)
-    return points, weights / weights.sum()
+    return points * semi_axes, weights / weights.sum()
 
 
-def footprint(facets: Facets, pole: np.ndarray, normal: np.ndarray, centre: np.ndarray, radius: float) -> Footprint:
-    """A contact of a disc's radius [m] at ``pole`` (3,), into the body along ``normal`` (3,), its surface curved about ``centre``."""
-    first = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
-    first /= np.linalg.norm(first)
-    axes = np.stack([first, np.cross(normal, first)])
-    places, force = disc(radius)
+def footprint(
+    facets: Facets,
+    pole: np.ndarray,
+    normal: np.ndarray,
+    along: np.ndarray,
+    centre: np.ndarray,
+    semi_axes: tuple[float, float],
+) -> Footprint:
+    """A contact at a pole of a body.
+
+    Parameters
+    ----------
+    pole : (3,) [m];  normal : (3,) into the body;  along : (3,) of the first semi-axis, both of length 1
+    centre : (3,) of the surface's curvature [m];  semi_axes : of the ellipse, along the groove and across [m]
+    """
+    axes = np.stack([along, np.cross(normal, along)])
+    places, force = ellipse(semi_axes)
     facet, weights, _ = facets.locate(pole + places @ axes)
     angle = 2.0 * np.pi * np.arange(_AROUND) / _AROUND
-    circle = _WIDER * radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    circle = max(semi_axes) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     facet_around, weights_around, _ = facets.locate(pole + circle @ axes)
     nodes = np.unique(np.concatenate([facets.quads[facet].ravel(), facets.quads[facet_around].ravel()]))
     pressed = np.zeros(len(nodes))
@@ -62,9 +72,9 @@ def footprint(facets: Facets, pole: np.ndarray, normal: np.ndarray, centre: np.n
     rows = np.repeat(np.arange(_AROUND), 4)
     np.add.at(moved, (rows, np.searchsorted(nodes, facets.quads[facet_around]).ravel()), weights_around.ravel())
     fit = _rigid_fit(moved @ facets.points[nodes], centre)
-    along = np.outer(normal, normal)
-    across = np.einsum("ab,bjc,jk->akc", np.eye(3) - along, fit, moved)
-    return Footprint(nodes, pressed, across + along[:, None, :] * pressed[None, :, None])
+    inward = np.outer(normal, normal)
+    across = np.einsum("ab,bjc,jk->akc", np.eye(3) - inward, fit, moved)
+    return Footprint(nodes, pressed, across + inward[:, None, :] * pressed[None, :, None])
 
 
 def _rigid_fit(places: np.ndarray, centre: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.elastic.footprint import Footprint, disc
+from raceway.core.elastic.footprint import Footprint, ellipse
 from raceway.core.elastic.interior import locate
 from raceway.core.half_space import normal_displacement
 from raceway.core.linear_statics import StaticSolver
@@ -87,9 +87,9 @@ class LoadedBody:
         return float(contact.weights @ self.along(contact, normal)[contact.nodes]) - structural
 
     def separated(
-        self, contact: Footprint, pole: np.ndarray, normal: np.ndarray, radius: float, reach: float
+        self, contact: Footprint, pole: np.ndarray, normal: np.ndarray, semi_axes: tuple[float, float], reach: float
     ) -> Separation:
-        """Compliances under a contact of ``footprint`` with the same pole, normal and radius.
+        """Compliances under a contact of ``footprint`` with the same pole, normal and semi-axes.
 
         Parameters
         ----------
@@ -98,7 +98,7 @@ class LoadedBody:
         along = self.along(contact, normal)
         depth = reach * np.linspace(*DEPTHS, COUNT)
         nodes, weights = locate(self._points, self._cells, pole + depth[:, None] * normal)
-        places, force = disc(radius)
+        places, force = ellipse(semi_axes)
         half = normal_displacement(depth, np.linalg.norm(places, axis=1), *self._material[:2]) @ force
         difference = np.einsum("nk,nk->n", weights, along[nodes]) - half
         structural = float(difference.mean())

@@ -21,8 +21,9 @@ from raceway.core.sphere import ball_compliance
 #: Points of a ball count as contact points where the undeformed gap is below this many Hertz approaches at four times the
 #: reference load: the ellipse may then move along the groove by twice its own length.
 REACH = 5.0
-#: Reach of a ball over its diameter, and radius of the disc that a whole contact presses on over the reach.
-_BALL_REACH, _DISC = 0.34, 0.3
+#: Largest reach of a ring over the ball's diameter; semi-axes of the ellipse that a whole contact presses on, along the groove and
+#: across it, over the reach of a ring and over the radius of a ball.
+_REACH, _ON_RING, _ON_BALL = 0.34, (0.3, 0.6), (0.5, 0.5)
 #: Distance of nodes over the ball's diameter at which two balls are the same mesh.
 _SAME = 1e-9
 
@@ -69,16 +70,18 @@ def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -
         semi_axes = (float(x) for x in g.ellipses(s.modulus)[race].semi_axes(s.reference_load))
         sphere = ball_compliance(0.5 * g.ball_diameter, *s.balls[:2], *semi_axes)[0]
         for k, ball in enumerate(meshes[2:]):
-            # From the ball into the ring.
-            normal = s.line(k, float(s.angles[race * s.ball_count + k])) * (1.0 if race else -1.0)
+            angle = float(s.angles[race * s.ball_count + k])
+            # From the ball into the ring, and along the groove.
+            normal, along = s.line(k, angle) * (1.0 if race else -1.0), s.line(k, angle + 0.5 * np.pi)
             centre = s.offsets[race][0] * np.array([1.0, 0.0, 0.0]) + s.offsets[race][1] * s.radial(k)
             pole = centre + conformity * g.ball_diameter * normal
-            thick = min(abs(float(np.hypot(*pole[1:])) - seat), _BALL_REACH * g.ball_diameter)
-            on_ring = footprint(facets, pole, normal, centre, _DISC * thick)
-            below = ring.separated(on_ring, pole, normal, _DISC * thick, thick)
-            middle, deep = 0.5 * g.pitch_diameter * s.radial(k), _BALL_REACH * g.ball_diameter
-            top = middle + 0.5 * g.ball_diameter * normal
-            on_ball = footprint(balls[k], top, -normal, middle, _DISC * deep)
+            reach = min(abs(float(np.hypot(*pole[1:])) - seat), _REACH * g.ball_diameter)
+            wide = _ON_RING[0] * reach, _ON_RING[1] * reach
+            on_ring = footprint(facets, pole, normal, along, centre, wide)
+            below = ring.separated(on_ring, pole, normal, wide, reach)
+            radius, middle = 0.5 * g.ball_diameter, 0.5 * g.pitch_diameter * s.radial(k)
+            wide = _ON_BALL[0] * radius, _ON_BALL[1] * radius
+            on_ball = footprint(balls[k], middle + radius * normal, -normal, along, middle, wide)
             # Balls that are the same mesh know each other's answers.
             turned = s.turn(k) @ s.turn(loaded[k][0]).T
             above = loaded[k][1].replaced(on_ball, turned.T @ -normal, sphere)
