@@ -12,9 +12,9 @@ from raceway.bodies.basis import Basis, Built, seat_of
 from raceway.bodies.inertia import inertia_table
 from raceway.core.bodies import ring
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
-from raceway.core.sphere import ball_compliance
 from raceway.core.condensed.structural import SURFACE, reach, ring_compliance, ring_section
 from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.sphere import ball_compliance
 from raceway.core.system import System
 from raceway.errors import ConvergenceError, SceneError
 from raceway.plan import Plan

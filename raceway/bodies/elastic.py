@@ -30,6 +30,7 @@ from raceway.scene import Scene
 #: Loads of a ball over the mean one under which a law has to keep some compliance of its own.
 _ENOUGH = 5.0
 
+
 def build(scene: Scene, plan: Plan) -> Built:
     """The system of a scene with elastic bodies; see ``raceway.model.build_model``.
 

@@ -89,9 +89,12 @@ class StaticSolver:
         mask = np.asarray(held, dtype=bool).reshape(-1)
         self._matrix, self._free = stiffness, np.flatnonzero(~mask)
         self._inner = stiffness[self._free][:, self._free]
-        direct = len(self._free) <= DIRECT_UNKNOWNS
-        self._factors = splu(self._inner.tocsc(), permc_spec="MMD_AT_PLUS_A") if direct and len(self._free) else None
-        self._precondition = None if direct else Preconditioner(stiffness, points, mask)
+        self._factors: Any = None
+        self._precondition: Preconditioner | None = None
+        if len(self._free) > DIRECT_UNKNOWNS:
+            self._precondition = Preconditioner(stiffness, points, mask)
+        elif len(self._free):
+            self._factors = splu(self._inner.tocsc(), permc_spec="MMD_AT_PLUS_A")
 
     def solve(self, load: np.ndarray, values: np.ndarray | float = 0.0, tolerance: float = 1e-8) -> Solution:
         """Displacements under nodal forces (n, 3), where held as prescribed (n, 3).

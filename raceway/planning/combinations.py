@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.planning.elastic import UNREFINED, elastic_faults, memory_faults, refined
+from raceway.planning.elastic import elastic_faults, memory_faults
 from raceway.planning.mesh import mesh_faults
 from raceway.planning.patches import patch_faults
 from raceway.planning.sections import seat_faults, section_faults
@@ -32,7 +32,8 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
     if scene.bodies.kind == "elastic":
         faults += elastic_faults(scene)
-    faults += mesh_faults(scene) or (memory_faults(scene) if scene.bodies.kind == "elastic" and not faults else [])
+    unmeshed = mesh_faults(scene)
+    faults += unmeshed or (memory_faults(scene) if scene.bodies.kind == "elastic" and not faults else [])
     rigid, condensed = scene.bodies.kind == "rigid", scene.bodies.kind == "condensed"
     if condensed:
         _refuse_condensed(scene, refuse)
@@ -42,9 +43,9 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     elif contact.discretisation == "nodal" and condensed:
-        faults += patch_faults(scene) or section_faults(scene)
+        faults += [] if unmeshed else patch_faults(scene) or section_faults(scene)
     elif condensed:
-        faults += section_faults(scene)
+        faults += [] if unmeshed else section_faults(scene)
     elif contact.discretisation == "nodal" and rigid:
         why = "rigid bodies have no surface points: use 'resultant'"
         faults.append(Mistake("contact.discretisation", "nodal", why))
@@ -81,7 +82,6 @@ def _refuse_condensed(scene: Scene, refuse: Callable[[bool, str, Any, str], None
     if scene.mesh is not None:
         why = "condensed bodies are bodies of revolution, swept from their sections: use mesh.kind = 'structured'"
         refuse(scene.mesh.name != "structured", "mesh.kind", scene.mesh.name, why)
-        refuse(not refined(scene), "mesh.nodes_per_semi_axis", 0, UNREFINED.format("sections of condensed bodies"))
     for key in ("bore", "outer_diameter", "width"):
         value = getattr(scene.bearing, key)
         refuse(value is None, f"bearing.{key}", value, "is needed by elastic rings: give it, or take bodies.kind = 'rigid'")

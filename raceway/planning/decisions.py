@@ -117,7 +117,9 @@ def decide_bodies(scene: Scene, parts: Decisions, elastic: ElasticCost | None, p
     elif kind == "elastic":
         nodal, whole = scene.contact.discretisation == "nodal", "contact.discretisation is resultant"
         why_not = f"{whole}: one force a contact, whose law replaces what the mesh below it gives way"
-        parts.decide(nodal, "pressures at surface points", "elastic bodies touch at the points of the balls' surfaces", why_not)
+        parts.decide(
+            nodal, "pressures at surface points", "elastic bodies touch at the points of the balls' surfaces", why_not
+        )
         parts.keep("ideal cage", "holds each ball at its azimuth and keeps it from turning")
         why_not = "balls do not orbit: the cage holds them, their centrifugal force is kept where the plan says so"
         parts.leave_out("travel of the balls", why_not)

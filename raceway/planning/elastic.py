@@ -9,7 +9,7 @@ import attrs
 
 from raceway.errors import Mistake
 from raceway.estimate import axial_approach
-from raceway.planning.mesh import predicted_mesh
+from raceway.planning.mesh import predicted_mesh, refined
 from raceway.scene import Scene
 
 #: Bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory measured at 4500 and
@@ -28,10 +28,9 @@ _FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
 #: Thinnest element of a ball over the width of its cells under the patch; first layer of its cells over the finest length
 #: that is asked for.  Both from meshes of 1 cell to the semi-axis, whose steps are 8.5e-9 and 2.1e-8 s by elements.
 _THINNEST, _DEPTH = 0.43, 0.6
-#: Linear solves of an equilibrium from rigid bodies with its stiffness, of one from its neighbour, of a time step.
-_EQUILIBRIUM, _NEIGHBOUR, _STEP = 10, 5, 5
-#: What 0 cells along a semi-axis cannot do.
-UNREFINED = "{} need cells along a contact: take at least 1, or contact.discretisation = 'resultant' on elastic bodies"
+#: Linear solves of an equilibrium from rigid bodies with its stiffness; of one from its neighbour and of a time step, with
+#: pressures at points and with whole contacts.
+_EQUILIBRIUM, _NEIGHBOUR, _STEP = 10, (5, 2), (5, 1)
 #: Imports of what solves [s].
 _IMPORTS_S = 1.5
 
@@ -68,11 +67,12 @@ def elastic_cost(scene: Scene) -> ElasticCost | None:
     setup, solve = cells * _SETUP_S[large], cells * _SOLVE_S[large]
     memory = int(_BYTES + _BYTES_A_CELL[large] * cells)
     first = _IMPORTS_S + cells * _BUILD_S + setup + _EQUILIBRIUM * solve
-    neighbour = _NEIGHBOUR * solve
+    whole = int(scene.contact.discretisation == "resultant")
+    neighbour = _NEIGHBOUR[whole] * solve
     if not method.inertial:
         return ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
     plain = int(scene.bodies.formulation != "one_point")
-    step = _STEP * solve + 0.2 * setup if method.implicit else cells * _FORCE_S[plain] + _PYTHON_S
+    step = _STEP[whole] * solve + 0.2 * (1 - whole) * setup if method.implicit else cells * _FORCE_S[plain] + _PYTHON_S
     start = 4.0 * neighbour + setup if scene.integrator.start == "orbit" else 0.0
     return ElasticCost(cells, unknowns, memory, _stable_step(scene), first, start, step)
 
@@ -127,11 +127,6 @@ def machine_bytes() -> float:
         return float("inf")
 
 
-def refined(scene: Scene) -> bool:
-    """Whether a structured mesh has cells along a contact ellipse; those of other meshers are not known."""
-    return bool(getattr(scene.mesh, "nodes_per_semi_axis", 1))
-
-
 def elastic_faults(scene: Scene) -> list[Mistake]:
     """What elastic bodies cannot do, each with the way out."""
     faults: list[Mistake] = []
@@ -147,7 +142,6 @@ def elastic_faults(scene: Scene) -> list[Mistake]:
     whole = contact.discretisation == "resultant"
     why = f"what a coarse mesh gives way along the surface is not known well enough: set it 0, use 'nodal', {other}"
     refuse(whole and contact.friction > 0.0, "contact.friction", contact.friction, why)
-    refuse(not whole and not refined(scene), "mesh.nodes_per_semi_axis", 0, UNREFINED.format("pressures at surface points"))
     why = "is a condition, not a pressure that a penetration makes: use 'hertz' or 'penalty', " + other
     refuse(getattr(contact.law, "constraint", False), "contact.kind", contact.kind, why)
     why = f"balls of elastic bodies stay at their azimuth: set it false, {other}"

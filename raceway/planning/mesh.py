@@ -14,12 +14,18 @@ if TYPE_CHECKING:
 
 
 def mesh_faults(scene: Scene) -> list[Mistake]:
-    """Why the table [mesh] cannot be used: bodies without a mesh, sizes that its mesher refuses or the memory does not hold."""
+    """Why the table [mesh] cannot be used: bodies without a mesh, contacts without cells, sizes that its mesher refuses or the memory does not hold."""
     if scene.mesh is None:
         return []
     if scene.bodies.kind == "rigid":
         why = "rigid bodies have no mesh: leave the table out, or give [bodies] a kind that deforms"
         return [Mistake("mesh", None, why)]
+    if not refined(scene) and (scene.bodies.kind, scene.contact.discretisation) != ("elastic", "resultant"):
+        who = "sections of condensed bodies" if scene.bodies.kind == "condensed" else "pressures at surface points"
+        why = (
+            f"{who} need cells along a contact: take at least 1, or elastic bodies with contact.discretisation = 'resultant'"
+        )
+        return [Mistake("mesh.nodes_per_semi_axis", 0, why)]
     if scene.bodies.kind == "condensed":  # meshes of sections: a few thousand nodes
         return []
     try:
@@ -27,6 +33,11 @@ def mesh_faults(scene: Scene) -> list[Mistake]:
     except MeshError as error:
         return [error.mistake or Mistake("mesh", None, str(error))]
     return []
+
+
+def refined(scene: Scene) -> bool:
+    """Whether a structured mesh has cells along a contact ellipse; those of other meshers are not known."""
+    return bool(getattr(scene.mesh, "nodes_per_semi_axis", 1))
 
 
 def predicted_mesh(scene: Scene) -> dict[str, Any] | None:

@@ -75,7 +75,9 @@ class ElasticBearing:
         u = a.carried @ q
         for k in range(self.ball_count):
             moved = ball[k, :2] + centre - [0.0, 0.5 * self.setup.geometry.pitch_diameter]
-            u[a.part(k + 2)] = np.tile(moved[0] * np.array([1.0, 0.0, 0.0]) + moved[1] * self.setup.radial(k), len(self._mass[k]))
+            u[a.part(k + 2)] = np.tile(
+                moved[0] * np.array([1.0, 0.0, 0.0]) + moved[1] * self.setup.radial(k), len(self._mass[k])
+            )
         return np.concatenate([q, u[a.free]])
 
     def look(self, system: ElasticSystem, y: np.ndarray, v: np.ndarray) -> Seen:

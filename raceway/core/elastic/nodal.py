@@ -87,5 +87,3 @@ class NodalContact(Contact):
         gap, one = self.gap[self.pair == pair], self.pairs[pair]
         # A facet has four points.
         return one.name, -float(gap.min()), float(np.sqrt(4.0 * one.points.area[gap.argmin()]))
-
-

@@ -91,17 +91,19 @@ class LinearSolver:
             matrix = matrix + self.contact.tangent(self.contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
         whole = self.contact is not None and self.contact.whole
+        largest = 3 * int(np.diff(a.starts).max())
+        small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
+        # Multigrid does not know the answers of bodies that are hardly held well enough to correct them.
+        cage = a.cage if whole and small else None
         if a.cage is not None:
-            extra += (_HARDLY if whole else 1.0) * a.cage.nodal
+            extra += (1.0 if cage is None else _HARDLY) * a.cage.nodal
         from scipy.sparse import diags_array
 
         held = np.ones(3 * a.nodes, dtype=bool)
         held[a.free] = False
         sprung = (matrix + diags_array(extra)).tocsr()
-        largest = 3 * int(np.diff(a.starts).max())
-        small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
         self._multigrid = Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, FEWEST_NODES)
-        self._whole = WholeContacts(self.contact, a.cage, self._multigrid, a.free) if self.contact and whole else None
+        self._whole = WholeContacts(self.contact, cage, self._multigrid, a.free) if self.contact and whole else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)

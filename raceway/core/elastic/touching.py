@@ -69,7 +69,7 @@ def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -
         ring = _loaded(assembly, race, s.rings)
         semi_axes = (float(x) for x in g.ellipses(s.modulus)[race].semi_axes(s.reference_load))
         sphere = ball_compliance(0.5 * g.ball_diameter, *s.balls[:2], *semi_axes)[0]
-        for k, ball in enumerate(meshes[2:]):
+        for k in range(s.ball_count):
             angle = float(s.angles[race * s.ball_count + k])
             # From the ball into the ring, and along the groove.
             normal, along = s.line(k, angle) * (1.0 if race else -1.0), s.line(k, angle + 0.5 * np.pi)
@@ -88,8 +88,14 @@ def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -
             name, place = f"ball {k}, {word} race", int(assembly.starts[k + 2])
             touches.append(
                 Touch(
-                    name, _moved(on_ball, place), _moved(on_ring, int(assembly.starts[race])), middle, surface,
-                    below.local + above, below.spread, float(facets.short.mean()),
+                    name,
+                    _moved(on_ball, place),
+                    _moved(on_ring, int(assembly.starts[race])),
+                    middle,
+                    surface,
+                    below.local + above,
+                    below.spread,
+                    float(facets.short.mean()),
                 )  # fmt: skip
             )
     params = s.params(np.arange(len(touches)), np.ones(len(touches)))
@@ -112,9 +118,7 @@ def _loaded_balls(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> li
     return out
 
 
-def _loaded(
-    assembly: Assembly, index: int, material: tuple[float, float, float], floating: bool = False
-) -> LoadedBody:
+def _loaded(assembly: Assembly, index: int, material: tuple[float, float, float], floating: bool = False) -> LoadedBody:
     rows, body = assembly.part(index), assembly.bodies[index]
     held = np.ones(3 * assembly.nodes, dtype=bool)
     held[assembly.free] = False
