@@ -87,3 +87,26 @@ class NodalContact(Contact):
         gap, one = self.gap[self.pair == pair], self.pairs[pair]
         # A facet has four points.
         return one.name, -float(gap.min()), float(np.sqrt(4.0 * one.points.area[gap.argmin()]))
+
+    def update(self, where: np.ndarray) -> bool:
+        """Look up where the points lie on the second surface; whether anything changed."""
+        away = np.abs(where - self._projected).max(axis=1)
+        if not (away > _MOVED * self._short).any():
+            return False
+        from scipy.sparse import csr_array, kron
+
+        n = len(self.area)
+        columns, weights = np.empty((n, 8), dtype=np.int64), np.empty((n, 8))
+        begin = 0
+        for pair, count in zip(self.pairs, self.counts, strict=True):
+            part = slice(begin, begin + count)
+            begin += count
+            facet, values, self.outside[part] = pair.facets.locate(where[part])
+            self._short[part] = pair.facets.short[facet]
+            columns[part, :4], weights[part, :4] = pair.points.nodes, pair.points.weights
+            columns[part, 4:], weights[part, 4:] = pair.facets.quads[facet] + pair.first_node, -values
+        self._projected = where.copy()
+        rows = np.arange(0, 8 * n + 1, 8)
+        one = csr_array((weights.ravel(), columns.ravel(), rows), shape=(n, self._nodes))
+        self._reach, self.move = abs(one), kron(one, np.eye(3), format="csr")
+        return True
