@@ -176,7 +176,8 @@ def test_the_plan_tells_size_and_cost_and_builds_nothing():
 
 
 REFUSED = [
-    ({"contact": {"discretisation": "resultant", "stiffness": 3e15}}, "contact.discretisation", "surface points"),
+    ({"mesh": {"nodes_per_semi_axis": 0}}, "mesh.nodes_per_semi_axis", "pressures at surface points need cells"),
+    ({"contact": {"discretisation": "resultant", "friction": 0.1}}, "contact.friction", "use 'nodal'"),
     ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "kinematics.orbiting", "azimuth"),
     ({"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "kinematics.gyroscopic", "do not turn"),
     ({"bearing": {"tilt_arm": "pitch"}}, "bearing.tilt_arm", "shape of elastic rings"),

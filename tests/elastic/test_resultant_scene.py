@@ -210,6 +210,7 @@ REFUSED = [
         "mesh.nodes_per_semi_axis",
         "take at least 1, or",
     ),
+    ({"bodies": {"kind": "condensed"}}, "mesh.nodes_per_semi_axis", "sections of condensed bodies need cells"),
     ({"contact": {"kind": "unilateral"}}, "contact.discretisation", "law 'unilateral' supports 'nodal'"),
     ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "kinematics.orbiting", "azimuth"),
     ({"mesh": {"element_size": 8e-3}}, "mesh.element_size", "larger than the wall"),
