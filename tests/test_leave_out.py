@@ -71,6 +71,31 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     _check_shapes(found["shapes"], scene, plan)
 
 
+#: Coarse rings and balls with a force a contact, for one turn of 8 steps.
+ELASTIC = (
+    "bodies.kind=elastic",
+    'mesh={kind = "structured", element_size = 3.2e-3, nodes_per_semi_axis = 0, azimuth_cells = 24}',
+    "kinematics.spin_speed_rpm=0",
+    "integrator.turns=1",
+    "integrator.steps_per_turn=8",
+)
+
+
+def test_elastic_bodies_with_whole_contacts_need_nothing_of_condensed_ones():
+    scene = load_scene(ARTICLE, ELASTIC)
+    compute(scene)  # as above
+    found = run(*ELASTIC)
+    assert found["plan"] == json.loads(json.dumps(make_plan(scene).as_dict()))
+    for module in make_plan(scene).modules:
+        # A loop in Python is found by its compiled counterpart, among all of which it is looked for.
+        if not module.module.startswith("raceway.core.integrators."):
+            assert (module.module in found["loaded"]) == module.needed, module
+    for left_out in ("raceway.core.condensed", "raceway.core.revolution", "raceway.bodies.condensed"):
+        assert not [name for name in found["loaded"] if name.startswith(left_out)]
+    assert {"raceway.core.elastic.resultant", "raceway.core.sphere"} <= set(found["loaded"])
+    assert set(found["kernels"].values()) == {1}
+
+
 def _check_shapes(shapes, scene, plan):
     from raceway.core.bodies.ring import COLUMNS, SCALARS
 
