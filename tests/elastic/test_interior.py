@@ -15,7 +15,7 @@ SIZE = np.array([0.03, 0.02, 0.01])
 def distorted():
     """A block of 120 cells whose inner nodes are moved by up to a tenth of a cell: no cell is a parallelepiped."""
     points, cells = elastic.block(tuple(SIZE), (6, 5, 4))
-    inside = ((points > 1e-9) & (points < SIZE - 1e-9)).all(axis=1)
+    inside = np.all((points > 1e-9) & (points < SIZE - 1e-9), axis=1)
     shift = 0.1 * SIZE / (6, 5, 4) * np.random.default_rng(3).uniform(-1.0, 1.0, points.shape)
     return points + inside[:, None] * shift, cells
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import io
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from raceway.scene_file import scene_from_dict
 from raceway.statics import settle
 
 #: Three balls on 864 hexahedra: every path, some accuracy.
-TINY = {
+TINY: dict[str, Any] = {
     "title": "tiny",
     "bearing": {"preset": "B7206C", "ball_count": 3},
     "bodies": {"kind": "elastic", "formulation": "incompatible"},
@@ -27,8 +28,10 @@ TINY = {
     "contact": {"kind": "hertz"},
 }
 #: 15 000 r/min: a turn of 4 ms.  QUICK: a turn of 6 us, some 360 explicit steps; balls without centrifugal force.
-EXCITED = {"excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0}}
-QUICK = {"excitation": {**EXCITED["excitation"], "speed_rpm": 1e7}, "kinematics": {"ball_inertia": False}}
+EXCITED: dict[str, Any] = {
+    "excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0}
+}
+QUICK: dict[str, Any] = {"excitation": {**EXCITED["excitation"], "speed_rpm": 1e7}, "kinematics": {"ball_inertia": False}}
 
 
 def scene(**tables):

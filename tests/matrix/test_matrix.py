@@ -130,7 +130,7 @@ def test_refusals_name_the_way_out():
         return str(outcome(evolve(cell, **changes)))
 
     assert "rigid bodies have no surface points: use 'resultant'" in reason(discretisation="nodal")
-    assert "is required by elastic bodies" in reason(bodies="elastic")
+    assert "is required by elastic bodies" in reason(bodies="elastic", tilt="free")
     assert "use 'order_tracking'" in reason(excitation="run_up")
     assert "several speeds" in reason(excitation="run_up", identifier="impedance_fit")
     assert "does not repeat every turn at 7200 r/min" in reason(excitation="measured", identifier="impedance_fit")
