@@ -7,9 +7,9 @@ import pytest
 
 from raceway.core.condensed.line_load import half_space, nodal_weights
 from raceway.core.condensed.modes import first_frequency
-from raceway.core.sphere import ball_compliance
 from raceway.core.condensed.structural import reach, ring_compliance
 from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.sphere import ball_compliance
 from raceway.scene_file import scene_from_dict
 
 YOUNG, POISSON = 212e9, 0.29
