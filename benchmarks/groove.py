@@ -15,9 +15,9 @@ import numpy as np
 from raceway.core.contact_laws.power import linear
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body, Frame
-from raceway.core.elastic.nodal import NodalContact, Pair
 from raceway.core.elastic.facets import Facets
 from raceway.core.elastic.gap import groove
+from raceway.core.elastic.nodal import NodalContact, Pair
 from raceway.core.elastic.penalty import penalty_stiffness
 from raceway.core.elastic.recovery import peak_at_nodes, peak_at_points
 from raceway.core.elastic.statics import TOLERANCE, Settled

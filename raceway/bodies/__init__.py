@@ -2,6 +2,8 @@
 
 ``build(scene, plan) -> Built`` in a file for each ``bodies.kind``; ``raceway.model`` chooses.
 
+elastic     every node moves: pressures at points, or a calibrated force a contact
+elastic_report  what a result tells of those;  elastic_points, elastic_resultants: of their contacts
 basis       what all kinds share: geometry, Hertz contacts, parameters of the law, loads, mass, excitation
 rigid       only the contacts deform
 condensed   elastic rings and balls, one force for each contact

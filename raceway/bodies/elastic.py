@@ -83,11 +83,12 @@ def _refuse_stiff_law(scene: Scene, basis: Basis, bodies: ElasticBearing) -> Non
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
     contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
     if (-d_gap * contact.local).max() >= 1.0:
+        remedy = "Take a smaller load" if scene.contact.kind == "hertz" else "Use 'hertz' or a softer law"
         raise SceneError.at(
             "contact.kind",
             scene.contact.kind,
-            f"its contact of {-1e-6 * d_gap.min():.3g} N/µm under some {load:.3g} N is stiffer than the mesh below it, which gives "
-            f"{1e9 * contact.local.max():.3g} nm/N itself: nothing is left for the law. Use 'hertz' or a softer law, or "
+            f"its contact of {-1e-6 * d_gap.min():.3g} N/µm under {load:.3g} N is stiffer than the mesh below it, which gives "
+            f"{1e9 * contact.local.max():.3g} nm/N itself: nothing is left for the law. {remedy}, or take "
             "contact.discretisation = 'nodal'",
         )
 

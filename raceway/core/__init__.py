@@ -3,6 +3,7 @@
 jit           the one decorator for compiled kernels, and their cache on disk
 signatures    the types of every kernel that is passed as a function pointer
 hertz         exact elliptic Hertz contact
+half_space    a half-space under normal forces;  sphere: an elastic ball beyond Hertz
 geometry      groove curvatures, groove centres, cage speed
 contact       what the core adds to every law: damping, the energy stored in a contact
 dense         5x5 linear algebra without allocation

@@ -2,38 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from raceway.core.contact import add_damping, stored_energy
 from raceway.core.elastic.gap import forces_and_tangents, gaps
+from raceway.core.elastic.traction import Friction
 
 #: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
 _STIFFER = 1.02
-
-
-class Friction(Protocol):
-    """Tangential traction at the points.
-
-    1. ``evaluate(moved, normal, pressure, d_gap)``: moved (n, 3), displacement of the points against the other surface
-       [m]; traction (n, 3) on the points [Pa] and minus its derivative by ``moved`` (n, 3, 3) [Pa/m].
-    2. ``commit()``, ``rollback()``: as for the system;  ``dissipated``: density (n,) [J/m2] up to the last commit;
-       ``stored()``: density (n,) in what sticks.
-    3. ``begin(moved)``: nothing carries or has lost anything there.  ``state()``: arrays by name that ``restore(arrays)`` takes back.
-    """
-
-    dissipated: np.ndarray
-
-    def evaluate(
-        self, moved: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]: ...
-    def stored(self) -> np.ndarray: ...
-    def begin(self, moved: np.ndarray) -> None: ...
-    def commit(self) -> None: ...
-    def rollback(self) -> None: ...
-    def state(self) -> dict[str, np.ndarray]: ...
-    def restore(self, arrays: dict[str, np.ndarray]) -> None: ...
 
 
 class Contact:
@@ -110,6 +88,9 @@ class Contact:
     def overlap(self, pair: int) -> tuple[str, float, float]:
         """Name of a pair, how deep it overlaps at the last gaps [m], and the length of an element there [m]."""
         raise NotImplementedError
+
+    def refuse(self) -> None:
+        """Raise ``ConvergenceError`` where the last forces are none that the law may end with."""
 
     def press(self, gap: np.ndarray, rate: np.ndarray, dt: float) -> np.ndarray:
         """Sets ``pressure``, ``d_gap`` and ``d_rate`` at gaps (n,) and their rates; what is left of the gaps for the law (n,)."""
@@ -214,6 +195,7 @@ class Contact:
         return np.asarray(np.abs(self.stiffness).sum(axis=2).max(axis=1))
 
     def commit(self) -> None:
+        self.refuse()
         self.memory, self._trial = self._trial, self.memory
         if self.friction is not None:
             self.friction.commit()

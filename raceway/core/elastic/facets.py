@@ -60,7 +60,7 @@ def _walk(where, points, quads, neighbours, facet, weights, outside):  # type: i
                 edge, far = 2, t
             if -s > far and neighbours[f, 3] >= 0:
                 edge, far = 3, -s
-            if edge < 0 or (neighbours[f, edge] == before and far < 1.01):  # between two facets that meet at an angle
+            if edge < 0 or neighbours[f, edge] == before:  # above the edge between two facets that meet at an angle
                 break
             before = f
             f = neighbours[f, edge]

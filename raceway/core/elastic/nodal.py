@@ -7,9 +7,10 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.elastic.contact import Contact, Friction
+from raceway.core.elastic.contact import Contact
 from raceway.core.elastic.facets import Facets
 from raceway.core.elastic.surface import SurfacePoints
+from raceway.core.elastic.traction import Friction
 
 #: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
 _MOVED = 0.02

@@ -11,9 +11,12 @@ from raceway.core.elastic.contact import Contact
 from raceway.core.elastic.footprint import Footprint
 from raceway.errors import ConvergenceError
 
-#: Newton's iterations of the law with the mesh's compliance, their tolerance over the deepest gap, and what has to be left of
-#: the law's own compliance.
-_ITERATIONS, _TOLERANCE, _LEFT = 60, 1e-12, 0.02
+#: Newton's iterations of the law with the mesh's compliance, and their tolerance over the deepest gap.
+_ITERATIONS, _TOLERANCE = 60, 1e-12
+#: Share of the law's own compliance that has to be left, and halvings of the search for the gap where no more is.
+_LEFT, _HALVINGS = 0.05, 60
+#: Deepest gap that is looked at [m]: no contact is pressed by a millimetre.
+_DEEPEST = 1e-3
 
 
 @attrs.frozen(eq=False)
@@ -54,6 +57,9 @@ class ResultantContact(Contact):
     The centres of ball and groove approach by -g, the law's own approach by -h: h = g - m Q(h) with the compliance m of the
     meshes below the contact, which Q compresses already.  From dQ = (dg - m dQ) dQ/dh follows dQ/dg = Q' / (1 + m Q'),
     stiffer than the law's Q' = dQ/dh < 0.  A law that is told the rate of the gap is told that of g.
+
+    Where a law has less compliance than that, the force goes on along its tangent: iterations may pass there, but what ends
+    there is refused by ``refuse``.
     """
 
     whole = True
@@ -66,8 +72,9 @@ class ResultantContact(Contact):
         one = np.ones(len(touches))
         super().__init__(place, one, one.astype(int), surfaces, law, params, state_size, damping)
         self.local = np.array([t.local for t in touches])
-        self._carried = np.zeros(len(touches))
+        self._carried, self._approach = np.zeros(len(touches)), np.zeros(len(touches))
         self.move, self._reach = _moves(touches, nodes)
+        self._last = self._last_gap()
 
     def nodes_of(self, pair: int) -> tuple[int, int]:
         one = self.touches[pair]
@@ -75,28 +82,43 @@ class ResultantContact(Contact):
 
     def overlap(self, pair: int) -> tuple[str, float, float]:
         one = self.touches[pair]
-        return one.name, -float(self.gap[pair]), one.size
+        return one.name, float(self._approach[pair]), one.size
 
     def press(self, gap: np.ndarray, rate: np.ndarray, dt: float) -> np.ndarray:
-        own = gap.copy()
+        own, self._approach = np.maximum(gap, self._last), -gap
         smallest = _TOLERANCE * max(-float(gap.min()), 1e-300)
         for _ in range(_ITERATIONS):
             super().press(own, rate, dt)
-            left = 1.0 + self.local * self.d_gap
+            left = np.maximum(1.0 + self.local * self.d_gap, _LEFT)
             rest = own + self.local * self.pressure - gap
-            if (left < _LEFT).any():
-                break
-            if np.abs(rest).max() <= smallest:
+            beyond = (own <= self._last) & (rest > 0.0)
+            if np.abs(np.where(beyond, 0.0, rest)).max() <= smallest:
                 self.d_gap /= left
                 self.d_rate /= left
+                self.pressure -= np.where(beyond, rest * self.d_gap, 0.0)
                 self.gap, self._carried = own, self.pressure.copy()
                 return own
-            own = own - rest / left
-        worst = int(np.argmin(left))
-        raise ConvergenceError(
-            f"{self.touches[worst].name}: under {self.pressure[worst]:.3g} N the contact is stiffer than the {1e9 * self.local[worst]:.3g} nm/N "
-            "of the mesh below it, which its law replaces. Take a smaller load, or 'nodal'."
-        )
+            own = np.maximum(own - rest / left, self._last)
+        raise ConvergenceError(f"the law of whole contacts finds no force at gaps down to {1e6 * gap.min():.3g} um.")
+
+    def refuse(self) -> None:
+        worst = int(np.argmin(self.gap - self._last))
+        if self.gap[worst] <= self._last[worst]:
+            one = self.touches[worst]
+            raise ConvergenceError(
+                f"{one.name}: under {self.pressure[worst]:.3g} N the contact is stiffer than the mesh below it, which gives "
+                f"{1e9 * one.local:.3g} nm/N that the law replaces. Take a smaller load, or contact.discretisation = 'nodal'."
+            )
+
+    def _last_gap(self) -> np.ndarray:
+        """(n,) the deepest gap of the law [m] that leaves it some compliance, at rest and without history."""
+        deep, shallow = np.full(len(self.local), -_DEEPEST), np.zeros(len(self.local))
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (deep + shallow)
+            super().press(middle, np.zeros_like(middle), 0.0)
+            stays = 1.0 + self.local * self.d_gap >= _LEFT
+            deep, shallow = np.where(stays, deep, middle), np.where(stays, middle, shallow)
+        return shallow
 
     def energy(self) -> float:
         """What the law stores at the last gaps, less what the meshes do in its place [J]."""

@@ -82,6 +82,8 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
         if not np.isfinite(size):
             raise ConvergenceError("forces are not finite.")
         if relative <= tolerance and (done > 0 or share == 0.0):
+            if system.contact is not None:
+                system.contact.refuse()
             return y, done
         if done > 0:
             forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous, 0.3 * tolerance / relative))
