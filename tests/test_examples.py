@@ -17,6 +17,8 @@ FOLDER = Path(__file__).resolve().parents[1] / "examples"
 MESHES = {"b7206_article_mesh"}
 #: Scenes that take tens of seconds: planned here; a smaller one of their kind runs in tests/test_elastic_scene.py.
 LONG = {"b7206_elastic"}
+#: Scenes without an excitation.
+STATIC = {"b7206_elastic_coarse"}
 RUNNING = [path for path in sorted(FOLDER.glob("*.toml")) if path.stem not in MESHES | LONG]
 
 
@@ -24,11 +26,15 @@ RUNNING = [path for path in sorted(FOLDER.glob("*.toml")) if path.stem not in ME
 def test_example_runs(path):
     result = run(load_scene(path)).as_dict()
     json.dumps(result, allow_nan=False)
+    assert result["stability"]["status"] == "completed"
     found = result["identification"]
+    if path.stem in STATIC:
+        assert found is None
+        assert min(result["equilibrium"]["stiffness"][i][i] for i in range(3)) > 1e7
+        return
     assert found["equivalent_stiffness"] > 1e6
     # Estimates of the parts of the error; a run-up changes its speed while it is looked at.
     assert result["error"]["total"] < (0.05 if found["series"] else 0.01)
-    assert result["stability"]["status"] == "completed"
 
 
 @pytest.mark.parametrize("name", sorted(LONG))
