@@ -22,7 +22,7 @@ from tests.cluster import rows as rows_of
 TITLE = "Sweeps on a dask scheduler: killed, unfit and silent partners"
 COMMAND = "python -m benchmarks.evidence dask"
 TEST = "python -m pytest tests/test_dask.py"
-_KILLS, _SEED, _PATIENCE_S = 10, 20, 2.0
+_KILLS, _SEED, _PATIENCE_S = 20, 20, 2.0
 
 
 def rows() -> list[Row]:
