@@ -15,6 +15,7 @@ from benchmarks.evidence._kept import kept
 from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.elastic.friction import CoulombFriction
 from raceway.core.elastic.start import from_orbit
+from raceway.core.elastic.touching import sticking
 from raceway.core.orbit import steady_orbit
 from raceway.core.record import Record, Schedule
 from raceway.core.stepping.elastic import SteppedElastic
@@ -215,7 +216,7 @@ def _rubbing(ring: Any) -> list[Row]:
     guess = ring.bodies.guess(place, places if places[:, 1].any() else ring._on_the_line(place, places))
     _, without = ring.settled(guess, ring.load)
     contact = system.contact
-    contact.friction = CoulombFriction(0.03, ring.bodies._sticking(contact.area))
+    contact.friction = CoulombFriction(0.03, sticking(ring.bodies.setup, contact.area))
     system.locate(guess)
     contact.friction.begin((contact.move @ system.assembly.nodal(guess)).reshape(-1, 3))
     found = system.settle(guess, 1e-7)

@@ -87,7 +87,7 @@ def _refuse_stiff_law(scene: Scene, basis: Basis, bodies: ElasticBearing) -> Non
         raise SceneError.at(
             "contact.kind",
             scene.contact.kind,
-            f"its contact of {-1e-6 * d_gap.min():.3g} N/µm under {load:.3g} N is stiffer than the mesh below it, which gives "
+            f"its contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm is stiffer than the mesh below it, which gives "
             f"{1e9 * contact.local.max():.3g} nm/N itself: nothing is left for the law. {remedy}, or take "
             "contact.discretisation = 'nodal'",
         )

@@ -28,6 +28,8 @@ _FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
 #: Thinnest element of a ball over the width of its cells under the patch; first layer of its cells over the finest length
 #: that is asked for.  Both from meshes of 1 cell to the semi-axis, whose steps are 8.5e-9 and 2.1e-8 s by elements.
 _THINNEST, _DEPTH = 0.43, 0.6
+#: The same of balls without refinement, over the cells of their surface: their layers are thinner.
+_LAYER = 0.87
 #: Linear solves of an equilibrium from rigid bodies with its stiffness; of one from its neighbour and of a time step, with
 #: pressures at points and with whole contacts.
 _EQUILIBRIUM, _NEIGHBOUR, _STEP = 10, (5, 2), (5, 1)
@@ -98,11 +100,11 @@ def _stable_step(scene: Scene) -> float:
     load = getattr(mesh, "ball_load", None) or carried
     ellipses = row.ellipses(modulus)
     minors = [float(e.semi_axes(load)[1]) for e in ellipses]
-    width = size = float(getattr(mesh, "element_size", inf))
+    size = float(getattr(mesh, "element_size", inf))
     fine = min(minors) / float(getattr(mesh, "nodes_per_semi_axis", 4)) if refined(scene) else size
     zone = float(getattr(mesh, "patch", 1.25)) * max(minors)
-    if refined(scene):
-        width = min(zone / ceil(zone / fine), size)
+    arc = 0.125 * pi * b.ball_diameter  # from a ball's pole to the edge of its cube
+    width = min(zone / ceil(zone / fine), size) if refined(scene) else _LAYER * arc / ceil(arc / size)
     steel, nu = b.balls, b.balls.poisson
     wave = (steel.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / steel.density) ** 0.5
     penalty = getattr(law, "stiffness", None)

@@ -173,8 +173,8 @@ def test_the_bound_of_the_explicit_step_is_below_the_exact_one():
     root = 1.0 / np.sqrt(np.repeat(mass, 3))
     exact = 2.0 / np.sqrt(np.linalg.eigvalsh(root[:, None] * whole * root).max())
     bound = made.stable_step(mass)
-    # Gershgorin's bound, never above; with footprints of three nodes, whose shares are mixed, within a factor of four.
-    assert 0.25 * exact < bound <= exact
+    # Of the few motions of the contacts, curvature that softens counted as stiffness: hardly below, never above.
+    assert 0.95 * exact < bound <= exact * (1.0 + 1e-9)
     assert not made.stiffened()
     made.evaluate(0.0, displaced(1.005))
     assert made.stiffened()

@@ -173,6 +173,11 @@ def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
     if along is not None:
         how = "not estimated" if change is None else f"{mesh['how']}: {change:.1e}"
         rows.append(("nodes per semi-axis", number(along, digits=3), how))
+    sure = mesh.get("replaced_uncertainty")
+    if sure is not None:
+        values = ", ".join(f"{1e9 * mesh[f'replaced_{race}_m_per_n']:.2f}" for race in ("inner", "outer"))
+        how = f"inner, outer: what the mesh gives way under a contact; known to {100.0 * sure:.1g} % of the contact's compliance"
+        rows.append(("replaced by the law", f"{values} nm/N", how))
     share, unbalanced, energies = (model.get(name) for name in ("penetration_share", "unbalanced_n", "energies_j"))
     if share is not None:
         rows.append(

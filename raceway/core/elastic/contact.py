@@ -86,7 +86,7 @@ class Contact:
         raise NotImplementedError
 
     def overlap(self, pair: int) -> tuple[str, float, float]:
-        """Name of a pair, how deep it overlaps at the last gaps [m], and the length of an element there [m]."""
+        """Name of a pair, how deep it overlaps at the last gaps [m], and how deep undeformed bodies may [m]."""
         raise NotImplementedError
 
     def refuse(self) -> None:

@@ -14,7 +14,7 @@ from raceway.errors import ConvergenceError
 #: Newton's iterations of the law with the mesh's compliance, and their tolerance over the deepest gap.
 _ITERATIONS, _TOLERANCE = 60, 1e-12
 #: Share of the law's own compliance that has to be left, and halvings of the search for the gap where no more is.
-_LEFT, _HALVINGS = 0.05, 60
+_LEFT, _HALVINGS = 0.2, 60
 #: Deepest gap that is looked at [m]: no contact is pressed by a millimetre.
 _DEEPEST = 1e-3
 
@@ -30,7 +30,7 @@ class Touch:
     centre : (3,) of the ball [m]
     surface : (8,) on which that centre lies at a gap of zero (``raceway.core.elastic.gap``): the groove, its tube smaller by the ball
     local : compliance of both meshes that the law's replaces [m/N];  spread : how well they know it [m/N]
-    size : length of an element [m]
+    size : largest overlap of undeformed bodies [m]
     """
 
     name: str
@@ -73,7 +73,8 @@ class ResultantContact(Contact):
         super().__init__(place, one, one.astype(int), surfaces, law, params, state_size, damping)
         self.local = np.array([t.local for t in touches])
         self._carried, self._approach = np.zeros(len(touches)), np.zeros(len(touches))
-        self.move, self._reach = _moves(touches, nodes)
+        self.move = _moves(touches, nodes)
+        self._mobility: np.ndarray | None = None
         self._last = self._last_gap()
 
     def nodes_of(self, pair: int) -> tuple[int, int]:
@@ -83,6 +84,26 @@ class ResultantContact(Contact):
     def overlap(self, pair: int) -> tuple[str, float, float]:
         one = self.touches[pair]
         return one.name, float(self._approach[pair]), one.size
+
+    def stable_step(self, mass: np.ndarray) -> float:
+        """Bound of the explicit step by the contacts alone [s]; ``mass`` (nodes,) of the nodes [kg].
+
+        Notes
+        -----
+        The eigenvalues of M^-1 B^T D B that are not zero are those of D B M^-1 B^T, of three rows a contact.
+        """
+        np.maximum(self._stiffest, self._sizes(), out=self._stiffest)
+        if self._mobility is None:
+            from scipy.sparse import diags_array
+
+            self._mobility = (self.move @ diags_array(np.repeat(1.0 / mass, 3)) @ self.move.T).toarray()
+        values, vectors = np.linalg.eigh(self.stiffness)
+        n = len(values)
+        root = np.zeros((n, 3, n, 3))
+        root[np.arange(n), :, np.arange(n)] = (vectors * np.sqrt(np.abs(values))[:, None, :]).transpose(0, 2, 1)
+        square = root.reshape(3 * n, 3 * n)
+        largest = float(np.linalg.eigvalsh(square @ self._mobility @ square.T).max())
+        return 2.0 / np.sqrt(largest) if largest > 0.0 else np.inf
 
     def press(self, gap: np.ndarray, rate: np.ndarray, dt: float) -> np.ndarray:
         own, self._approach = np.maximum(gap, self._last), -gap
@@ -107,7 +128,7 @@ class ResultantContact(Contact):
             one = self.touches[worst]
             raise ConvergenceError(
                 f"{one.name}: under {self.pressure[worst]:.3g} N the contact is stiffer than the mesh below it, which gives "
-                f"{1e9 * one.local:.3g} nm/N that the law replaces. Take a smaller load, or contact.discretisation = 'nodal'."
+                f"{1e9 * one.local:.3g} nm/N that the law replaces. Take a smaller load, a softer law, or contact.discretisation = 'nodal'; check clearance and radial_expansion."
             )
 
     def _last_gap(self) -> np.ndarray:
@@ -125,22 +146,17 @@ class ResultantContact(Contact):
         return super().energy() - 0.5 * float(self.local @ self._carried**2)
 
 
-def _moves(touches: list[Touch], nodes: int) -> tuple[Any, Any]:
-    """(3 n, 3 nodes) displacement of balls against races, and (n, nodes) bounds of its blocks' row and column sums."""
+def _moves(touches: list[Touch], nodes: int) -> Any:
+    """(3 n, 3 nodes) sparse displacement of balls against races."""
     from scipy.sparse import coo_array
 
-    rows, columns, values, bounds, sums, at = [], [], [], [], [], []
+    rows, columns, values = [], [], []
     for k, touch in enumerate(touches):
         for sign, side in ((1.0, touch.ball), (-1.0, touch.race)):
             rows.append(np.broadcast_to(3 * k + np.arange(3)[:, None, None], side.share.shape).ravel())
             columns.append(np.broadcast_to((3 * side.nodes)[:, None] + np.arange(3), side.share.shape).ravel())
             values.append(sign * side.share.ravel())
-            size = np.abs(side.share)
-            sums.append(np.maximum(size.sum(axis=2).max(axis=0), size.sum(axis=0).max(axis=1)))
-            bounds.append(np.full(len(side.nodes), k))
-            at.append(side.nodes)
     join = np.concatenate
     move = coo_array((join(values), (join(rows), join(columns))), shape=(3 * len(touches), 3 * nodes)).tocsr()
     move.eliminate_zeros()
-    reach = coo_array((join(sums), (join(bounds), join(at))), shape=(len(touches), nodes)).tocsr()
-    return move, reach
+    return move

@@ -204,7 +204,11 @@ def _conjugate_gradients(
         now = float(residual @ corrected)
         if done == 0:
             goal = tolerance**2 * now
-        if now <= goal:
+        if now < 0.0:  # a preconditioner that is indefinite here: along the residual, or with what was found so far
+            if done:
+                return found, done
+            corrected, now, goal = residual.copy(), float(residual @ residual), 0.0
+        elif now <= goal:
             return found, done
         direction = corrected + (now / before if done else 0.0) * direction
         image = apply(direction)

@@ -62,9 +62,18 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
                 continue
             good, part, count = y, goal, count + used
             if goal >= 1.0:
+                _refuse(system, y, history)
                 return Settled(y, count, system.solver.iterations - before, history)
     finally:
         system.load = load
+
+
+def _refuse(system: Any, y: np.ndarray, history: list[float]) -> None:
+    try:
+        if system.contact is not None:
+            system.contact.refuse()
+    except ConvergenceError as why:
+        raise ConvergenceError(str(why), {"y": y, "load_part": 1.0, "residuals": history}) from why
 
 
 def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[float], share: float) -> tuple[np.ndarray, int]:
@@ -82,8 +91,6 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
         if not np.isfinite(size):
             raise ConvergenceError("forces are not finite.")
         if relative <= tolerance and (done > 0 or share == 0.0):
-            if system.contact is not None:
-                system.contact.refuse()
             return y, done
         if done > 0:
             forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous, 0.3 * tolerance / relative))

@@ -212,5 +212,5 @@ class ElasticSystem:
             if depth > size:
                 raise MeshError(
                     f"{name}: the surfaces overlap by {1e6 * depth:.3g} um before anything is loaded, more than an "
-                    f"element there ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
+                    f"element there or a hundredth of a ball ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
                 )

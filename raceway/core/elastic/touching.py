@@ -24,6 +24,8 @@ REACH = 5.0
 #: Largest reach of a ring over the ball's diameter; semi-axes of the ellipse that a whole contact presses on, along the groove and
 #: across it, over the reach of a ring and over the radius of a ball.
 _REACH, _ON_RING, _ON_BALL = 0.34, (0.3, 0.6), (0.5, 0.5)
+#: Largest overlap of undeformed bodies over the ball's diameter: tens of times what a contact bears.
+_OVERLAP = 0.01
 #: Distance of nodes over the ball's diameter at which two balls are the same mesh.
 _SAME = 1e-9
 
@@ -49,7 +51,7 @@ def nodal_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> No
     if s.contact_damping > 0.0:
         a, b = g.ellipses(s.modulus)[0].semi_axes(s.reference_load)
         damping = s.contact_damping / (np.pi * float(a) * float(b))
-    friction = CoulombFriction(s.friction, _sticking(s, area)) if s.friction > 0.0 else None
+    friction = CoulombFriction(s.friction, sticking(s, area)) if s.friction > 0.0 else None
     return NodalContact(pairs, assembly.nodes, s.law, s.params(which, area), s.state_size, damping, friction)
 
 
@@ -95,7 +97,7 @@ def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -
                     surface,
                     below.local + above,
                     below.spread,
-                    float(facets.short.mean()),
+                    min(float(facets.short.mean()), _OVERLAP * g.ball_diameter),
                 )  # fmt: skip
             )
     params = s.params(np.arange(len(touches)), np.ones(len(touches)))
@@ -137,7 +139,7 @@ def _groove(setup: Setup, race: int) -> np.ndarray:
     return groove(np.array([centre[0], 0.0, 0.0]), centre[1] + (0.0 if race else setup.growth), radius)
 
 
-def _sticking(setup: Setup, area: np.ndarray) -> np.ndarray:
+def sticking(setup: Setup, area: np.ndarray) -> np.ndarray:
     """(n,) stiffness of sticking points [N/m3]; by default 2 (1 - nu) / (2 - nu) of a penalty's (Mindlin 1949)."""
     if setup.stick is not None:
         return np.full(len(area), setup.stick)

@@ -41,7 +41,9 @@ class WholeContacts:
         """With the contacts' present tangents: ``bodies`` is the inverse without them, ``rates`` the weight of the dampers'."""
         from scipy.linalg import block_diag
 
-        blocks = self._contact.stiffness + rates * self._contact.rate_stiffness
+        # Curvature takes a little of the stiffness across, in iterations far off a lot: conjugate gradients need the positive part.
+        values, vectors = np.linalg.eigh(self._contact.stiffness + rates * self._contact.rate_stiffness)
+        blocks = (vectors * np.maximum(values, 0.0)[:, None, :]) @ vectors.transpose(0, 2, 1)
         stiffness = block_diag(*blocks, np.diag(self._held))
         middle = np.linalg.solve(np.eye(len(stiffness)) + stiffness @ self._flexibility, stiffness)
 

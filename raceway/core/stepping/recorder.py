@@ -65,7 +65,10 @@ class Recorder:
         self._outer = outer
         penetration, peak, _ = system.contacts()
         self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
-        system.commit()
+        try:
+            system.commit()
+        except ConvergenceError as why:
+            raise ConvergenceError(f"{why} It was {self._when()}.", self._last_good()) from why
         self.state = state
         self._done += 1
         if (schedule.first + self._done) % schedule.stride == 0:
