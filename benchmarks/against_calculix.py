@@ -19,7 +19,7 @@ from typing import Any
 
 from benchmarks import calculix
 from benchmarks.groove import HERTZ, MODULUS, POISSON, YOUNG, meshes, solve
-from raceway.core.elastic.penalty import penalty_stiffness
+from raceway.core.elastic.contacts.penalty import penalty_stiffness
 from raceway.errors import RacewayError, SceneError
 
 #: Meshes of about 10 000 elements at 4 elements per semi-axis and 300 N.

@@ -15,13 +15,13 @@ import numpy as np
 from raceway.core.contact_laws.power import linear
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body, Frame
-from raceway.core.elastic.facets import Facets
-from raceway.core.elastic.gap import groove
-from raceway.core.elastic.nodal import NodalContact, Pair
-from raceway.core.elastic.penalty import penalty_stiffness
-from raceway.core.elastic.recovery import peak_at_nodes, peak_at_points
+from raceway.core.elastic.contacts.facets import Facets
+from raceway.core.elastic.contacts.gap import groove
+from raceway.core.elastic.contacts.nodal import NodalContact, Pair
+from raceway.core.elastic.contacts.penalty import penalty_stiffness
+from raceway.core.elastic.contacts.recovery import peak_at_nodes, peak_at_points
+from raceway.core.elastic.contacts.surface import surface_points
 from raceway.core.elastic.statics import TOLERANCE, Settled
-from raceway.core.elastic.surface import surface_points
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hertz import contact_modulus, ellipse
 from raceway.core.hexahedron.operator import HexOperator

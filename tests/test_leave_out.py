@@ -92,7 +92,7 @@ def test_elastic_bodies_with_whole_contacts_need_nothing_of_condensed_ones():
             assert (module.module in found["loaded"]) == module.needed, module
     for left_out in ("raceway.core.condensed", "raceway.core.revolution", "raceway.bodies.condensed"):
         assert not [name for name in found["loaded"] if name.startswith(left_out)]
-    assert {"raceway.core.elastic.resultant", "raceway.core.sphere"} <= set(found["loaded"])
+    assert {"raceway.core.elastic.contacts.resultant", "raceway.core.sphere"} <= set(found["loaded"])
     assert set(found["kernels"].values()) == {1}
 
 

@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 from raceway.core.contact_laws.power import linear
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body
-from raceway.core.elastic.facets import Facets
-from raceway.core.elastic.gap import plane
-from raceway.core.elastic.nodal import NodalContact, Pair
-from raceway.core.elastic.penalty import penalty_stiffness
-from raceway.core.elastic.surface import surface_points
+from raceway.core.elastic.contacts.facets import Facets
+from raceway.core.elastic.contacts.gap import plane
+from raceway.core.elastic.contacts.nodal import NodalContact, Pair
+from raceway.core.elastic.contacts.penalty import penalty_stiffness
+from raceway.core.elastic.contacts.surface import surface_points
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear_statics import solve_static

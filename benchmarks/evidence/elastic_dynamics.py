@@ -13,7 +13,7 @@ from benchmarks.evidence import Row, below
 from benchmarks.evidence._impact import Impact, expected, model, structural_compliances
 from benchmarks.evidence._kept import kept
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.core.elastic.friction import CoulombFriction
+from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.elastic.start import from_orbit
 from raceway.core.elastic.touching import sticking
 from raceway.core.orbit import steady_orbit

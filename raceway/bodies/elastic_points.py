@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.bodies.elastic_report import ElasticBodies
-from raceway.core.elastic.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
+from raceway.core.elastic.contacts.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
 
 if TYPE_CHECKING:
     from raceway.model import Model

@@ -6,8 +6,8 @@ import pytest
 from benchmarks.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body
-from raceway.core.elastic.gap import gaps, plane
-from raceway.core.elastic.nodal import NodalContact, Pair
+from raceway.core.elastic.contacts.gap import gaps, plane
+from raceway.core.elastic.contacts.nodal import NodalContact, Pair
 from raceway.core.elastic.system import ElasticSystem
 from raceway.errors import ConvergenceError, MeshError
 from tests.reference.contact import contact_forces, groove_gap

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from raceway.core.elastic.facets import Facets
+from raceway.core.elastic.contacts.facets import Facets
 
 
 @pytest.mark.parametrize("above", [0.05, 0.3, 0.8])

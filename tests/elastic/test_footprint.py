@@ -6,8 +6,8 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.core.elastic.facets import Facets
-from raceway.core.elastic.footprint import Footprint, ellipse, footprint
+from raceway.core.elastic.contacts.facets import Facets
+from raceway.core.elastic.contacts.footprint import Footprint, ellipse, footprint
 from raceway.core.meshing.place import azimuth
 from raceway.core.meshing.ring_shape import ring_shape
 from raceway.meshing import mesh_scene

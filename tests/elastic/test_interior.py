@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.interior import locate
+from raceway.core.elastic.contacts.interior import locate
 from tests.reference import elastic
 
 SIZE = np.array([0.03, 0.02, 0.01])

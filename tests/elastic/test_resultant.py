@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from raceway.core.contact_laws.point_or_pair import three_halves_or_linear
-from raceway.core.elastic.footprint import Footprint
-from raceway.core.elastic.gap import groove, plane
-from raceway.core.elastic.resultant import ResultantContact, Touch
+from raceway.core.elastic.contacts.footprint import Footprint
+from raceway.core.elastic.contacts.gap import groove, plane
+from raceway.core.elastic.contacts.resultant import ResultantContact, Touch
 from raceway.core.hertz import contact_modulus, ellipse
 from raceway.errors import ConvergenceError
 

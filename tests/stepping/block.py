@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as solvers
 
-from raceway.core.elastic.friction import CoulombFriction
+from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.record import Motion
 from raceway.core.stepping.protocol import Observation, State

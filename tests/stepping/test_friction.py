@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.friction import CoulombFriction
+from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.record import Schedule
 from raceway.core.stepping.energy import drift
 from raceway.core.stepping.restart import load_motion, save_motion

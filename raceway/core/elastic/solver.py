@@ -8,7 +8,7 @@ import numpy as np
 
 from raceway.core.blocks import BlockMatrix
 from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.contact import Contact
+from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.factorised import MOST_OF_A_BODY, MOST_UNKNOWNS, Factorised
 from raceway.core.elastic.whole_contacts import WholeContacts
 from raceway.core.linear_statics import Preconditioner

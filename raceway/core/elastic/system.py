@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.contact import Contact
+from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.solver import LinearSolver
 from raceway.core.elastic.statics import TOLERANCE, Settled, settle
 from raceway.errors import ConvergenceError, MeshError

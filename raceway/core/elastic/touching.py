@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.facets import Facets
-from raceway.core.elastic.footprint import Footprint, footprint
-from raceway.core.elastic.friction import CoulombFriction
-from raceway.core.elastic.gap import groove
-from raceway.core.elastic.nodal import NodalContact, Pair
-from raceway.core.elastic.penalty import penalty_stiffness
-from raceway.core.elastic.resultant import ResultantContact, Touch
-from raceway.core.elastic.separation import LoadedBody
+from raceway.core.elastic.contacts.facets import Facets
+from raceway.core.elastic.contacts.footprint import Footprint, footprint
+from raceway.core.elastic.contacts.friction import CoulombFriction
+from raceway.core.elastic.contacts.gap import groove
+from raceway.core.elastic.contacts.nodal import NodalContact, Pair
+from raceway.core.elastic.contacts.penalty import penalty_stiffness
+from raceway.core.elastic.contacts.resultant import ResultantContact, Touch
+from raceway.core.elastic.contacts.separation import LoadedBody
+from raceway.core.elastic.contacts.surface import SurfacePoints, surface_points
 from raceway.core.elastic.setup import Setup
-from raceway.core.elastic.surface import SurfacePoints, surface_points
 from raceway.core.mesh import HexMesh
 from raceway.core.sphere import ball_compliance
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from raceway.core.elastic.cage import Cage
-from raceway.core.elastic.contact import Contact
+from raceway.core.elastic.contacts.contact import Contact
 
 
 class WholeContacts:

@@ -17,8 +17,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.elastic.footprint import Footprint, ellipse
-from raceway.core.elastic.interior import locate
+from raceway.core.elastic.contacts.footprint import Footprint, ellipse
+from raceway.core.elastic.contacts.interior import locate
 from raceway.core.half_space import normal_displacement
 from raceway.core.linear_statics import StaticSolver
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.elastic.facets import Facets
+from raceway.core.elastic.contacts.facets import Facets
 
 #: Rings of the ellipse, points on each, and points on the circle that tells the surroundings' motion.
 _RINGS, _ANGLES, _AROUND = 6, 12, 8

@@ -7,10 +7,10 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.elastic.contact import Contact
-from raceway.core.elastic.facets import Facets
-from raceway.core.elastic.surface import SurfacePoints
-from raceway.core.elastic.traction import Friction
+from raceway.core.elastic.contacts.contact import Contact
+from raceway.core.elastic.contacts.facets import Facets
+from raceway.core.elastic.contacts.surface import SurfacePoints
+from raceway.core.elastic.contacts.traction import Friction
 
 #: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
 _MOVED = 0.02
@@ -24,7 +24,7 @@ class Pair:
     ----------
     name : str
     points : SurfacePoints of the first surface; node numbers are the assembly's
-    surface : (8,) the second one, exact (``raceway.core.elastic.gap``)
+    surface : (8,) the second one, exact (``raceway.core.elastic.contacts.gap``)
     facets : Facets of the second surface;  first_node : what to add to its node numbers for those of the assembly
     """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.elastic.nodal import NodalContact
+from raceway.core.elastic.contacts.nodal import NodalContact
 
 
 def peak_at_points(contact: NodalContact) -> np.ndarray:

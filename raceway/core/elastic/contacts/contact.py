@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from raceway.core.contact import add_damping, stored_energy
-from raceway.core.elastic.gap import forces_and_tangents, gaps
-from raceway.core.elastic.traction import Friction
+from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps
+from raceway.core.elastic.contacts.traction import Friction
 
 #: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
 _STIFFER = 1.02
@@ -20,7 +20,7 @@ class Contact:
     Parameters
     ----------
     place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for whole contacts
-    counts : (pairs,) places of each pair of surfaces;  surfaces : (pairs, 8), see ``raceway.core.elastic.gap``
+    counts : (pairs,) places of each pair of surfaces;  surfaces : (pairs, 8), see ``raceway.core.elastic.contacts.gap``
     law, params, state_size : kernel of signature ``LAW``, (n, k) its parameters, columns of its memory
     damping : normal damping, pressure per gap rate [N s/m3]; of whole contacts [N s/m]
     friction : Friction | None

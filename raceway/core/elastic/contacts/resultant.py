@@ -7,8 +7,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.elastic.contact import Contact
-from raceway.core.elastic.footprint import Footprint
+from raceway.core.elastic.contacts.contact import Contact
+from raceway.core.elastic.contacts.footprint import Footprint
 from raceway.errors import ConvergenceError
 
 #: Newton's iterations of the law with the mesh's compliance, and their tolerance over the deepest gap.
@@ -28,7 +28,7 @@ class Touch:
     name : str
     ball, race : Footprint; node numbers are the assembly's
     centre : (3,) of the ball [m]
-    surface : (8,) on which that centre lies at a gap of zero (``raceway.core.elastic.gap``): the groove, its tube smaller by the ball
+    surface : (8,) on which that centre lies at a gap of zero (``raceway.core.elastic.contacts.gap``): the groove, its tube smaller by the ball
     local : compliance of both meshes that the law's replaces [m/N];  spread : how well they know it [m/N]
     size : largest overlap of undeformed bodies [m]
     """
