@@ -61,7 +61,8 @@ def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
 
 def worded(check: Rule, words: str, facts: Mapping[str, Any] | None = None) -> Rule:
     """A rule of one's own with what ``--help``, the documents and the JSON schema say of it."""
-    check.words = words  # type: ignore[attr-defined]  # functions take attributes, their type has none
+    # Functions take attributes, but their type has none.
+    check.words = words  # type: ignore[attr-defined]
     check.facts = dict(facts or {})  # type: ignore[attr-defined]
     return check
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(eq=False)
-class ElasticBodies:
+class ElasticBodies(ABC):
     """Elastic bodies beyond their system.
 
     Attributes
@@ -48,9 +49,9 @@ class ElasticBodies:
             out[f"approach_hertz_{word}_m"] = np.asarray(ellipse.approach(load))
         return out
 
+    @abstractmethod
     def contact_table(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         """What ``report`` says of the contacts; ``mesh`` there is added to what it says of the mesh."""
-        raise NotImplementedError
 
     def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         """The table ``model`` of result.json."""

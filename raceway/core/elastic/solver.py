@@ -85,12 +85,11 @@ class LinearSolver:
         return float(np.cbrt(a.free_mass.max() / a.bodies[0].operator.density))
 
     def _make(self, c_k: float, c_m: float) -> None:
-        a = self.assembly
-        matrix = a.stiffness()
-        if self.contact is not None and not self.contact.whole:
-            matrix = matrix + self.contact.tangent(self.contact.stiffness)
+        a, contact = self.assembly, self.contact
+        matrix, whole = a.stiffness(), contact is not None and contact.whole
+        if contact is not None and not whole:
+            matrix = matrix + contact.tangent(contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
-        whole = self.contact is not None and self.contact.whole
         largest = 3 * int(np.diff(a.starts).max())
         small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
         # Multigrid does not know the answers of bodies that are hardly held well enough to correct them.
@@ -103,7 +102,7 @@ class LinearSolver:
         held[a.free] = False
         sprung = (matrix + diags_array(extra)).tocsr()
         self._multigrid = Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, FEWEST_NODES)
-        self._whole = WholeContacts(self.contact, cage, self._multigrid, a.free) if self.contact and whole else None
+        self._whole = WholeContacts(contact, cage, self._multigrid, a.free) if contact is not None and whole else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from raceway.core.elastic.contacts.traction import Friction
 _STIFFER = 1.02
 
 
-class Contact:
+class Contact(ABC):
     """Places at which forces act between two bodies: points of a surface, or whole contacts.
 
     Parameters
@@ -63,8 +64,6 @@ class Contact:
         self.force, self.stiffness, self.rate_stiffness = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
         self._stiffest = np.zeros(n)
         self.move: Any = None
-        #: (n, nodes) sparse: at least the row sums of B's blocks.
-        self._reach: Any = None
 
     # What kinds of contacts differ in
 
@@ -81,14 +80,19 @@ class Contact:
         """Make B anew for places at ``where`` (n, 3) [m]; whether anything changed."""
         return False
 
+    @abstractmethod
     def nodes_of(self, pair: int) -> tuple[int, int]:
         """A node of the first and one of the second body of a pair."""
-        raise NotImplementedError
 
+    @abstractmethod
     def overlap(self, pair: int) -> tuple[str, float, float]:
         """Name of a pair, how deep it overlaps at the last gaps [m], and how deep undeformed bodies may [m]."""
-        raise NotImplementedError
 
+    @abstractmethod
+    def stable_step(self, mass: np.ndarray) -> float:
+        """Bound of the explicit step by the contacts alone [s]; ``mass`` (nodes,) of the nodes [kg]."""
+
+    @abstractmethod
     def refuse(self) -> None:
         """Raise ``ConvergenceError`` where the last forces are none that the law may end with."""
 
@@ -169,22 +173,6 @@ class Contact:
     def friction_energy(self) -> float:
         """What friction has taken up to the last commit [J]."""
         return 0.0 if self.friction is None else float(self.area @ self.friction.dissipated)
-
-    def stable_step(self, mass: np.ndarray) -> float:
-        """Bound of the explicit step by the contacts alone [s]; ``mass`` (nodes,) of the nodes [kg].
-
-        Notes
-        -----
-        By Gershgorin's theorem on M^-1 B^T D B: 2 / sqrt(largest row sum).
-        """
-        size = self._sizes()
-        np.maximum(self._stiffest, size, out=self._stiffest)
-        touching = np.flatnonzero(size)
-        if not len(touching):
-            return np.inf
-        one = self._reach[touching]
-        rows = one.T @ (size[touching] * np.asarray(one.sum(axis=1)).ravel())
-        return float(2.0 / np.sqrt((rows / mass).max()))
 
     def stiffened(self) -> bool:
         """Whether a point has closed or become stiffer than at any ``stable_step`` before."""

@@ -69,6 +69,7 @@ class NodalContact(Contact):
         self.outside = np.zeros(len(area))
         self._projected = np.full((len(area), 3), np.inf)
         self._short = np.zeros(len(area))
+        self._weights: Any = None
         self.update(self.place)
 
     @property
@@ -88,6 +89,9 @@ class NodalContact(Contact):
         gap, one = self.gap[self.pair == pair], self.pairs[pair]
         # A facet has four points.
         return one.name, -float(gap.min()), float(np.sqrt(4.0 * one.points.area[gap.argmin()]))
+
+    def refuse(self) -> None:
+        """Points find a pressure at any gap."""
 
     def update(self, where: np.ndarray) -> bool:
         """Look up where the points lie on the second surface; whether anything changed."""
@@ -109,5 +113,21 @@ class NodalContact(Contact):
         self._projected = where.copy()
         rows = np.arange(0, 8 * n + 1, 8)
         one = csr_array((weights.ravel(), columns.ravel(), rows), shape=(n, self._nodes))
-        self._reach, self.move = abs(one), kron(one, np.eye(3), format="csr")
+        self._weights, self.move = abs(one), kron(one, np.eye(3), format="csr")
         return True
+
+    def stable_step(self, mass: np.ndarray) -> float:
+        """See ``Contact``.
+
+        Notes
+        -----
+        By Gershgorin's theorem on M^-1 B^T D B: 2 / sqrt(largest row sum).
+        """
+        size = self._sizes()
+        np.maximum(self._stiffest, size, out=self._stiffest)
+        touching = np.flatnonzero(size)
+        if not len(touching):
+            return np.inf
+        one = self._weights[touching]
+        rows = one.T @ (size[touching] * np.asarray(one.sum(axis=1)).ravel())
+        return float(2.0 / np.sqrt((rows / mass).max()))

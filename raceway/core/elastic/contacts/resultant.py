@@ -86,7 +86,7 @@ class ResultantContact(Contact):
         return one.name, float(self._approach[pair]), one.size
 
     def stable_step(self, mass: np.ndarray) -> float:
-        """Bound of the explicit step by the contacts alone [s]; ``mass`` (nodes,) of the nodes [kg].
+        """See ``Contact``.
 
         Notes
         -----
