@@ -8,8 +8,9 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 SCENE  ?= examples/b7206.toml
 
-# What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display) and the tests of pages (a browser).
-APT_PACKAGES := chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
+# What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display), the tests of pages (a browser)
+# and of the .inp files (CalculiX).
+APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
 .PHONY: demo test lint evidence system-libraries apt-line clean
@@ -45,13 +46,15 @@ $(VENV)/.all: $(VENV)/.python pyproject.toml
 
 # Prints the one line that a bare Debian needs; loads both libraries, draws without a display, opens a page in the browser.
 system-libraries: $(VENV)/.all
-	@echo "what a bare Debian needs for gmsh, pyvista and the tests of pages, as root: $(APT_LINE)"
+	@echo "what a bare Debian needs for gmsh, pyvista and the tests of pages and .inp files, as root: $(APT_LINE)"
 	@$(BIN)/python -c 'import gmsh, pyvista; pyvista.Plotter(off_screen=True).show(auto_close=True)' >/dev/null 2>$(VENV)/.libraries.log \
 	  && echo "gmsh and pyvista: system libraries present" \
 	  || { cat $(VENV)/.libraries.log; echo "gmsh or pyvista lacks system libraries: run the line above"; exit 1; }
 	@$(BIN)/python -c 'from tests.browser.chromium import Browser; Browser().close()' 2>$(VENV)/.browser.log \
 	  && echo "chromium and chromedriver: present" \
 	  || { tail -n 1 $(VENV)/.browser.log; echo "no browser for the tests of pages: run the line above"; exit 1; }
+	@command -v ccx >/dev/null && echo "ccx (CalculiX): present" \
+	  || { echo "no ccx (CalculiX) for the tests of .inp files: run the line above"; exit 1; }
 
 apt-line:
 	@echo $(APT_LINE)

@@ -159,7 +159,7 @@ class Format(Protocol):
     """A file format, of meshes (``HexMesh``) or of anything else.
 
     1. ``suffixes``: file endings with the dot.
-    2. ``write(path, what)``, ``read(path)``: what is written is read back the same, sets too.
+    2. ``write(path, what)``, ``read(path)``: what is written is read back the same, sets too, real numbers at least to ten figures.
     3. A file that is missing or malformed raises a ``RacewayError`` that names it.
     """
 

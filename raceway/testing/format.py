@@ -13,17 +13,28 @@ import numpy as np
 from raceway.errors import RacewayError
 from raceway.testing.suite import Suite, check_class, duty, require
 
+#: Relative difference of real numbers that a text of ten figures may make.
+TEN_FIGURES = 1e-10
 
-def same(a: Any, b: Any) -> bool:
-    """Whether two things read from files are equal, arrays inside them too; attrs objects (meshes) field by field."""
+
+def same(a: Any, b: Any, relative: float = 0.0) -> bool:
+    """Whether two things read from files are equal, arrays inside them too; attrs objects (meshes) field by field.
+
+    Real numbers may differ by ``relative`` times themselves; integers and words may not differ.
+    """
     if isinstance(a, dict) and isinstance(b, dict):
-        return set(a) == set(b) and all(same(a[k], b[k]) for k in a)
+        return set(a) == set(b) and all(same(a[k], b[k], relative) for k in a)
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
-        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b, strict=True))
+        return len(a) == len(b) and all(same(x, y, relative) for x, y in zip(a, b, strict=True))
     if attrs.has(type(a)) and type(a) is type(b):
-        return all(same(getattr(a, field.name), getattr(b, field.name)) for field in attrs.fields(type(a)))
+        return all(same(getattr(a, field.name), getattr(b, field.name), relative) for field in attrs.fields(type(a)))
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
-        return np.array_equal(np.asarray(a), np.asarray(b))
+        a, b = np.asarray(a), np.asarray(b)
+        if a.dtype.kind == "f" and b.dtype.kind == "f":
+            return a.shape == b.shape and bool(np.allclose(a, b, rtol=relative, atol=0.0))
+        return np.array_equal(a, b)
+    if isinstance(a, float) and isinstance(b, float):
+        return a == b or abs(a - b) <= relative * abs(b)
     return bool(a == b)
 
 
@@ -46,7 +57,7 @@ class FormatSuite(Suite):
         bad = [s for s in suffixes if not re.fullmatch(r"(\.[a-z0-9_-]+)+", s)]
         require(not bad, f"suffixes {bad} must be lower case and begin with a dot")
 
-    @duty("what is written is read back the same, with every suffix")
+    @duty("what is written is read back the same, real numbers to ten figures, with every suffix")
     def test_round_trip(self, form: Any) -> None:
         what = self._content(form)
         with tempfile.TemporaryDirectory() as folder:
@@ -54,7 +65,10 @@ class FormatSuite(Suite):
                 path = Path(folder) / f"content{suffix}"
                 form.write(path, what)
                 require(path.is_file() and path.stat().st_size > 0, f"write() leaves no file `content{suffix}`")
-                require(same(form.read(path), what), f"`content{suffix}` is read back different from what was written")
+                require(
+                    same(form.read(path), what, TEN_FIGURES),
+                    f"`content{suffix}` is read back different from what was written",
+                )
 
     @duty("a file that is missing or malformed is refused with a RacewayError that names it")
     def test_bad_files(self, form: Any) -> None:

@@ -1,5 +1,6 @@
 """Meshes from files and from Gmsh: sets, other solids, and files that are not what they should be."""
 
+import re
 import sys
 
 import attrs
@@ -17,6 +18,7 @@ from raceway.plugins.meshers.file import File
 from raceway.plugins.meshers.gmsh import Gmsh
 from tests.command_line import EXAMPLES
 from tests.mesh.cubes import block
+from tests.mesh.squeezed import squeezed
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 FORMATS = [Vtu(), Abaqus(), Msh()]
@@ -27,13 +29,15 @@ def path_of(folder, form, name="body"):
 
 
 @pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
-def test_a_mesh_survives_a_file_bit_for_bit(form, tmp_path):
+def test_a_mesh_survives_a_file(form, tmp_path):
     rng = np.random.default_rng(2)
     mesh = block()
     mesh = attrs.evolve(mesh, points=mesh.points + 1e-3 * rng.standard_normal(mesh.points.shape))
     form.write(path_of(tmp_path, form), mesh)
     back = form.read(path_of(tmp_path, form))
-    assert np.array_equal(back.points, mesh.points) and np.array_equal(back.cells, mesh.cells)
+    # VTU and gmsh keep every bit; CalculiX reads 20 characters of a number, which hold eleven figures.
+    np.testing.assert_allclose(back.points, mesh.points, rtol=5e-11 if form.name == "abaqus" else 0.0, atol=0.0)
+    assert np.array_equal(back.cells, mesh.cells)
     assert np.array_equal(back.facets("outside"), mesh.facets("outside"))
     assert np.array_equal(back.nodes("corner"), mesh.nodes("corner"))
 
@@ -64,6 +68,26 @@ def test_formats_without_meshio_name_the_extra(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "meshio", None)
     with pytest.raises(MeshError, match=r"pip install '.\[mesh\]'"):
         Vtu().write(tmp_path / "x.vtu", block())
+
+
+@pytest.mark.parametrize("formulation", ["one_point", "full", "incompatible"])
+def test_calculix_computes_with_what_is_written(formulation, tmp_path):
+    said, found, exact = squeezed(formulation, tmp_path)
+    assert "Job finished" in said and "*ERROR" not in said and "*WARNING" not in said
+    assert found == pytest.approx(exact, rel=1e-6)  # the program prints seven figures
+
+
+def test_an_abaqus_file_names_elements_of_steel_and_numbers_of_twenty_characters(tmp_path):
+    """Hybrid elements (H) are for incompressible solids, and CalculiX has none."""
+    mesh = block()
+    mesh = attrs.evolve(mesh, points=-np.pi * 1e-130 * mesh.points)
+    for formulation, word in (("one_point", "C3D8R"), ("full", "C3D8"), ("incompatible", "C3D8I")):
+        Abaqus(formulation).write(tmp_path / "body.inp", mesh)
+        text = (tmp_path / "body.inp").read_text()
+        assert re.findall(r"TYPE=(C3D\w+)", text) == [word]
+        data = [line.split(",") for line in text.splitlines()[2:] if line[0] != "*"]
+        assert max(len(number.strip()) for line in data for number in line) <= 20
+        assert max(len(line) for line in data) <= 16
 
 
 def test_an_abaqus_file_written_by_hand(tmp_path):

@@ -13,15 +13,32 @@ import numpy as np
 
 from raceway.core.mesh import HexMesh
 from raceway.errors import MeshError
+from raceway.options import one_of, option
 from raceway.plugins.formats import _exchange as exchange
+
+#: Element types that both programs know, by this program's word for the hexahedron.
+_TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}
+#: CalculiX reads 20 characters of a number: ten decimals leave room for a sign and an exponent of three figures.
+_NUMBER = "%.10e"
+#: Entries of a line of *ELSET and *NSET; both programs read at most 16.
+_ENTRIES = 16
 
 
 @attrs.frozen
 class Abaqus:
-    """Hexahedral meshes as .inp; facet sets are element surfaces, faces S1 to S6. Sets of whole elements are not kept."""
+    """Hexahedral meshes as .inp; facet sets are element surfaces, faces S1 to S6. Sets of whole elements are not kept.
+
+    Coordinates are written with eleven significant figures, and every element belongs to the set EALL, which a section needs.
+    """
 
     name: ClassVar[str] = "abaqus"
     suffixes: ClassVar[tuple[str, ...]] = (".inp",)
+
+    formulation: str = option(
+        "incompatible",
+        help="element type that is written: 'one_point' C3D8R, 'full' C3D8, 'incompatible' C3D8I, as in bodies.formulation",
+        rule=one_of(*_TYPES),
+    )
 
     def read(self, path: Any) -> HexMesh:
         """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
@@ -42,21 +59,30 @@ class Abaqus:
 
     def write(self, path: Any, what: HexMesh) -> None:
         """Write a mesh; each facet set as element sets NAME_S1 to NAME_S6 and the *SURFACE made of them."""
-        package = exchange.meshio()
-        sets, text = {}, ""
+        lines = ["*HEADING", "hexahedra written by raceway", "*NODE"]
+        numbers = [", ".join(_NUMBER % x for x in point) for point in what.points]
+        lines += [f"{number}, {text}" for number, text in enumerate(numbers, 1)]
+        lines.append(f"*ELEMENT, TYPE={_TYPES[self.formulation]}, ELSET=EALL")
+        lines += [f"{number}, {', '.join(map(str, nodes))}" for number, nodes in enumerate((what.cells + 1).tolist(), 1)]
+        for name, nodes in what.node_sets.items():
+            lines += [f"*NSET, NSET={name}", *_entries(nodes)]
         for name, facets in what.facet_sets.items():
-            text += f"*SURFACE, NAME={name}, TYPE=ELEMENT\n"
-            for face in np.unique(facets[:, 1]):
-                word = f"{name}_S{face + 1}"
-                sets[word] = [facets[facets[:, 1] == face, 0]]
-                text += f"{word}, S{face + 1}\n"
-        content = package.Mesh(what.points, [("hexahedron", what.cells)], point_sets=what.node_sets, cell_sets=sets)
-        exchange.store(path, package.abaqus.write, content)
-        with Path(path).open("a", encoding="utf-8") as file:
-            file.write(text)
+            faces = np.unique(facets[:, 1])
+            for face in faces:
+                lines += [f"*ELSET, ELSET={name}_S{face + 1}", *_entries(facets[facets[:, 1] == face, 0])]
+            lines.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
+            lines += [f"{name}_S{face + 1}, S{face + 1}" for face in faces]
+        text = "\n".join(lines) + "\n"
+        exchange.store(path, lambda place, content: Path(place).write_text(content, encoding="utf-8"), text)
 
     def example_content(self) -> HexMesh:
         return exchange.example()
+
+
+def _entries(numbers: np.ndarray) -> Iterator[str]:
+    """Lines of a set whose members (k,) are counted from 0."""
+    for first in range(0, len(numbers), _ENTRIES):
+        yield ", ".join(map(str, (numbers[first : first + _ENTRIES] + 1).tolist()))
 
 
 def _members(blocks: Any, first: list[int | None]) -> np.ndarray:
