@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from raceway.commands.frame import RESULTS, attempt, common, on_scene, out_folde
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError
+from raceway.plugins.system_libraries import refuse_pictures
 
 
 @click.command(short_help="Mesh the bodies of a scene: counts, quality, files.")
@@ -36,6 +38,8 @@ def mesh(
     loaded = load(scene, changes, registry)
     folder = writable(out or RESULTS / slug(loaded.title))
     tell_faults(registry)
+    if picture and find_spec("pyvista"):
+        refuse_pictures(", or leave out --picture")
     with ProgressBar("meshing") as progress:
         from raceway.meshing import mesh_scene
 

@@ -11,6 +11,7 @@ import click
 from raceway.commands.frame import RESULTS, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.errors import RacewayError, SceneError, extra
+from raceway.plugins.system_libraries import refuse_pictures
 
 
 @click.command(short_help="Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.")
@@ -42,6 +43,7 @@ def view(
     for package in ("pyvista", "matplotlib"):
         if find_spec(package) is None:
             raise RacewayError(f"pictures need {package}: {extra('view')}")
+    refuse_pictures()
     if animate and loaded.excitation is None:
         raise SceneError.at("excitation", None, "is missing, so that nothing moves: add the table, or leave out --animate")
     tell_faults(registry)

@@ -16,6 +16,7 @@ import numpy as np
 from raceway.errors import MeshError, extra
 from raceway.options import one_of, option, positive
 from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
+from raceway.plugins.system_libraries import remedy
 
 if TYPE_CHECKING:
     from raceway.core.mesh import HexMesh
@@ -62,7 +63,7 @@ class Gmsh:
         Raises
         ------
         MeshError
-            Gmsh is absent, files cannot be read or meshed with hexahedra, elements are too large or too small.
+            Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, elements are too large or too small.
         """
         self.predict(bearing)  # refuses what cannot work
         return bodies(self, bearing, self._body)
@@ -117,8 +118,10 @@ class Gmsh:
                     raise MeshError(f"'{path}' cannot be read: it is not a STEP file (no ISO-10303-21 at its beginning)")
         try:
             import gmsh
-        except (ImportError, OSError) as why:  # OSError: its library lacks a system library
+        except ImportError as why:
             raise MeshError(f"mesh.kind = 'gmsh' needs the package gmsh: {extra('gmsh')} ({why})") from why
+        except OSError as why:  # of the loader of its library
+            raise MeshError(f"mesh.kind = 'gmsh' cannot be used: {remedy('gmsh')} ({why})") from why
         gmsh.initialize([], readConfigFiles=False, interruptible=False)
         try:
             gmsh.option.setNumber("General.Terminal", 0)

@@ -11,6 +11,7 @@ import numpy as np
 from raceway.core.mesh import FACES, HexMesh, boundary
 from raceway.errors import RacewayError, extra
 from raceway.files import write_whole
+from raceway.plugins.system_libraries import refuse_pictures
 
 #: Inner ring, outer ring, everything else.
 _COLOURS = {"inner": "#4f8fc0", "outer": "#c9a24d"}
@@ -33,6 +34,7 @@ def draw(meshes: Mapping[str, HexMesh], title: str, path: Path) -> Path:
     except ImportError:
         message = f"the picture needs pyvista: {extra('view')}, or leave out --picture"
         raise RacewayError(message) from None
+    refuse_pictures(", or leave out --picture")
     try:
         # Without a display VTK says so on standard error, and then draws in memory as it was asked to.
         with pyvista.vtk_verbosity("off"):

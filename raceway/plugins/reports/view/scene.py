@@ -9,6 +9,7 @@ import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.plugins.reports.view.bearing import Bearing, Part, State
+from raceway.plugins.system_libraries import refuse_pictures
 
 LOADS, PRESSURES = "viridis", "inferno"
 _INK = "#20262c"
@@ -28,12 +29,13 @@ def pyvista_of(otherwise: str) -> Any:
     Raises
     ------
     RacewayError
-        It is missing; names the extra.
+        It or its system libraries are missing; names what installs them.
     """
     try:
         import pyvista
     except ImportError:
         raise RacewayError(f"this picture needs pyvista: {extra('view')}{otherwise}") from None
+    refuse_pictures(otherwise)
     return pyvista
 
 

@@ -1,0 +1,71 @@
+"""System libraries of packages that draw and mesh: what to install where a package is there and its libraries are not.
+
+A package can lack them in two ways: its import fails, or it ends the whole process at the first picture.  The second is
+therefore tried in a process of its own.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+
+from raceway.errors import RacewayError
+
+#: Debian's packages by what lacks them; the Makefile's APT_PACKAGES contain them all.
+DEBIAN = {
+    "gmsh": (
+        "libfontconfig1", "libgl1", "libglu1-mesa", "libgomp1", "libxcursor1", "libxext6", "libxfixes3", "libxft2",
+        "libxinerama1", "libxrender1",
+    ),
+    "pyvista": ("libegl1", "libgl1"),
+}  # fmt: skip
+
+#: The smallest picture that VTK draws without a display.
+_PICTURE = """
+import vtkmodules.vtkRenderingOpenGL2
+from vtkmodules.vtkCommonCore import vtkLogger
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
+vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+window = vtkRenderWindow()
+window.SetOffScreenRendering(1)
+window.SetSize(16, 16)
+window.Render()
+"""
+#: Seconds after which a trial counts as failed; it takes about one.
+_PATIENCE = 60.0
+
+
+def remedy(package: str) -> str:
+    """The line that installs what ``package`` lacks."""
+    line = f"apt-get install -y --no-install-recommends {' '.join(DEBIAN[package])}"
+    return f"{package} is installed but lacks system libraries; on Debian, as root: {line}"
+
+
+def refuse_pictures(otherwise: str = "") -> None:
+    """Refuse to draw with pyvista where that would end the process.
+
+    Raises
+    ------
+    RacewayError
+        What installs the system libraries, and ``otherwise``.
+    """
+    fault = _fault_of_pictures()
+    if fault:
+        raise RacewayError(f"pictures cannot be drawn: {remedy('pyvista')}{otherwise} ({fault})")
+
+
+@cache
+def _fault_of_pictures() -> str:
+    """How drawing fails in a process of its own; "" where it does not."""
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", _PICTURE], capture_output=True, text=True, timeout=_PATIENCE, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return f"a trial took more than {_PATIENCE:g} s"
+    if done.returncode == 0:
+        return ""
+    if done.returncode < 0:
+        return f"a trial ended by signal {-done.returncode}"
+    return (done.stderr.strip().splitlines() or [f"a trial ended with {done.returncode}"])[-1]
