@@ -22,6 +22,7 @@ from raceway.commands.frame import (
     on_scene,
     out_folder,
     plugin_files,
+    programs,
     registry_with,
     show,
     show_progress,
@@ -66,6 +67,7 @@ def main() -> None:
 @on_scene
 @out_folder
 @click.option("--pictures", is_flag=True, help="Also write orbit, spectrum and ball loads as PNG.")
+@programs
 @plugin_files
 @common
 def run(

@@ -147,7 +147,8 @@ class Mesher(Protocol):
     3. The same bearing gives the same mesh.
     4. An option ``ball_load`` that is None gets the static load of a ball [N] from the scene.
     5. Optional ``predict(bearing)``: body -> number of cells, without meshing, for the plan (or a
-       ``raceway.core.meshing.size.Prediction``); what cannot be meshed raises ``MeshError`` here already.
+       ``raceway.core.meshing.size.Prediction``; None: it cannot tell); what cannot be meshed raises ``MeshError`` here
+       already.  It executes nothing, starts no process and writes no file: ``raceway check`` calls it on foreign scenes.
     """
 
     name: ClassVar[str]

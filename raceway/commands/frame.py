@@ -46,6 +46,20 @@ plugin_files = click.option(
 )  # fmt: skip
 
 
+def _allow(_context: click.Context, _option: click.Parameter, files: tuple[Path, ...]) -> None:
+    from raceway.trust import allow
+
+    for file in files:
+        allow(file)
+
+
+#: A scene can name a program; that it is executed is said here.
+programs = click.option(
+    "--execute", multiple=True, type=click.Path(path_type=Path), metavar="FILE.geo", callback=_allow, expose_value=False,
+    help="Execute this file of [mesh], a program of Gmsh; repeat for more.",
+)  # fmt: skip
+
+
 def registry_with(files: tuple[Path, ...]) -> Registry:
     """The plug-ins of this process and those of one-off files.
 

@@ -10,7 +10,17 @@ from typing import Any
 import attrs
 import click
 
-from raceway.commands.frame import RESULTS, attempt, common, on_scene, out_folder, plugin_files, registry_with, show
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    on_scene,
+    out_folder,
+    plugin_files,
+    programs,
+    registry_with,
+    show,
+)
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError
@@ -21,6 +31,7 @@ from raceway.plugins.system_libraries import refuse_pictures
 @on_scene
 @out_folder
 @click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
+@programs
 @plugin_files
 @common
 def mesh(

@@ -73,6 +73,8 @@ def _prediction(scene: Scene) -> Prediction | None:
     from raceway.core.meshing.size import Prediction, refuse_memory
 
     found = mesher.predict(scene.bearing)
+    if found is None:  # it cannot tell before it reads or meshes
+        return None
     if isinstance(found, Mapping) and all(isinstance(cells, int) for cells in found.values()):
         found = Prediction.of({str(name): cells for name, cells in found.items()})
     if not isinstance(found, Prediction):

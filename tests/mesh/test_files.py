@@ -18,6 +18,7 @@ from raceway.plugins.meshers.file import File
 from raceway.plugins.meshers.gmsh import Gmsh
 from tests.command_line import EXAMPLES
 from tests.mesh.cubes import block
+from tests.mesh.solids import write
 from tests.mesh.squeezed import squeezed
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
@@ -170,22 +171,11 @@ def test_scenes_name_files_beside_them(given, tmp_path):
             scene_from_dict({"bearing": {"preset": "B7206C"}, "mesh": mesh})
 
 
-BOX = 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 10, 8, 6};\n'
-BALL = 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 4};\n'
-
-
 @pytest.fixture(scope="module")
 def solids(tmp_path_factory):
-    import gmsh
-
     folder = tmp_path_factory.mktemp("solids")
-    for name, text in (("box", BOX), ("ball", BALL)):
-        (folder / f"{name}.geo").write_text(text)
-        gmsh.initialize([], readConfigFiles=False, interruptible=False)
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.open(str(folder / f"{name}.geo"))
-        gmsh.write(str(folder / f"{name}.step"))
-        gmsh.finalize()
+    for name in ("box", "ball"):
+        write(folder / f"{name}.step", name)
     return folder
 
 

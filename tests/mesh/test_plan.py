@@ -19,6 +19,7 @@ from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.plugins.meshers.structured import Structured
 from tests.command_line import EXAMPLES, MINIMAL, invoke
+from tests.mesh import solids
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 
@@ -121,12 +122,6 @@ def test_balls_of_another_size_are_warned_of_once(tmp_path):
     assert len(found) == 1
 
 
-GEO = {
-    "box": 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 10, 8, 6};\n',
-    "ball": 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 4};\n',
-}
-
-
 @pytest.mark.parametrize(
     ("solid", "method", "size", "low", "high"),
     # Transfinite volumes are counted exactly; tetrahedra fill a solid as they please, fewer than three a cube of the size.
@@ -137,26 +132,13 @@ GEO = {
     ],
 )
 def test_gmsh_is_predicted(tmp_path, solid, method, size, low, high):
-    (tmp_path / "solid.geo").write_text(GEO[solid])
-    mesher = Gmsh(ball=str(tmp_path / "solid.geo"), method=method, element_size=size, scale=1e-3)
+    path = solids.write(tmp_path / f"{solid}.brep", solid)
+    mesher = Gmsh(ball=path, method=method, element_size=size, scale=1e-3)
     predicted, meshes = mesher.predict(BEARING), mesher.mesh(BEARING)
     cells = len(meshes["ball_00"].cells)
     assert low <= predicted.bodies["ball_00"] / cells <= high
     assert len(predicted.bodies) == BEARING.ball_count == len(meshes)
     assert predicted.memory_bytes > sum(mesh.memory_bytes for mesh in meshes.values())
-
-
-def test_what_a_script_of_gmsh_asks_for_itself_is_predicted_too():
-    mesher = Gmsh.examples()[0]
-    assert mesher.predict(BEARING).cells == len(mesher.mesh(BEARING)["inner_ring"].cells)
-
-
-def test_a_script_that_asks_for_too_much_is_refused(tmp_path):
-    text = 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\nTransfinite Curve {1:12} = 400;\n'
-    text += "Transfinite Surface {1:6};\nRecombine Surface {1:6};\nTransfinite Volume {1};\n"
-    (tmp_path / "much.geo").write_text(text)
-    with pytest.raises(MeshError, match=r"`mesh.method` = 'as_written': would give about 6.35e\+07 elements"):
-        Gmsh(inner_ring=str(tmp_path / "much.geo"), method="as_written").mesh(BEARING)
 
 
 @attrs.frozen

@@ -1,4 +1,8 @@
-"""Solids meshed by Gmsh: STEP and BREP files, or scripts of Gmsh, as hexahedra."""
+"""Solids meshed by Gmsh, as hexahedra: STEP and BREP files, which are data, or scripts of Gmsh, which are programs.
+
+Nothing is opened by ``gmsh.open`` but a script that the user allowed, in a child process: it executes the .geo language, and
+for a file of any format the options beside it (part.step.opt), which are the same language.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +20,7 @@ import numpy as np
 from raceway.errors import MeshError, extra
 from raceway.options import one_of, option, positive
 from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
+from raceway.plugins.meshers._geo import is_script, mesh_of_script
 from raceway.plugins.system_libraries import remedy
 
 if TYPE_CHECKING:
@@ -23,7 +28,10 @@ if TYPE_CHECKING:
     from raceway.core.meshing.size import Prediction
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
-_SUFFIXES = (".step", ".stp", ".brep", ".geo")
+#: Endings of files and OpenCASCADE's readers for them; a .geo is executed instead.
+_READERS = {".step": "step", ".stp": "step", ".brep": "brep"}
+_MILLIMETRE = 1e-3
+_SUFFIXES = (*_READERS, ".geo")
 #: Hexahedra of tetrahedra of twice the element's size, split in four, for each cube of that size (2.4 to 3 measured).
 _SPLIT = 3.0
 #: What Gmsh and the taking over of its mesh need beside the meshes: as such [bytes], and a cell (1450 to 1700 measured).
@@ -33,7 +41,7 @@ Found = TypeVar("Found")
 
 @attrs.frozen
 class Gmsh:
-    """Hexahedra from solids (.step, .stp, .brep, .geo) by the program Gmsh, one file for each body."""
+    """Hexahedra from solids (.step, .stp, .brep) by the program Gmsh, one file for each body; a .geo is a program, see docs/mesh.md."""
 
     name: ClassVar[str] = "gmsh"
 
@@ -54,8 +62,8 @@ class Gmsh:
     @classmethod
     def examples(cls) -> list[Gmsh]:
         """A coarse ring of the package's data."""
-        path = str(files("raceway").joinpath("data/meshes/ring.geo"))
-        return [cls(inner_ring=path, scale=1e-3, method="as_written")]
+        path = str(files("raceway").joinpath("data/meshes/ring.brep"))
+        return [cls(inner_ring=path, scale=1e-3, element_size=2e-3)]
 
     def mesh(self, bearing: Any) -> dict[str, HexMesh]:
         """Meshes of the bodies that have files, renumbered; physical surfaces, or else all surfaces, become sets.
@@ -63,13 +71,27 @@ class Gmsh:
         Raises
         ------
         MeshError
-            Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, elements are too large or too small.
+            Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, a .geo was not allowed,
+            elements are too large or too small.
         """
-        self.predict(bearing)  # refuses what cannot work
-        return bodies(self, bearing, self._body)
+        from raceway.core.mesh_quality import refuse_bad_cells
 
-    def predict(self, bearing: Any) -> Prediction:
+        self.predict(bearing)  # refuses what cannot work
+
+        def body(name: str, path: str) -> HexMesh:
+            copies = _copies(name, bearing)
+            mesh = mesh_of_script(self, name, path, copies) if is_script(path) else self._opened(path, self._meshed)
+            refuse_bad_cells(mesh, f"{name} ({Path(path).name})")
+            return with_node_sets(mesh.renumbered())
+
+        return bodies(self, bearing, body)
+
+    def predict(self, bearing: Any) -> Prediction | None:
         """Size of the meshes from the solids' volumes and, but for 'subdivision', the divisions of their edges.
+
+        Returns
+        -------
+        Prediction or None : of a .geo nothing is known before it is executed, which no prediction does
 
         Raises
         ------
@@ -82,40 +104,47 @@ class Gmsh:
         three directions' occurs four times.  Solids of Gmsh's built-in geometry kernel tell no volume: their box bounds it.
         """
         from raceway.core.meshing.place import ball_names
-        from raceway.core.meshing.size import Prediction, refuse_memory
 
         found: dict[str, float] = {}
+        prediction: Prediction | None = None
         for body in BODIES:
             path = getattr(self, body)
             if path is None:
                 continue
+            _refuse_file(path)
+            if is_script(path):
+                continue
             cells = self._opened(path, self._cells)
             found.update(dict.fromkeys(ball_names(bearing) if body == "ball" else [body], cells))
-            # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
-            prediction = Prediction.of(found, _BESIDE_BYTES + _BYTES_BESIDE * max(found.values()))
-            if self.method == "as_written":
-                refuse_memory(prediction, "mesh.method", self.method, f"'{Path(path).name}' has to ask for fewer elements")
-            refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
+            prediction = self._refuse_large(found, path)
+        scripts = [path for path in (getattr(self, body) for body in BODIES) if path is not None and is_script(path)]
+        return None if scripts else prediction
+
+    def execute(self, path: str, copies: int) -> HexMesh:
+        """Execute a .geo in this process and mesh what it makes; for the child of ``_geo`` alone.
+
+        Parameters
+        ----------
+        copies : of the body in the bearing, whose size is refused together
+        """
+        cells = self._opened(path, self._cells)
+        self._refuse_large({str(number): cells for number in range(copies)}, path)
+        return self._opened(path, self._meshed)
+
+    def _refuse_large(self, found: dict[str, float], path: str) -> Prediction:
+        from raceway.core.meshing.size import Prediction, refuse_memory
+
+        # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
+        prediction = Prediction.of(found, _BESIDE_BYTES + _BYTES_BESIDE * max(found.values()))
+        if self.method == "as_written":
+            refuse_memory(prediction, "mesh.method", self.method, f"'{Path(path).name}' has to ask for fewer elements")
+        refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
         return prediction
-
-    def _body(self, body: str, path: str) -> HexMesh:
-        from raceway.core.mesh_quality import refuse_bad_cells
-
-        mesh = self._opened(path, self._meshed)
-        refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
-        return with_node_sets(mesh.renumbered())
 
     def _opened(self, path: str, work: Callable[[Any, str, float], Found]) -> Found:
         """What ``work(gmsh, path, scale)`` finds with the file open in Gmsh; all its failures are ``MeshError``."""
-        suffix = Path(path).suffix.lower()
-        if suffix not in _SUFFIXES:
-            raise MeshError(f"'{path}': mesh.kind = 'gmsh' reads {', '.join(_SUFFIXES)}, not '{suffix}'")
-        if not Path(path).is_file():
-            raise MeshError(f"'{path}' does not exist")
-        if suffix in (".step", ".stp"):
-            with Path(path).open("rb") as file:
-                if b"ISO-10303-21" not in file.read(4096):
-                    raise MeshError(f"'{path}' cannot be read: it is not a STEP file (no ISO-10303-21 at its beginning)")
+        _refuse_file(path)
+        reader = _READERS.get(Path(path).suffix.lower())
         try:
             import gmsh
         except ImportError as why:
@@ -125,12 +154,16 @@ class Gmsh:
         gmsh.initialize([], readConfigFiles=False, interruptible=False)
         try:
             gmsh.option.setNumber("General.Terminal", 0)
-            gmsh.option.setString("Geometry.OCCTargetUnit", "M")
+            gmsh.option.setString("Geometry.OCCTargetUnit", "MM")  # OpenCASCADE's own, which outlives this session
             with _silent_reader():
-                gmsh.open(path)
+                if reader is None:
+                    gmsh.open(path)
+                else:
+                    gmsh.model.occ.importShapes(path, format=reader)
+                    gmsh.model.occ.synchronize()
             if not gmsh.model.getEntities(3):
                 raise MeshError(f"'{path}' holds no solid")
-            return work(gmsh, path, 1.0 if suffix in (".step", ".stp") else self.scale)
+            return work(gmsh, path, _MILLIMETRE if reader == "step" else self.scale)
         except MeshError:
             raise
         except Exception as why:  # gmsh raises plain exceptions for all it fails at
@@ -202,6 +235,23 @@ class Gmsh:
                 f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {told} came out; {remedy}"
             )
         return np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
+
+
+def _copies(body: str, bearing: Any) -> int:
+    return int(bearing.ball_count) if body == "ball" else 1
+
+
+def _refuse_file(path: str) -> None:
+    """``MeshError`` for a file of another kind, a missing one, or one that is no STEP file by its beginning."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in _SUFFIXES:
+        raise MeshError(f"'{path}': mesh.kind = 'gmsh' reads {', '.join(_SUFFIXES)}, not '{suffix}'")
+    if not Path(path).is_file():
+        raise MeshError(f"'{path}' does not exist")
+    if _READERS.get(suffix) == "step":
+        with Path(path).open("rb") as file:
+            if b"ISO-10303-21" not in file.read(4096):
+                raise MeshError(f"'{path}' cannot be read: it is not a STEP file (no ISO-10303-21 at its beginning)")
 
 
 @contextmanager
