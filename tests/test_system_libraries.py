@@ -41,9 +41,9 @@ def test_pictures_without_libraries_are_refused_before_anything_is_computed(word
 
 def test_the_mesher_gmsh_without_libraries(bare, tmp_path):
     scene = tmp_path / "scene.toml"
-    ring = ROOT / "raceway/data/meshes/ring.geo"
+    ring = ROOT / "raceway/data/meshes/ring.brep"
     scene.write_text(
-        f'[bearing]\npreset = "B7206C"\n[mesh]\nkind = "gmsh"\ninner_ring = "{ring}"\nscale = 1e-3\nmethod = "as_written"\n'
+        f'[bearing]\npreset = "B7206C"\n[mesh]\nkind = "gmsh"\ninner_ring = "{ring}"\nscale = 1e-3\nelement_size = 2e-3\n'
     )
     told(raceway("mesh", str(scene), "--out", str(tmp_path / "out"), **bare), "gmsh")
 
