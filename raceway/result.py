@@ -10,6 +10,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.bodies.mounting import held_table, preload_table
 from raceway.core.identification import Identification
 from raceway.core.lines import Line
 from raceway.core.system import COORDINATES
@@ -152,6 +153,8 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),
         "balls": [{key: float(column[k]) for key, column in columns.items()} for k in range(z)],
+        "preload": preload_table(model, equilibrium),
+        "held_axial": held_table(model, equilibrium),
         "iterations": equilibrium.iterations,
     }
 

@@ -66,7 +66,17 @@ class Bearing:
         help="'single' row, or a pair of rows: back to back 'DB', face to face 'DF', in tandem 'DT'",
         rule=one_of("single", "DB", "DF", "DT"),
     )
-    preload: float = option(0.0, unit="N", help="axial preload of a DB or DF pair, mounted", rule=at_least(0.0))
+    preload: float = option(
+        0.0,
+        unit="N",
+        help="axial preload of a DB or DF pair, mounted: at standstill, before anything grows",
+        rule=at_least(0.0),
+    )
+    preload_kind: str = option(
+        "rigid",
+        help="'rigid': the rows' offset stays as mounted; 'spring': the second row's force stays, its outer ring slides",
+        rule=one_of("rigid", "spring"),
+    )
     row_distance: float | None = option(
         None, unit="m", help="axial distance of a pair's rows; default: the width of one bearing", rule=optional(positive())
     )
@@ -160,7 +170,7 @@ class Supports:
     )
     axial: str = option(
         "force",
-        help="'force': load.axial acts; 'displacement': what load.axial alone gives is held",
+        help="'force': load.axial acts; 'displacement': what load.axial alone gives, mounted, is held",
         rule=one_of("force", "displacement"),
     )
     outer_seat: float | str = option(

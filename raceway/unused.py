@@ -62,4 +62,5 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
         "bodies.hourglass",
     )
     told(scene.bearing.arrangement == "single", "the bearing has one row", "bearing.row_distance")
+    told(scene.bearing.preload == 0.0, "bearing.preload is 0", "bearing.preload_kind")
     return found

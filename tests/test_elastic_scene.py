@@ -156,6 +156,16 @@ def test_a_held_axial_displacement_is_that_of_the_axial_load_alone(static):
     assert abs(model["reaction_n"]["x"] + 2500.0) > 1.0
 
 
+@pytest.mark.parametrize("kinematics", [{"spin_speed_rpm": 40000.0}, {"radial_expansion": 1e-6}])
+def test_a_held_axial_displacement_is_that_of_the_mounted_bearing(static, kinematics):
+    """What presses the turning or grown bearing comes after it: the same place, another force."""
+    alone = static[0].as_dict()["equilibrium"]
+    found = run(scene(kinematics=kinematics, supports={"axial": "displacement"})).as_dict()["equilibrium"]
+    assert found["displacement"]["x"] == pytest.approx(alone["displacement"]["x"], rel=1e-6)
+    assert found["held_axial"]["mounted_n"] == 2500.0
+    assert found["held_axial"]["running_n"] > 2525.0
+
+
 def test_a_larger_inner_raceway_moves_less_for_the_same_load(static):
     before = static[0].as_dict()
     found = run(scene(kinematics={"radial_expansion": 1e-6})).as_dict()

@@ -10,6 +10,7 @@ import numpy as np
 from raceway.bodies import rigid
 from raceway.bodies.basis import Basis, Built, seat_of
 from raceway.bodies.inertia import inertia_table
+from raceway.bodies.mounting import place_ring
 from raceway.core.bodies import ring
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
 from raceway.core.condensed.structural import SURFACE, reach, ring_compliance, ring_section
@@ -47,7 +48,7 @@ def build(scene: Scene, plan: Plan) -> Built:
     angles = _angles(scene, stiff) if plan.coupled else None
     system = elastic_system(stiff.system, bodies, angles)
     system.table[:, ring.SHIFT] = 0.0
-    guess = rigid.place_ring(scene, stiff.basis, system)
+    guess = place_ring(scene, stiff.basis, system)
     return Built(stiff.basis, system, guess, Condensed(stiff, bodies, angles))
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from raceway.bodies.basis import Basis, Built, made_by, make_basis
 from raceway.bodies.elastic_points import ElasticPoints
 from raceway.bodies.elastic_resultants import ElasticResultants
-from raceway.bodies.rigid import place_ring, probe, rigid_system
+from raceway.bodies.mounting import place_ring
+from raceway.bodies.rigid import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.contracts import ContactPairs
 from raceway.core.bodies.ring import CENTRIFUGAL, FRICTION

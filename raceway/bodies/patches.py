@@ -13,8 +13,9 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, Built, made_by, make_basis
+from raceway.bodies.mounting import place_ring
 from raceway.bodies.patch_report import PatchBodies
-from raceway.bodies.rigid import place_ring, probe, rigid_system
+from raceway.bodies.rigid import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.contracts import ContactPairs
 from raceway.core.bodies.ring import CENTRIFUGAL

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, Built, excitation, first_guess, law_params, linear_parts, make_basis
+from raceway.bodies.basis import Basis, Built, excitation, law_params, linear_parts, make_basis
+from raceway.bodies.mounting import place_ring
 from raceway.core.bodies import ring
 from raceway.core.geometry import BallBearing
 from raceway.core.hertz import Ellipse
@@ -29,7 +29,7 @@ def build(scene: Scene, plan: Plan) -> Built:
 
 
 def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
-    """Arrays and kernels; the preload of a pair is not built in yet (``place_ring``)."""
+    """Arrays and kernels; the preload of a pair is not built in yet (``raceway.bodies.mounting``)."""
     kernel, base = _bodies_kernels(plan)
     return System(
         kernel=kernel,
@@ -57,36 +57,6 @@ def probe(scene: Scene, basis: Basis, system: System) -> None:
     probe_law(scene.contact.law, system.law, system.law_params, system.law_state, depths=depths)
     if scene.excitation is not None:
         probe_excitation(scene.excitation, system.force, system.force_params)
-
-
-def place_ring(scene: Scene, basis: Basis, system: System) -> np.ndarray:
-    """(5,) first guess of the equilibrium; builds the preload of a pair into the system, finds a held axial displacement."""
-    guess = first_guess(scene, basis)
-    if scene.bearing.preload > 0.0:
-        system.table[:, ring.SHIFT] = _preload_shift(scene, system, basis.geometry)
-        guess[0] = 0.0
-    if scene.supports.axial == "displacement":
-        guess = _alone(system, scene.load.axial, guess)
-    return guess
-
-
-def _alone(system: System, axial: float, guess: np.ndarray) -> np.ndarray:
-    """(5,) equilibrium under an axial load alone, the other coordinates held."""
-    start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
-    load = np.array([axial, 0.0, 0.0, 0.0, 0.0])
-    return attrs.evolve(system, load=load, free=np.array([1.0, 0.0, 0.0, 0.0, 0.0])).settle(start)[0]
-
-
-def _preload_shift(scene: Scene, system: System, geometry: BallBearing) -> float:
-    """Axial approach [m] at which one row carries the preload: built into both rows of a pair."""
-    z = geometry.ball_count
-    table = system.table[:z].copy()
-    table[:, ring.SIDE], table[:, ring.LEVER] = 1.0, 0.0
-    chosen = np.r_[0:z, system.ball_count : system.ball_count + z]
-    params = np.ascontiguousarray(system.law_params[chosen])
-    row = attrs.evolve(system, table=table, law_params=params, law_state=system.law_state[chosen].copy())
-    guess = np.array([0.05 * geometry.centre_distance, 0.0, 0.0, 0.0, 0.0])
-    return float(_alone(row, scene.bearing.preload, guess)[0])
 
 
 def _bodies_kernels(plan: Plan) -> tuple[Any, Any]:

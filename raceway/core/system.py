@@ -11,11 +11,13 @@ import numpy as np
 from raceway.core.bodies.columns import are_condensed, work_rows
 from raceway.core.bodies.ring import (
     CAGE,
+    CENTRIFUGAL,
     DIAMETER,
     FRICTION,
     GYROSCOPIC,
     OFFSET_INNER,
     OFFSET_OUTER,
+    REST_RADIAL,
     SIDE,
     TILT_ARM,
     place,
@@ -211,6 +213,14 @@ class System:
         scalars = self.scalars.copy()
         scalars[list(entries)] = 0.0
         return attrs.evolve(self, scalars=scalars)
+
+    def as_mounted(self, growth: float) -> System:
+        """A copy at standstill whose inner raceway has not grown by ``growth`` [m]: the state in which bearings are mounted."""
+        scalars, table = self.scalars.copy(), self.table.copy()
+        scalars[[GYROSCOPIC, CAGE]] = 0.0
+        scalars[REST_RADIAL] -= growth
+        table[:, CENTRIFUGAL] = 0.0
+        return attrs.evolve(self, scalars=scalars, table=table)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE

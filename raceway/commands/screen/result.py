@@ -70,6 +70,7 @@ def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
     if tilt != "locked":
         tilts = ", ".join(_small(moved[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
+    rows += _mounted(found)
     for word, pick in (("most", max), ("least", min)):
         index, ball = pick(balls, key=lambda item: item[1]["load_inner_n"])
         angle = ball["contact_angle_inner_deg"]
@@ -80,6 +81,20 @@ def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
     rows.append(("tangent kyy", number(1e-6 * k[1][1], "N/µm"), "radial, tilt and all other motions held"))
     if tilt != "locked":
         rows.append((f"kyy, {tilt_words(tilt)}", number(1e-6 * _condensed(k, tilt), "N/µm"), "tilts follow, x and z held"))
+    return rows
+
+
+def _mounted(found: Mapping[str, Any]) -> list[Row]:
+    """What was built in at standstill, and what has become of it."""
+    rows, preload, held = [], found["preload"], found["held_axial"]
+    if preload is not None:
+        forces = ", ".join(f"{force:.5g}" for force in preload["rows_n"])
+        what = {"rigid": "the offset of the rows", "spring": "the second row's force"}[preload["kind"]]
+        how = f"running, without loads; mounted {preload['mounted_n']:g} N, {what} stays; rows under the loads {forces} N"
+        rows.append(("preload", number(preload["running_n"], "N"), how))
+    if held is not None:
+        how = f"what the held displacement takes now; mounted {held['mounted_n']:g} N"
+        rows.append(("axial force", number(held["running_n"], "N"), how))
     return rows
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body, Frame
 from raceway.core.elastic.cage import Cage, cage_rows
+from raceway.core.elastic.contacts.gap import CIRCLE
 from raceway.core.elastic.setup import Setup
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.elastic.touching import nodal_contact, resultant_contact
@@ -49,11 +51,12 @@ class ElasticBearing:
         assembly = Assembly(bodies, self._cage(bare)) if setup.caged else bare
         self._mass = [assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]
         contact = (nodal_contact if setup.angles is None else resultant_contact)(setup, self._meshes, assembly)
-        load = np.zeros(3 * assembly.nodes)
+        outward = np.zeros(3 * assembly.nodes)
         for k in range(self.ball_count):
             share = self._mass[k] / self._mass[k].sum()
-            load[assembly.part(k + 2)] = (setup.ball_force * share[:, None] * setup.radial(k)).ravel()
-        load = assembly.reduced(load)
+            outward[assembly.part(k + 2)] = (setup.ball_force * share[:, None] * setup.radial(k)).ravel()
+        self._centrifugal = assembly.reduced(outward)
+        load = self._centrifugal.copy()
         load[:5] += setup.load
         self.system = ElasticSystem(assembly, contact, setup.modulus, load)
 
@@ -79,6 +82,20 @@ class ElasticBearing:
                 moved[0] * np.array([1.0, 0.0, 0.0]) + moved[1] * self.setup.radial(k), len(self._mass[k])
             )
         return np.concatenate([q, u[a.free]])
+
+    @contextmanager
+    def mounted(self) -> Iterator[None]:
+        """Inside, the bearing stands still and has not grown: no centrifugal forces, the inner groove as it is meshed."""
+        system, inner = self.system, slice(0, self.ball_count)
+        assert system.contact is not None
+        surfaces = system.contact.surfaces
+        system.load -= self._centrifugal
+        surfaces[inner, CIRCLE] -= self.setup.growth
+        try:
+            yield
+        finally:
+            surfaces[inner, CIRCLE] += self.setup.growth
+            system.load += self._centrifugal
 
     def look(self, system: ElasticSystem, y: np.ndarray, v: np.ndarray) -> Seen:
         """Ring displacement and velocity (5,), smallest gaps and normal forces (2 Z,), ball places (Z, 2)."""

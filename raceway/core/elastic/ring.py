@@ -28,7 +28,7 @@ class ElasticRing(System):
     Attributes
     ----------
     bodies : ElasticBearing
-    held_by : axial load [N] whose displacement, where it acts alone, is held; None: the axial motion is free
+    held_by : axial load [N] whose displacement, where it acts alone on the mounted bearing, is held; None: the axial motion is free
     """
 
     bodies: ElasticBearing = attrs.field(kw_only=True)
@@ -181,10 +181,11 @@ class ElasticRing(System):
         return self.bodies.guess(place, places)
 
     def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
-        """(size,) equilibrium under an axial load [N] alone, the ring's other motions held."""
+        """(size,) equilibrium as mounted under an axial load [N] alone, the ring's other motions held."""
         only, load = np.arange(5) == 0, np.array([axial, 0.0, 0.0, 0.0, 0.0])
-        rigid = attrs.evolve(self.companion, free=only.astype(float), load=load)
-        with self._letting_free(only):
+        rigid = self.companion.as_mounted(self.bodies.setup.growth)
+        rigid = attrs.evolve(rigid, free=only.astype(float), load=load)
+        with self.bodies.mounted(), self._letting_free(only):
             found, _ = self.settled(self._undeformed(rigid, q * only), load)
         self.bodies.system.solver.forget()  # it knows how the bodies follow the axial motion
         return found

@@ -10,6 +10,8 @@ from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 #: Numbers that describe a surface: kind, then seven more.
 NUMBERS = 8
+#: Of a groove: the radius of its centre circle [m].
+CIRCLE = 4
 
 
 def plane(point: np.ndarray, normal: np.ndarray) -> np.ndarray:

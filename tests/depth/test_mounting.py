@@ -1,0 +1,146 @@
+"""Preload and held displacements are set at standstill without growth; the references are solved here, with scipy.
+
+A DB pair under a turning force with locked tilts stays in its middle plane by symmetry: each row carries half the force at the
+axial displacement that was built in.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.bodies import mounting
+from raceway.bodies.mounting import preload_table
+from raceway.core.bodies.ring import SHIFT
+from raceway.errors import ConvergenceError
+from raceway.run import run
+from raceway.scene_file import scene_from_dict
+from raceway.statics import settle
+from raceway.unused import unused
+from tests.conftest import b7206c
+from tests.reference.mounted import FORCE, approach, axial, row, secant
+
+#: Of K, kxx and kyy: 0.1 % is asked for; what differs is the time step of newmark and the 1x line of the orbit.
+TOLERANCE = 1e-3
+
+
+def pair(kind="rigid", preload=300.0, **more):
+    bearing = {"arrangement": "DB", "preload": preload, "preload_kind": kind}
+    return b7206c(**{"bearing": bearing, "load": {"axial": 0.0}, **more})
+
+
+def turning(rpm):
+    return {"kind": "bidirectional", "speed_rpm": rpm, "amplitude": "constant", "force": FORCE}
+
+
+@pytest.mark.parametrize(
+    ("rpm", "told"), [(6000.0, None), (12000.0, 298.8), (15000.0, 272.1), (20000.0, 235.3), (30000.0, 199.6)]
+)
+def test_offset_of_a_pair_stays_at_every_speed(rpm, told):
+    """Also against an independent program's K [N/um], to its printed digits (0.1 %)."""
+    result = run(scene_from_dict(pair(excitation=turning(rpm), integrator={"turns": 4})))
+    found, running = result.identification, row(rpm)
+    x = approach(row(), 300.0)
+    expected = secant(running, None, 2, found.mass_used, found.speed, x)
+    assert found.equivalent_stiffness == pytest.approx(expected, rel=TOLERANCE)
+    assert told is None or 1e-6 * found.equivalent_stiffness == pytest.approx(told, rel=TOLERANCE)
+    preload = result.as_dict()["equilibrium"]["preload"]
+    assert preload["mounted_n"] == 300.0
+    assert preload["running_n"] == pytest.approx(axial(running, x), rel=TOLERANCE)
+
+
+@pytest.mark.parametrize(("growth", "told"), [(5e-6, (103.7, 494.2, 930.0)), (2e-6, None), (-2e-6, None)])
+def test_growth_loads_a_pair(built, growth, told):
+    """kxx, kyy [N/um] and the preload [N]: a larger inner raceway stiffens a pair whose offset stays."""
+    model = built(**pair(kinematics={"radial_expansion": growth}))
+    now = settle(model)
+    grown, x = row(growth=growth), approach(row(), 300.0)
+    tangent = 2.0 * np.diag(grown(np.array([x, 0.0, 0.0, 0.0, 0.0]))[1])
+    assert now.stiffness[0, 0] == pytest.approx(tangent[0], rel=TOLERANCE)
+    assert now.stiffness[1, 1] == pytest.approx(tangent[1], rel=TOLERANCE)
+    assert (now.stiffness[1, 1] > settle(built(**pair())).stiffness[1, 1]) == (growth > 0.0)
+    if told is not None:
+        found = run(scene_from_dict(pair(kinematics={"radial_expansion": growth}))).as_dict()["equilibrium"]
+        values = 1e-6 * found["stiffness"][0][0], 1e-6 * found["stiffness"][1][1], found["preload"]["running_n"]
+        assert values == pytest.approx(told, rel=TOLERANCE)
+
+
+@pytest.mark.parametrize(("rpm", "growth"), [(30000.0, 0.0), (15000.0, 0.0), (0.0, 2e-6), (15000.0, 2e-6)])
+def test_a_held_displacement_is_that_of_the_mounted_bearing(rpm, growth):
+    tables = b7206c(
+        load={"axial": 400.0},
+        supports={"axial": "displacement"},
+        kinematics={"spin_speed_rpm": rpm, "radial_expansion": growth},
+    )
+    found = run(scene_from_dict(tables)).as_dict()["equilibrium"]
+    running, x = row(rpm, growth), approach(row(), 400.0)
+    force, tangent, _ = running(np.array([x, 0.0, 0.0, 0.0, 0.0]))
+    assert found["displacement"]["x"] == pytest.approx(x, rel=TOLERANCE)
+    assert found["stiffness"][1][1] == pytest.approx(tangent[1, 1], rel=TOLERANCE)
+    assert found["held_axial"]["mounted_n"] == 400.0
+    assert found["held_axial"]["running_n"] == pytest.approx(force[0], rel=TOLERANCE)
+    if (rpm, growth) == (30000.0, 0.0):  # an independent program's
+        assert (1e6 * x, 1e-6 * tangent[1, 1]) == pytest.approx((18.0, 114.5), rel=3e-3)
+
+
+@pytest.mark.parametrize("load", [0.0, 150.0, -250.0])
+def test_a_spring_keeps_its_force(load):
+    """The second row carries the spring's force, the first one the load with it, each as a single row would."""
+    kinematics = {"spin_speed_rpm": 20000.0, "radial_expansion": 2e-6}
+    result = run(scene_from_dict(pair("spring", kinematics=kinematics, load={"axial": load})))
+    found = result.as_dict()["equilibrium"]
+    assert found["preload"]["rows_n"] == pytest.approx([300.0 + load, 300.0], rel=1e-8)
+    assert found["preload"]["running_n"] == found["preload"]["mounted_n"] == 300.0
+    running, tangent = row(20000.0, 2e-6), np.zeros(5)
+    first = approach(running, 300.0 + load)
+    for x in (first, approach(running, 300.0)):
+        tangent = tangent + np.diag(running(np.array([x, 0.0, 0.0, 0.0, 0.0]))[1])
+    assert found["displacement"]["x"] == pytest.approx(first - approach(row(), 300.0), rel=TOLERANCE)
+    assert found["stiffness"][1][1] == pytest.approx(tangent[1], rel=TOLERANCE)
+
+
+def test_a_spring_that_the_load_overcomes_is_told():
+    """On deep grooves nothing stops a ring that leaves its first row."""
+    tables = pair("spring", load={"axial": -350.0}, kinematics={"spin_speed_rpm": 20000.0})
+    warnings = run(scene_from_dict(tables)).warnings
+    assert any("unseats" in one for one in warnings)
+
+
+def test_a_search_that_ends_without_the_springs_force_is_refused(monkeypatch):
+    monkeypatch.setattr(mounting, "_LIMIT", 1)
+    with pytest.raises(ConvergenceError, match=r"no place of the second row.*spring of `bearing.preload` = 300 N"):
+        run(scene_from_dict(pair("spring", kinematics={"spin_speed_rpm": 20000.0})))
+
+
+GROWN = {"radial_expansion": 3e-6}
+TURNING = {"spin_speed_rpm": 20000.0}
+#: Spinning and grown balls and rings: everything that the mounting state leaves out.
+ALL = {**TURNING, **GROWN, "gyroscopic": "outer_race", "ring_growth": True}
+
+
+@pytest.mark.parametrize(
+    ("bodies", "kinematics"),
+    [(bodies, one) for bodies in ("rigid", "condensed") for one in (TURNING, GROWN, ALL)] + [("patches", ALL)],
+)
+def test_every_kind_of_bodies_is_mounted_at_standstill(built, bodies, kinematics):
+    """The rows' offset and the held displacement are those of the scene that neither turns nor grows."""
+    tables = {"bodies": {"kind": "rigid" if bodies == "rigid" else "condensed"}}
+    if bodies == "patches":
+        tables["contact"] = {"kind": "unilateral", "discretisation": "nodal"}
+        tables["mesh"] = {"kind": "structured", "nodes_per_semi_axis": 2, "ball_load": 100.0}
+    # Points follow the running contacts: other places of the same points, which the approach feels by less than 1e-3.
+    same = 1e-3 if bodies == "patches" else 1e-7
+    still, running = (built(**pair(**tables, kinematics=one)) for one in ({}, kinematics))
+    assert running.system.table[:, SHIFT] == pytest.approx(still.system.table[:, SHIFT], rel=same)
+    now = settle(still)
+    assert preload_table(still, now)["rows_n"] == pytest.approx([300.0, 300.0], rel=1e-7)
+    held = {"supports": {"axial": "displacement"}, "load": {"axial": 400.0}, **tables}
+    still, running = (built(**held, kinematics=one) for one in ({}, kinematics))
+    assert running.guess[0] == pytest.approx(still.guess[0], rel=same)
+
+
+def test_the_kind_of_no_preload_is_told_to_do_nothing():
+    scene = scene_from_dict(b7206c(bearing={"preload_kind": "spring"}))
+    assert any("preload_kind" in one for one in unused(scene))
+    found = run(scene).as_dict()["equilibrium"]
+    assert found["preload"] is None and found["held_axial"] is None
