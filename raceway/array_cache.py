@@ -1,7 +1,8 @@
 """Arrays that are expensive to make, kept on disk under a key of everything that they depend on.
 
 One file an entry: a line of JSON (what it is, arrays, digest) and the arrays' bytes.  A file is written beside its place
-and moved there, so that two processes may make the same entry at once; a file that does not match its digest is made anew.
+and moved there, so that two processes may make the same entry at once; a file that does not match its digest, of which its
+key is a part, is made anew.  A folder that others may write is not used.
 What was used last stays when the folder grows above its limit.
 """
 
@@ -22,14 +23,15 @@ from uuid import uuid4
 
 import attrs
 
-from raceway.cache_folder import cache_root
+from raceway.cache_folder import cache_root, refusal
+from raceway.cache_folder import make as make_folder
 
 if TYPE_CHECKING:
     import numpy as np
 
 #: Bytes that all entries may take together; the least recently used ones go first.
 LIMIT = 2**30
-_SUFFIX, _FORMAT = ".arrays", 1
+_SUFFIX, _FORMAT = ".arrays", 2
 #: Age [s] at which a file that is being written has no writer any more.
 _ABANDONED = 3600.0
 
@@ -58,8 +60,11 @@ def kept(
 
     Notes
     -----
-    A folder that cannot be written costs one warning a process and nothing else.
+    A folder that cannot be written, or must not be used, costs one warning a process and nothing else.
     """
+    if fault := refusal(folder()):
+        _warn_refused(fault)
+        return _contiguous(make())
     path = folder() / f"{_key(kind, inputs, tuple(sources))}{_SUFFIX}"
     found = _read(path)
     if found is not None:
@@ -178,7 +183,7 @@ def _read(path: Path) -> dict[str, np.ndarray] | None:
         return None
     try:
         head = json.loads(line)
-        if head["digest"] != _digest(body):
+        if head["digest"] != _digest(path.stem, head["arrays"], body):
             raise ValueError("the digest differs")
         out, at = {}, 0
         for name, (kind, shape) in head["arrays"].items():
@@ -195,22 +200,20 @@ def _read(path: Path) -> dict[str, np.ndarray] | None:
     return out
 
 
-def _digest(body: bytes) -> str:
-    return hashlib.blake2b(body, digest_size=16).hexdigest()
+def _digest(key: str, arrays: dict[str, Any], body: bytes) -> str:
+    digest = hashlib.blake2b(f"{key} {json.dumps(arrays)}".encode(), digest_size=16)
+    digest.update(body)
+    return digest.hexdigest()
 
 
 def _write(path: Path, kind: str, what: str, arrays: Mapping[str, np.ndarray], seconds: float) -> None:
     body = b"".join(array.tobytes() for array in arrays.values())
-    head = {
-        "kind": kind,
-        "what": what,
-        "seconds": round(seconds, 3),
-        "digest": _digest(body),
-        "arrays": {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()},
-    }
+    words = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
+    digest = _digest(path.stem, words, body)
+    head = {"kind": kind, "what": what, "seconds": round(seconds, 3), "digest": digest, "arrays": words}
     scratch = path.with_name(f".{path.stem}.{os.getpid()}.{uuid4().hex[:8]}")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         with scratch.open("wb") as file:
             file.write(json.dumps(head).encode() + b"\n")
             file.write(body)
@@ -250,4 +253,11 @@ def _warn_unwritable(place: str, why: str) -> None:
         "RACEWAY_CACHE_DIR to a folder that can be written.",
         RuntimeWarning,
         stacklevel=4,
+    )
+
+
+@cache
+def _warn_refused(fault: str) -> None:
+    warnings.warn(
+        f"compliances are not kept: {fault}. Every run makes them anew, which costs seconds.", RuntimeWarning, stacklevel=4
     )

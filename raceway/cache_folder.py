@@ -1,10 +1,14 @@
-"""Where compiled kernels are kept, without importing the compiler: for ``raceway.core.jit`` and ``raceway cache``."""
+"""Where compiled kernels are kept, without importing the compiler: for ``raceway.core.jit`` and ``raceway cache``.
+
+Compiled kernels are pickles, and reading one can execute anything: a folder that someone else may write is refused.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import os
 import shutil
+import stat
 import sys
 from functools import cache
 from importlib.metadata import version
@@ -20,6 +24,47 @@ def cache_root() -> Path:
     from platformdirs import user_cache_path
 
     return user_cache_path("raceway", appauthor=False)
+
+
+def refusal(folder: Path) -> str | None:
+    """Why a folder of the cache must not be read or written; None where it may, or does not exist yet.
+
+    Notes
+    -----
+    It and what it lies in, up to the root of the cache, belong to the user, or to root, who can replace the program as well;
+    nobody else may write there.  Below a folder that is closed to others, their rights do not matter.
+    """
+    root = cache_root()
+    inside = [place for place in (*reversed(folder.parents), folder) if place == root or root in place.parents]
+    for place in inside:
+        try:
+            found = place.stat()
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except OSError as why:
+            return f"`{place}` cannot be looked at ({why.strerror or why})"
+        if found.st_uid not in (os.geteuid(), 0):
+            return f"`{place}` belongs to another user (number {found.st_uid})"
+        if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+            return f"others may write in `{place}`: close it by `chmod -R go-w {place}`, after `raceway cache --clear`"
+        if not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
+            return None
+    return None
+
+
+def make(folder: Path) -> None:
+    """Make a folder of the cache, closed to others where it is new.
+
+    Raises
+    ------
+    OSError
+        It cannot be made.
+    """
+    root = cache_root()
+    root.parent.mkdir(parents=True, exist_ok=True)
+    for place in (*reversed(folder.parents), folder):
+        if place == root or root in place.parents:
+            place.mkdir(mode=0o700, exist_ok=True)
 
 
 @cache

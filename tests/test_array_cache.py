@@ -152,6 +152,29 @@ def test_two_processes_may_make_the_same_entries_at_once(folder):
     assert len(names) == 20 and all(name.endswith(".arrays") for name in names)
 
 
+def test_an_entry_under_another_name_is_made_anew(folder):
+    """Its digest is right, its key is not: these are another material's arrays."""
+    get(Maker())
+    get(Maker(), {**INPUTS, "ratio": 0.30})
+    first, second = sorted(folder.iterdir())
+    first.write_bytes(second.read_bytes())
+    make = Maker()
+    with pytest.warns(RuntimeWarning, match="is damaged"):
+        get(make), get(make, {**INPUTS, "ratio": 0.30})
+    assert make.calls == 1
+
+
+def test_a_folder_that_others_may_write_is_not_used(folder):
+    get(Maker())
+    folder.chmod(0o777)
+    folder.parent.chmod(0o755)
+    array_cache._warn_refused.cache_clear()
+    make = Maker()
+    with pytest.warns(RuntimeWarning, match="compliances are not kept: others may write in"):
+        get(make), get(make)
+    assert make.calls == 2
+
+
 def test_the_least_recently_used_go_first(folder, monkeypatch):
     import os
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 import raceway
+from raceway.cache_folder import current_folder, make, refusal
 from raceway.core.jit import jit
 from raceway.core.signatures import LAW
 from raceway.errors import PluginError
@@ -35,14 +37,27 @@ print(json.dumps([force[0], clock["compiled"], clock["loaded"], [str(w.message) 
 FORCE = 1e9 * (4e-6) ** 1.5
 
 
-def use(folder: Path) -> tuple[int, int, list[str]]:
-    """Kernels compiled and read, and warnings, of a process with this cache folder."""
-    done = python("-c", USE, RACEWAY_CACHE_DIR=folder)
+def use(folder: Path, before: str = "") -> tuple[int, int, list[str]]:
+    """Kernels compiled and read, and warnings, of a process with this cache folder; ``before``: what it does first."""
+    done = python("-c", before + USE, RACEWAY_CACHE_DIR=folder)
     assert done.returncode == 0, done.stderr
     force, compiled, loaded, warned, kept = json.loads(done.stdout)
     assert force == pytest.approx(FORCE, rel=1e-14)  # one rounding of the power against a product with a root
     assert kept, "numba's own cache folder was left changed"
     return compiled, loaded, warned
+
+
+@pytest.fixture(scope="module")
+def compiled_once(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("cache")
+    assert use(folder) == (3, 0, [])
+    return folder
+
+
+@pytest.fixture
+def warm(compiled_once, tmp_path):
+    """A copy of a folder with the three kernels, of this test alone."""
+    return Path(shutil.copytree(compiled_once, tmp_path / "cache"))
 
 
 def files(folder: Path, suffix: str = "") -> dict[Path, int]:
@@ -66,17 +81,120 @@ def test_a_folder_that_cannot_be_made_costs_one_warning(tmp_path):
     assert "RACEWAY_CACHE_DIR" in warned[0]
 
 
-@pytest.mark.parametrize("suffix", [".nbc", ".nbi"])
-@pytest.mark.parametrize("left", [0, 100])
-def test_truncated_cache_files_are_replaced(tmp_path, suffix, left):
-    use(tmp_path)
-    broken = files(tmp_path, suffix)
-    assert broken
-    for path in broken:
-        path.write_bytes(path.read_bytes()[:left])
-    compiled, loaded, warned = use(tmp_path)
+def _cut(path: Path, others: list[Path]) -> None:
+    path.write_bytes(path.read_bytes()[:100])
+
+
+def _emptied(path: Path, others: list[Path]) -> None:
+    path.write_bytes(b"")
+
+
+def _zeroed(path: Path, others: list[Path]) -> None:
+    """What a machine that lost its power leaves: numba reads it, and the linker ends the process."""
+    path.write_bytes(bytes(path.stat().st_size))
+
+
+def _half_zeroed(path: Path, others: list[Path]) -> None:
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2] + bytes(len(content) - len(content) // 2))
+
+
+def _of_another_kernel(path: Path, others: list[Path]) -> None:
+    """Whole, with its digest: only the name is wrong."""
+    other = next(one for one in others if one != path)
+    for end in ("", ".digest"):
+        shutil.copyfile(f"{other}{end}", f"{path}{end}")
+
+
+def _without_digest(path: Path, others: list[Path]) -> None:
+    path.with_name(f"{path.name}.digest").unlink()
+
+
+FAULTS = [
+    (_cut, ".nbi"), (_emptied, ".nbc"), (_zeroed, ".nbc"), (_half_zeroed, ".nbc"), (_of_another_kernel, ".nbi"),
+    (_of_another_kernel, ".nbc"), (_without_digest, ".nbi"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("fault", "suffix"), FAULTS)
+def test_damaged_cache_files_are_replaced(warm, fault, suffix):
+    whole = files(warm, suffix)
+    assert whole
+    for path in whole:
+        fault(path, list(whole))
+    compiled, loaded, warned = use(warm)
     assert (compiled + loaded, warned) == (3, [])
-    assert use(tmp_path) == (0, 3, [])
+    assert compiled >= 2, "a file that cannot be trusted is not read"
+    if fault is _of_another_kernel:
+        assert use(warm) == (0, 3, [])
+
+
+@pytest.mark.parametrize("place", ["", "kernels"])
+def test_a_folder_that_others_may_write_is_refused(warm, place):
+    """Compiled kernels are pickles: whoever may write one executes what he likes."""
+    (warm / place).chmod(0o777)
+    warm.chmod(warm.stat().st_mode | 0o055)
+    before = files(warm)
+    compiled, loaded, warned = use(warm)
+    assert (compiled, loaded) == (3, 0)
+    assert len(warned) == 1
+    assert f"others may write in `{(warm / place)}`" in warned[0] and "chmod -R go-w" in warned[0]
+    assert files(warm) == before
+    (warm / place).chmod(0o755)
+    assert use(warm) == (0, 3, [])
+
+
+def test_a_folder_of_another_user_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path / "cache"))
+    make(current_folder())
+    assert refusal(current_folder()) is None
+    real = Path.stat
+
+    def another_users(self, **options):
+        found = real(self, **options)
+        return os.stat_result((*found[:4], os.geteuid() + 1, *found[5:]))
+
+    monkeypatch.setattr(Path, "stat", another_users)
+    assert "belongs to another user" in refusal(current_folder())
+
+
+def test_new_folders_are_closed_to_others(tmp_path, monkeypatch):
+    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path / "cache"))
+    before = os.umask(0o002)
+    try:
+        make(current_folder())
+    finally:
+        os.umask(before)
+    assert (tmp_path / "cache").stat().st_mode & 0o777 == 0o700
+    assert refusal(current_folder()) is None
+
+
+#: A disk that takes nothing more in the cache: for root a folder's mode is no hindrance.
+FULL = """
+import errno, os, tempfile
+real = tempfile.TemporaryFile
+def full(*words, dir=None, **named):
+    if str(dir).startswith(os.environ["RACEWAY_CACHE_DIR"]):
+        raise OSError(errno.EROFS, "Read-only file system")
+    return real(*words, dir=dir, **named)
+tempfile.TemporaryFile = full
+"""
+
+
+def test_a_warm_cache_that_cannot_be_written_is_read(warm):
+    before = files(warm)
+    assert use(warm, FULL) == (0, 3, [])
+    assert files(warm) == before
+
+
+def test_what_lacks_in_a_cache_that_cannot_be_written_is_compiled_after_one_warning(warm):
+    path = next(iter(files(warm, ".nbc")))
+    _zeroed(path, [])
+    before = files(warm)
+    compiled, loaded, warned = use(warm, FULL)
+    assert (compiled, loaded) == (1, 2)
+    assert len(warned) == 1 and "cannot be written (Read-only file system) and lacks some kernels" in warned[0]
+    assert files(warm) == before
 
 
 def key_of(package: Path) -> str:

@@ -2,17 +2,18 @@
 
 numba keys a cached function by its own source file alone: a kernel that calls a core function would keep calling
 the old one after an edit.  So the cache lives in a folder named by a hash of the core's sources and of the versions
-that produce machine code.  When that folder cannot be written, kernels are compiled in memory, after one
-warning.  numba's global settings are left as they were found.
+that produce machine code.  numba reads what it finds there as it is, and a damaged file ends the process: ``kernel_files``
+keeps a digest beside each.  A folder that cannot be written is read through links in a temporary one; where there is
+nothing to read, or others may write, kernels are compiled in memory, after one warning.  numba's global settings are left
+as they were found.
 """
 
 from __future__ import annotations
 
-import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from typing import Any
 import numba
 
 from raceway.cache_folder import current_folder
+from raceway.core.kernel_files import FilesOfKernel, KernelFolder, opened
 from raceway.errors import PluginError
 
 #: Seconds spent in compiling (until a run takes them) and in reading the cache, and how many kernels of each.
@@ -38,23 +40,28 @@ def take_compile_seconds() -> float:
 
 
 @cache
-def kernel_folder() -> Path | None:
-    """The folder that this process reads and writes compiled kernels in; None when it cannot be written."""
-    folder = current_folder()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder) as probe:
-            probe.write(b"raceway" * 1024)
-            probe.flush()
-        return folder
-    except OSError as why:
-        warnings.warn(
-            f"compiled kernels cannot be kept in {folder} ({why.strerror or why}); compiling in memory, which costs "
-            "some ten seconds a run. Set RACEWAY_CACHE_DIR to a folder that can be written.",
-            RuntimeWarning,
-            stacklevel=2,
-        )
-        return None
+def kernel_folder() -> KernelFolder | None:
+    """The folder that this process reads and writes compiled kernels in; None when there is none."""
+    found = opened(current_folder())
+    if isinstance(found, KernelFolder):
+        return found
+    warnings.warn(
+        f"compiled kernels cannot be kept in {current_folder()} ({found}); compiling in memory, which costs some ten seconds "
+        "a run. Set RACEWAY_CACHE_DIR to a folder of your own that can be written.",
+        RuntimeWarning,
+        stacklevel=2,
+    )
+    return None
+
+
+@cache
+def _warn_incomplete(place: Path, why: str) -> None:
+    warnings.warn(
+        f"{place} cannot be written ({why}) and lacks some kernels: they are compiled in memory at every run. Set "
+        "RACEWAY_CACHE_DIR to a folder of your own that can be written.",
+        RuntimeWarning,
+        stacklevel=4,
+    )
 
 
 @contextmanager
@@ -148,27 +155,36 @@ def _compile(function: Callable[..., Any], signature: Any, options: dict[str, An
     folder = kernel_folder()
     if folder is None:
         return numba.njit(signature, **options)(function)
+    files: FilesOfKernel | None = None
     for attempt in (1, 2):
         try:
-            with _numba_cache_in(folder):
-                return numba.njit(signature, cache=True, **options)(function)
+            with _numba_cache_in(folder.path):
+                if files is None:
+                    files = FilesOfKernel(function, _place_of(function, options))
+                    files.discard_damaged()
+                kernel = numba.njit(signature, cache=True, **options)(function)
+            if not kernel.stats.cache_hits:
+                files.note_digests()
+                if folder.unwritable:
+                    _warn_incomplete(current_folder(), folder.unwritable)
+            return kernel
         except (numba.core.errors.NumbaError, TypeError):
             raise
         except Exception as why:  # a full disk, or a damaged file: reading one may raise anything
-            if attempt == 1:
-                _discard(folder, function)
+            if attempt == 1 and files is not None:
+                files.discard()
                 continue
             warnings.warn(
-                f"the kernel cache in {folder} did not serve `{function.__qualname__}` ({why}); compiled in memory",
+                f"the kernel cache in {folder.path} did not serve `{function.__qualname__}` ({why}); compiled in memory",
                 RuntimeWarning,
                 stacklevel=3,
             )
+            break
     return numba.njit(signature, **options)(function)
 
 
-def _discard(folder: Path, function: Callable[..., Any]) -> None:
-    """Remove the cache files of one function, which numba names after it and its line."""
-    name = function.__qualname__.replace("<", "").replace(">", "")
-    for path in folder.rglob(f"*.{name}-{function.__code__.co_firstlineno}.*"):
-        with suppress(OSError):
-            path.unlink()
+def _place_of(function: Callable[..., Any], options: dict[str, Any]) -> Path:
+    """The folder that numba chooses for a function's files; it exists then."""
+    dispatcher = numba.njit(**options)(function)
+    dispatcher.enable_caching()
+    return Path(dispatcher.stats.cache_path)
