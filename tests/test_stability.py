@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import attrs
+import numpy as np
 import pytest
 
+from raceway.commands.frame import registry_with
 from raceway.errors import ConvergenceError, SceneError
+from raceway.model import build_model
+from raceway.plan import make_plan
 from raceway.registry import default_registry
 from raceway.studies.stability import scenes
 from raceway.studies.stability import study as study_module
 from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
 from raceway.studies.stability.catalogue import SCENES, catalogue
+from raceway.studies.stability.own_force import axial_displacement
 from raceway.studies.stability.study import stability
-from raceway.studies.stability.systems import BASE, pair_laws, transient
+from raceway.studies.stability.systems import BASE, pair_laws, scene_at, transient
 from raceway.studies.stability.workers import in_parallel, rows_of
 from tests.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
+CUBIC = Path(__file__).with_name("cubic_law.py")
 CASES = catalogue(REGISTRY)
 
 
@@ -152,6 +159,49 @@ def test_newmark_chatters_and_generalized_alpha_or_finer_steps_do_not():
 )
 def test_hard_scenes_end_as_expected(name):
     assert all(row.verdict == AS_EXPECTED for row in rows_named(name))
+
+
+#: Cases whose expectations depend on the law.
+FOREIGN = (
+    "60 balls", "rubber balls in ceramic rings", "chatter", "impact",
+    "steps around the limit, small motions of the bearing",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_expectations_of_a_foreign_law_follow_from_its_own_force(name):
+    registry = registry_with([CUBIC])
+    cases = [one for one in catalogue(registry) if one.name == name and one.arguments["shown"].get("law") == "cubic"]
+    rows = [row for one in cases for row in rows_of(one, registry)]
+    assert rows and not [row for row in rows if row.verdict != AS_EXPECTED]
+
+
+def test_the_axial_displacement_by_a_laws_own_force():
+    """Of the cubic law in closed form: delta = (Q / 2e17)^(1/3) at both races."""
+    registry = registry_with([CUBIC])
+    scene = scene_at(BASE, {"contact.kind": "cubic", "kinematics.ball_inertia": False}, registry)
+    model = build_model(scene, make_plan(scene))
+    axial, radial = np.add(model.geometry.rest, (axial_displacement(model), 0.0))
+    approach = np.hypot(axial, radial) - model.geometry.centre_distance
+    load = 2e17 * (0.5 * approach) ** 3
+    assert 12 * load * axial / np.hypot(axial, radial) == pytest.approx(1000.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(("law", "expected"), [("hertz", FAILED), ("cubic", AS_EXPECTED)])
+def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, expected, monkeypatch):
+    registry = registry_with([CUBIC])
+    build = scenes.build_model
+
+    def refuse(scene, plan):
+        if scene.bodies.kind == "condensed":
+            raise SceneError.at("contact.kind", law, "is stiffer than elastic bodies allow")
+        return build(scene, plan)
+
+    monkeypatch.setattr(scenes, "build_model", refuse)
+    changes = {"contact.kind": law, "load.axial": 1e5, "bodies.kind": "condensed"}
+    arguments = {"tables": BASE, "changes": changes, "shown": {}, "judge": "", "may_be_too_stiff": True}
+    (row,) = scenes.extreme(Case("c", "scenes:extreme", arguments), registry)
+    assert row.verdict == expected
 
 
 def test_elements_without_a_volume_are_refused_and_soft_on_hard_is_exact():

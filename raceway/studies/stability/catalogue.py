@@ -8,7 +8,7 @@ from typing import Any
 from raceway.errors import SceneError
 from raceway.registry import Registry
 from raceway.studies.stability.case import Case
-from raceway.studies.stability.extremes import CONDENSED, PENALTIES, REFUSALS, SCENES, TOO_STIFF, WARNINGS, Changes, force
+from raceway.studies.stability.extremes import CONDENSED, PENALTIES, REFUSALS, SCENES, WARNINGS, Changes, force
 from raceway.studies.stability.surface import surface_cases
 from raceway.studies.stability.systems import BASE, pair_laws, transient
 
@@ -116,15 +116,17 @@ def _penalties(base: Changes, registry: Registry, judge: str) -> Iterator[Case]:
 
 def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
     for name, changes, closed, judge in SCENES:
+        if closed:
+            yield Case(f"Hertz' contacts: {name}", "scenes:hertz_factor", {"tables": base, "changes": changes}, 0.1)
         for law in pair_laws(registry):
             arguments: Changes = {
                 "tables": base, "changes": {**changes, "contact.kind": law}, "shown": {"law": law}, "closed_form": closed,
                 "judge": judge,
             }  # fmt: skip
             yield Case(name, "scenes:extreme", arguments, 1.5)
-            if name in CONDENSED and (name, law) not in TOO_STIFF:
+            if name in CONDENSED:
                 elastic: Changes = {
-                    **arguments, "changes": {**arguments["changes"], "bodies.kind": "condensed"}, "closed_form": False,
+                    **arguments, "changes": {**arguments["changes"], "bodies.kind": "condensed"}, "closed_form": False, "may_be_too_stiff": True,
                     "shown": {"law": law, "bodies": "condensed"},
                 }  # fmt: skip
                 yield Case(name, "scenes:extreme", elastic, 8.0)

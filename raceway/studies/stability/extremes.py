@@ -81,8 +81,6 @@ CONDENSED = (
     "lift-off: rotating 3000 N at 1000 N axial", "Poisson's ratio 0.4999", "rubber balls in ceramic rings",
     "ceramic balls in steel rings", "friction 0.3", "tilt free",
 )  # fmt: skip
-#: A penalty that is scaled at small loads is stiffer than what finite elements would take off it; refused, see REFUSALS.
-TOO_STIFF = (("axial load 100 kN", "penalty"), ("rubber balls in ceramic rings", "penalty"))
 PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
 
 #: name, changes, words of the message, why there is no answer.

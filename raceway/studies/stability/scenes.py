@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from raceway.bodies.basis import make_basis
 from raceway.errors import RacewayError, SceneError
-from raceway.estimate import axial_approach
+from raceway.estimate import series_factor
 from raceway.model import build_model
 from raceway.plan import make_plan
 from raceway.registry import Registry
@@ -27,18 +28,22 @@ from raceway.studies.stability.case import (
     short,
     unexpected,
 )
+from raceway.studies.stability.own_force import axial_displacement, stiffer_than_hertz
 from raceway.studies.stability.systems import scene_at, transient
 
 _BALANCE = Near(1e-8, "an equilibrium is solved to a residual of 1e-11")
 _BALANCE_ELASTIC = Near(
     0.05, "structural compliances vary with the contact angle, which pushes a ball along the groove: 0.1 %, at 100 kN 4 %"
 )
+_INVERTED = Near(1e-6, "the law's own force, inverted for one ball by bisection; both are solved to 1e-9 and better")
 _ROUGH = Near(0.05, "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)")
 _ORBIT = Near(0.01, "time steps cost 0.02 %, what is left of the transient after 12 turns 0.1 %; ten times that")
 #: Drift of the energy that a completed motion may show: 360 steps a turn and light contacts.
 _ENERGY = AtMost(0.05, "steps of a turn / 360 balance energy to 1e-4 as a rule; impacts that few steps resolve cost more")
 #: What a motion is held against; "any": a user's scene, which ``periodic`` may be unable to take.
 _JUDGES = {"orbit": "periodic", "slow": "quasi_static", "any": "periodic"}
+#: Of the message about a law that leaves elastic bodies no compliance.
+_TOO_STIFF = "stiffer than elastic bodies allow"
 _STEADY = "|Z| [N/m], predicted by the steady motion"
 
 
@@ -49,6 +54,8 @@ def extreme(case: Case, registry: Registry) -> list[Row]:
     if "penalty_factor" in a:
         changes["contact.stiffness"] = a["penalty_factor"] * _default_penalty(a["tables"], changes, registry)
     shown = dict(a["shown"])
+    if a.get("may_be_too_stiff") and (row := _too_stiff(case, shown, changes, registry)):
+        return [row]
     rows = _at_rest(case, shown, changes, registry)
     if not a["judge"]:
         return rows
@@ -122,8 +129,41 @@ def _at_rest(case: Case, shown: dict[str, Any], changes: dict[str, Any], registr
             scene = scene_at(a["tables"], alone, registry)
             return float(settle(build_model(scene, make_plan(scene))).displacement[0]), None
 
-        rows.append(judged(case.name, shown, "axial displacement [m]", _ROUGH, axial_approach(scene)[0], approach))
+        scene = scene_at(a["tables"], alone, registry)
+        own = axial_displacement(build_model(scene, make_plan(scene)))
+        rows.append(judged(case.name, shown, "axial displacement [m]", _INVERTED, own, approach))
     return rows
+
+
+def _too_stiff(case: Case, shown: dict[str, Any], changes: dict[str, Any], registry: Registry) -> Row | None:
+    """The row of a law that elastic bodies refuse as too stiff, if they do: expected of no law softer than Hertz's."""
+    tables = case.arguments["tables"]
+    scene, stiff = (scene_at(tables, {**changes, "bodies.kind": kind}, registry) for kind in ("condensed", "rigid"))
+    try:
+        build_model(scene, make_plan(scene))
+    except SceneError as why:
+        if _TOO_STIFF not in str(why):
+            raise
+        load = make_basis(stiff).ball_load
+        expected = stiffer_than_hertz(build_model(stiff, make_plan(stiff)), load)
+        reason = (
+            "the law's own slope at the ball's load, or five times it, is above Hertz's; elastic bodies leave that no room"
+        )
+        head = (case.name, shown, "message", f"refused: '{_TOO_STIFF}'", None, None, None)
+        return Row(*head, AS_EXPECTED if expected else FAILED, reason, short(why))
+    return None
+
+
+def hertz_factor(case: Case, registry: Registry) -> list[Row]:
+    """Hertz' contacts of a bearing, which laws are calibrated by, against a closed form."""
+    scene = scene_at(case.arguments["tables"], case.arguments["changes"], registry)
+
+    def softness() -> Measured:
+        basis = make_basis(scene)
+        return float(basis.inner.factor ** (-2.0 / 3.0) + basis.outer.factor ** (-2.0 / 3.0)), None
+
+    quantity = "approach of both races over load^(2/3) [m/N^(2/3)]"
+    return [judged(case.name, {}, quantity, _ROUGH, series_factor(scene) ** (-2.0 / 3.0), softness)]
 
 
 def _default_penalty(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
