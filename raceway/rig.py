@@ -26,6 +26,9 @@ class Signals:
     noise_db: float = option(
         40.0, unit="dB", help="rms of the response at the speed over rms of the white noise", rule=between(0.0, 300.0)
     )
+    mark_noise: float = option(
+        0.0, help="rms of the white noise on the once-per-turn probe's voltage, over its range", rule=between(0.0, 1.0)
+    )
     drift: float = option(
         5e-6, unit="m", help="slow wandering of the gap over a record: half straight, half a half-wave", rule=at_least(0.0)
     )

@@ -7,6 +7,7 @@ import pytest
 
 from raceway.errors import RacewayError
 from raceway.studies.measured.angle import turning
+from raceway.studies.measured.marks import marks_of
 from raceway.studies.measured.orders import order
 from raceway.studies.measured.recording import Recording
 
@@ -105,3 +106,50 @@ def test_a_probe_that_sees_nothing():
     record = made()
     with pytest.raises(RacewayError, match="no mark is seen"):
         turning(Recording(record.time, record.y, record.z, 0.0 * record.time))
+
+
+def noisy(record, part, seed):
+    """The record with white noise of so many parts of the range on the probe's voltage."""
+    random = np.random.default_rng(seed)
+    white = part * np.ptp(record.key) * random.standard_normal(len(record.key))
+    return Recording(record.time, record.y, record.z, record.key + white, record.speed)
+
+
+@pytest.mark.parametrize("rate", [10e3, 400e3])
+@pytest.mark.parametrize("part", [0.01, 0.02, 0.05])
+def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
+    record = made(rate=rate, duration=0.1)
+    true = (np.arange(1, 19) - 1.0 / (2.0 * np.pi)) / HZ  # the angle begins at 1 rad
+    off = []
+    for seed in range(20):
+        marks = marks_of(record.time, noisy(record, part, seed).key).times
+        assert len(marks) == len(true)
+        off.append((marks - true).mean())
+    # 20 means: their own mean is known to 1 / sqrt(20) of their scatter; 3.5 of that, and what 55 samples a turn leave of a flank.
+    assert abs(np.mean(off)) < 3.5 * np.std(off) / np.sqrt(20) + 0.02 / rate
+
+
+@pytest.mark.parametrize("options", [{}, {"rate": 100e3, "duration": 0.06}, {"duration": 0.03}])
+@pytest.mark.parametrize("part", [0.0, 0.01, 0.02, 0.05])
+def test_the_phase_lies_within_the_doubt_of_noisy_marks(options, part):
+    record, inside, over = made(**options), 0, []
+    for seed in range(40):
+        found = order(turning(noisy(record, part, seed)))
+        assert found.turns == int(record.time[-1] * HZ - 1.0 + 1.0 / (2.0 * np.pi))
+        error = abs(np.angle(found.line / LINE))
+        inside += error <= found.doubt + 2.0 * found.error / abs(LINE)
+        over.append(error / found.doubt)
+    assert inside >= 36  # 0.90 of 40
+    assert part == 0.0 or np.sqrt(np.mean(np.square(over))) > 0.1  # the doubt is no excuse
+
+
+def test_noise_of_a_fifth_of_the_range_is_told_as_marks_that_are_double():
+    with pytest.raises(RacewayError, match="a mark of `key` is double there"):
+        turning(noisy(made(rate=400e3), 0.2, 1))
+
+
+def test_angles_of_noisy_marks_grow_from_sample_to_sample():
+    for seed in range(20):
+        found = turning(noisy(made(rate=100e3, duration=0.06), 0.05, seed))
+        assert np.diff(found.angle).min() > 0.0
+        assert found.angle[0] >= 0.0 and found.angle[-1] < 2.0 * np.pi * found.turns

@@ -9,14 +9,13 @@ import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
+from raceway.studies.measured.marks import Marks, marks_of
 from raceway.studies.measured.recording import Recording
 
 #: Change of speed from one turn to the next, and over a record, that the 1x line is followed through.
 MOST_PER_TURN, MOST_RANGE = 0.01, 0.10
 #: Samples a turn: lines up to 3x are told apart.
 LEAST_PER_TURN = 8
-#: A mark counts once the probe was below the lower and is above the upper of these parts of its range.
-_LOW, _HIGH = 0.4, 0.6
 #: Turns between two knots of the angle's spline: a mark is known to a sample only.
 _TURNS_PER_KNOT = 12
 #: Largest relative difference of the marks' speed and that of a column.
@@ -34,7 +33,7 @@ class Turning:
     recording : the samples from the first to the last mark
     angle : (n,) from the first mark [rad];  speed : (n,) [rad/s]
     turns : whole turns;  marked : whether angle 0 is the mark, or just where the record begins
-    doubt : by which the angle of all marks together may be off [rad], at most
+    doubt : by which the angle of all marks together may be off [rad], half-width at 95 %
     """
 
     recording: Recording
@@ -63,7 +62,8 @@ def turning(recording: Recording) -> Turning:
 
 def _by_marks(recording: Recording) -> Turning:
     assert recording.key is not None
-    marks, jump = marks_of(recording.time, recording.key)
+    seen = marks_of(recording.time, recording.key)
+    marks = seen.times
     if len(marks) < 3:
         raise RacewayError(f"{max(len(marks) - 1, 0)} whole turns between the marks of `key`; at least two are needed")
     lengths = np.diff(marks)
@@ -81,30 +81,41 @@ def _by_marks(recording: Recording) -> Turning:
             f"{recording.speed.mean() * 30.0 / pi:.6g}: marks between samples are missed, or there are several a turn. "
             "Sample faster, or leave one of the columns out"
         )
-    inside = (recording.time >= marks[0]) & (recording.time < marks[-1])
     spline = _smooth_angle(marks)
-    part = recording.part(inside)
-    # The ends of the smooth angle miss their marks by as much as the samples do; whole turns are counted from zero.
-    angle = np.clip(spline(part.time), 0.0, np.nextafter(2.0 * pi * (len(marks) - 1), 0.0))
-    speed = spline(part.time, 1)
-    return Turning(part, angle, speed, len(marks) - 1, True, _doubt(recording.time, marks, spline, jump))
+    whole = 2.0 * pi * (len(marks) - 1)
+    # The smooth angle begins and ends its whole turns a little beside the marks; well beyond them it means nothing.
+    beside = 0.25 * float(np.median(lengths))
+    part = recording.part((recording.time >= marks[0] - beside) & (recording.time < marks[-1] + beside))
+    angle = spline(part.time)
+    inside = (angle >= 0.0) & (angle < whole)
+    part, angle = part.part(inside), angle[inside]
+    return Turning(part, angle, spline(part.time, 1), len(marks) - 1, True, _doubt(recording.time, seen, spline))
 
 
-def _doubt(time: np.ndarray, marks: np.ndarray, spline: Any, jump: float) -> float:
-    """By which all marks together may be off [rad].
+def _doubt(time: np.ndarray, seen: Marks, spline: Any) -> float:
+    """By which all marks together may be off, half-width at 95 % [rad].
 
     Notes
     -----
-    A flank that is steeper than the samples are apart tells a mark to half an interval; one that takes n samples to about
-    1 / n^2 of that.  It averages out where marks fall anywhere between samples; where sampling keeps step with the shaft they
-    all fall on the same place, and the doubt stays: it is weighed with their mean direction on a circle of one interval.
+    Marks scatter about the smooth angle, by noise and by samples that miss them: so does their mean, by Student's distribution.
+    What all of them share is apart from that.  A flank that is steeper than the samples are apart tells a mark to half an
+    interval; one that takes n samples to about 1 / n^2 of that.  It averages out where marks fall anywhere between samples;
+    where sampling keeps step with the shaft they all fall on the same place, and the doubt stays: it is weighed with their
+    mean direction on a circle of one interval.
     """
-    smooth = marks - (spline(marks) - 2.0 * pi * np.arange(len(marks))) / spline(marks, 1)
+    from scipy.special import stdtrit
+
+    marks = seen.times
+    apart = spline(marks) - 2.0 * pi * np.arange(len(marks))
+    smooth = marks - apart / spline(marks, 1)
     after = np.clip(np.searchsorted(time, smooth), 1, len(time) - 1)
     places = (smooth - time[after - 1]) / (time[after] - time[after - 1])
     together = max(float(abs(np.exp(2j * pi * places).mean())), len(marks) ** -0.5)
     speed = 2.0 * pi * (len(marks) - 1) / float(marks[-1] - marks[0])
-    return 0.5 * speed * float(np.median(np.diff(time))) * jump**2 * together
+    shared = 0.5 * speed * float(np.median(np.diff(time))) * seen.jump**2 * together
+    free = len(marks) - len(spline.c)
+    scatter = float(stdtrit(free, 0.975)) * float(np.sqrt(apart @ apart / free / len(marks)))
+    return float(np.sqrt(shared**2 + scatter**2 + (1.96 * speed * seen.level) ** 2))
 
 
 def _smooth_angle(marks: np.ndarray) -> Any:
@@ -117,25 +128,6 @@ def _smooth_angle(marks: np.ndarray) -> Any:
     inner = np.interp(np.linspace(0, count - 1, pieces + 1)[1:-1], np.arange(count), marks)
     knots = np.concatenate([[marks[0]] * (degree + 1), inner, [marks[-1]] * (degree + 1)])
     return make_lsq_spline(marks, 2.0 * pi * np.arange(count), knots, degree)
-
-
-def marks_of(time: np.ndarray, key: np.ndarray) -> tuple[np.ndarray, float]:
-    """Times [s] at which a probe's voltage (n,) rises through the middle of its range, between samples by a straight line,
-    and the mean rise from the sample before to the sample after, over the range."""
-    low, high = float(key.min()), float(key.max())
-    if high - low <= 0.0:
-        raise RacewayError("`key` never changes: no mark is seen")
-    level = (key - low) / (high - low)
-    state = np.where(level > _HIGH, 1, np.where(level < _LOW, -1, 0))
-    known = np.flatnonzero(state)
-    rises = np.flatnonzero((state[known][:-1] < 0) & (state[known][1:] > 0))
-    found, jumps = [], []
-    for before, after in zip(known[rises], known[rises + 1], strict=True):
-        k = before + int(np.argmax(level[before : after + 1] >= 0.5))
-        part = (0.5 - level[k - 1]) / (level[k] - level[k - 1])
-        found.append(time[k - 1] + part * (time[k] - time[k - 1]))
-        jumps.append(level[k] - level[k - 1])
-    return np.array(found), float(np.mean(jumps)) if jumps else 0.0
 
 
 def _by_speed(recording: Recording) -> Turning:

@@ -39,7 +39,7 @@ class Cause:
 
 def silent(signals: Signals) -> Signals:
     """The same sampling, nothing that disturbs."""
-    return attrs.evolve(signals, noise_db=_SILENT_DB, drift=0.0, run_out=0.0, speed_drift=0.0)
+    return attrs.evolve(signals, noise_db=_SILENT_DB, mark_noise=0.0, drift=0.0, run_out=0.0, speed_drift=0.0)
 
 
 def split(rig: Rig, held: Bearing, state: State) -> list[Cause]:

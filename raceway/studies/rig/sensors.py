@@ -15,6 +15,8 @@ from raceway.studies.shaft.rotor import rotor
 
 #: A probe of 5 mm over a notch in a shaft of 30 mm: the mark's flanks [rad], half a cosine each, a third of it.
 _MARK = radians(3.0 * 19.0)
+#: Range of its probe's voltage.
+_VOLTS = 5.0
 #: Where in the first turn a record begins [rad]: nobody starts one at the mark.
 _BEGIN = 4.0
 
@@ -70,7 +72,8 @@ def record(rig: Rig, answer: Response, signals: Signals, seed: int, noise: float
         noise = white_noise(answer, signals)
     white = noise * (random.standard_normal(len(time)) + 1j * random.standard_normal(len(time)))
     plane = motion + track + wandering + white
-    return Recording(time, plane.real, plane.imag, _mark(angle), speed)
+    key = _mark(angle) + _VOLTS * signals.mark_noise * random.standard_normal(len(time))
+    return Recording(time, plane.real, plane.imag, key, speed)
 
 
 def white_noise(answer: Response, signals: Signals) -> float:
@@ -92,9 +95,9 @@ def slow_roll_record(rig: Rig, held: Bearing, signals: Signals, seed: int, noise
 
 
 def _mark(angle: np.ndarray) -> np.ndarray:
-    """Voltage of the once-per-turn probe (n,), 0 to 5: it rises through the middle at whole turns."""
+    """Voltage of the once-per-turn probe (n,), 0 to ``_VOLTS``: it rises through the middle at whole turns."""
     flank = _MARK / 3.0
     x = (angle + 0.5 * flank) % (2.0 * pi)
     up = np.clip(x / flank, 0.0, 1.0)
     down = np.clip((x - 2.0 * flank) / flank, 0.0, 1.0)
-    return 2.5 * (np.cos(pi * down) - np.cos(pi * up))
+    return 0.5 * _VOLTS * (np.cos(pi * down) - np.cos(pi * up))

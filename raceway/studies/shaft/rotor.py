@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import ceil, pi
 
 import attrs
@@ -44,6 +45,7 @@ class Rotor:
         return complex(self.sensor @ np.array([self.unbalance_force, force, moment]))
 
 
+@lru_cache(maxsize=32)  # one rig is asked for at many speeds, changed rigs again for each record
 def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     """The rig's shaft with its disc.
 
