@@ -185,8 +185,8 @@ def compare(
 
     \b
     Example:
-      raceway compare examples/b7206.toml --vary excitation.kind=unidirectional,bidirectional \\
-          --vary excitation.speed_rpm=10980:15000:5
+      raceway compare examples/b7206.toml --set integrator.kind=periodic \\
+          --vary excitation.kind=unidirectional,bidirectional --vary excitation.speed_rpm=10980:15000:5
     """
     registry = registry_with(plugins)
     tables, mistakes = changed_tables(scene, changes, registry)

@@ -73,6 +73,29 @@ def test_equal_corners_have_no_effect_and_no_share():
         assert effect.log_change == 0.0 and effect.share == 0.0 and math.isfinite(effect.percent)
 
 
+def test_no_true_effect_lies_beyond_the_bound_of_the_errors():
+    random = np.random.default_rng(3)
+    true, errors = np.exp(random.normal(size=(2, 2, 2))), 0.3 * random.random((2, 2, 2))
+    exact = {e.term: e.log_change for e in Factorial(("a", "b", "c"), true).effects}
+    reached = 0.0
+    for signs in product((-1.0, 1.0), repeat=8):
+        seen = Factorial(("a", "b", "c"), true / (1.0 + np.reshape(signs, (2, 2, 2)) * errors), errors)
+        assert abs(seen.log_change("b") - exact["b",]) <= seen.log_error("b") == pytest.approx(seen.error)
+        reached = max(reached, *(abs(e.log_change - exact[e.term]) / seen.error for e in seen.effects))
+    assert 0.8 < reached <= 1.0  # ln(1 + r) and -ln(1 - r) differ by r, 0.3 at most
+
+
+def test_an_effect_is_judged_against_the_errors():
+    corners = np.array([[1.0, 0.1], [1.001, 0.101]])
+    factorial = Factorial(("a", "b"), corners, np.array([[0.0, 0.02], [0.0, 0.0]]))
+    assert factorial.error == pytest.approx(-0.5 * math.log(0.98))
+    resolved = {e.term: e.resolved for e in factorial.effects}
+    assert resolved == {("b",): True, ("a",): False, ("a", "b"): False}
+    # The change along a is known where b is at its first value, whatever the other end's error.
+    assert factorial.resolved_change("a", {"b": 0}) == pytest.approx(math.log(1.001))
+    assert factorial.resolved_change("a", {"b": 1}) == factorial.resolved_change("a") == 0.0
+
+
 def test_the_largest_part_without_holes_holds_the_last_axes():
     usable = np.ones((2, 2, 2), dtype=bool)
     assert whole_part(usable) == (None, None, None)
@@ -95,6 +118,8 @@ def test_the_largest_part_without_holes_holds_the_last_axes():
         ([1, 3, 2], [0, 0, 0], "not monotonic"),
         ([1, 1.001, 1], [1e-3, 1e-3, 1e-3], "level"),
         ([1, 1.001, 2], [1e-3, 1e-3, 1e-3], "rises"),
+        ([1, 1.001, 1.002, 1.003], [1e-3, 1e-3, 1e-3, 1e-3], "rises"),  # no step does, the whole does
+        ([1, 0.99, 1.02], [1e-3, 0.2, 1e-3], "rises"),  # over one that is hardly known
     ],
 )
 def test_trend(values, errors, expected):

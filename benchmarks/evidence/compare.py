@@ -32,6 +32,10 @@ def rows() -> list[Row]:
     note = f"{len(doubtful)} runs in doubt, kept in table and picture, out of the effects: {reasons}" if doubtful else ""
     held = ", ".join(found.held) or "none"
     out.append(Row("axes held because a corner is in doubt", held, "none", not found.held, COMMAND, note))
+    unresolved = [effect["term"] for effect in content["effects"] if not effect["resolved"] and len(effect["term"]) == 1]
+    worst = 100.0 * max(row["result"]["error"]["total"] for row in runs if row not in failed)
+    note = f"largest error of a run {worst:.2g} %, of an effect {100.0 * max(e['error'] for e in content['effects']):.2g} %"
+    out.append(Row("main effects on K and |Z| that the runs' errors hide", len(unresolved), "reported", True, COMMAND, note))
     for effect in content["effects"]:
         if effect["quantity"] == "equivalent_stiffness" and len(effect["term"]) <= 2:
             value = f"{effect['percent']:+.2f} %"

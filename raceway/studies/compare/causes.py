@@ -78,12 +78,13 @@ def _size(comparison: Findings, leading: Axis, partner: Axis, others: list[str])
     for end, value in enumerate(partner.ends):
         given = {partner.key: end}
         pairs = {key: [factorial.log_change(leading.key, {**given, key: e}) for e in (0, 1)] for key in others}
+        least = {key: _least(factorial, leading.key, key, given) for key in others}
         strong: list[str] = []
         weak: list[str] = []
         for key, (first, last) in sorted(pairs.items(), key=lambda item: -abs(item[1][1] - item[1][0])):
             ends = comparison.axis(key).ends
             text = f"{named(key)}: {shown(ends[0])} {percent(first)}, {shown(ends[1])} {percent(last)}"
-            (strong if abs(last - first) >= HARDLY else weak).append(text)
+            (strong if abs(last - first) >= least[key] else weak).append(text)
         mean = percent(factorial.log_change(leading.key, given))
         text = f"With {partner.key} = {shown(value)}, {step(leading)} changes K(w) by {mean} on average."
         text += f" What decides how much, the strongest first: {'; '.join(strong)}." if strong else ""
@@ -94,10 +95,11 @@ def _size(comparison: Findings, leading: Axis, partner: Axis, others: list[str])
 
 def sense_flips(factorial: Factorial, leading: Axis) -> tuple[np.ndarray, dict[str, int]]:
     """Sense of the change along the leading axis (-1, 0 hardly any, 1) in each setting; how often each axis turns it."""
-    place = factorial.keys.index(leading.key)
-    change = np.diff(np.log(factorial.corners), axis=place).take(0, axis=place)
-    sense = np.where(np.abs(change) < HARDLY, 0, np.sign(change))
     others = [key for key in factorial.keys if key != leading.key]
+    sense = np.zeros((2,) * len(others))
+    for ends in np.ndindex(sense.shape):
+        change = factorial.resolved_change(leading.key, dict(zip(others, ends, strict=True)))
+        sense[ends] = np.sign(change) if abs(change) >= HARDLY else 0.0
     return sense, {key: int((sense.take(0, axis=k) * sense.take(1, axis=k) < 0).sum()) for k, key in enumerate(others)}
 
 
@@ -107,7 +109,7 @@ def _turns(factorial: Factorial, leading: Axis) -> list[str]:
     others = list(flips)
     rises, falls = int((sense > 0).sum()), int((sense < 0).sum())
     text = (
-        f"Along {leading.key}, K(w) rises in {rises}, falls in {falls} and hardly changes (less than 0.5 %) in "
+        f"Along {leading.key}, K(w) rises in {rises}, falls in {falls} and hardly changes (less than 0.5 % or than its error) in "
         f"{sense.size - rises - falls} of {sense.size} settings."
     )
     turning = sorted((key for key in others if flips[key]), key=lambda key: -flips[key])
@@ -167,11 +169,16 @@ def _in_short(comparison: Findings, leading: Axis, partner: Axis, others: list[s
     for end, value in enumerate(partner.ends):
         shift = {key: _shift(factorial, leading.key, key, {partner.key: end}) for key in others}
         first = max(shift, key=lambda key: abs(shift[key]), default=None)
-        large = first is not None and abs(shift[first]) >= HARDLY
+        large = first is not None and abs(shift[first]) >= _least(factorial, leading.key, first, {partner.key: end})
         cause = f"mostly by {named(first)}" if first is not None and large else "by none of the other axes"
         parts.append(f"with {partner.key} = {shown(value)} {cause}")
     sense = f"whether K(w) rises or falls along {leading.key} is decided by {listed(turning)}; " if turning else ""
     return f"In short: {sense}how much it changes is decided {listed(parts)}."
+
+
+def _least(factorial: Factorial, along: str, key: str, given: dict[str, int]) -> float:
+    """What a shift of the change along an axis has to reach to count."""
+    return max(HARDLY, sum(factorial.log_error(along, {**given, key: end}) for end in (0, 1)))
 
 
 def _shift(factorial: Factorial, along: str, key: str, given: dict[str, int]) -> float:

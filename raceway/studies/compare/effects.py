@@ -13,6 +13,9 @@ between the effect of one at the last and at the first value of the other: with 
 exp(e_A + e_AB) at the last value of B and exp(e_A - e_AB) at its first.  The effects are a change of basis, so that
 y = mean + 1/2 sum_T e_T product of s_i holds at every corner.  The share of a term is e_T^2 over the sum of all squares.
 
+A quantity with a relative error r lies within y -+ d, d = -ln(1 - r).  No e_T is off by more than 2^(1 - k) times the sum of all d;
+an effect above that bound is resolved.
+
 References
 ----------
 Box, Hunter, Hunter, Statistics for Experimenters (2nd ed., 2005), chapter 5 (definitions of effects and interactions).
@@ -56,7 +59,7 @@ class Effect:
     ----------
     term : keys of its axes;  log_change : e_T;  percent : 100 (exp(e_T) - 1)
     difference : mean at the last minus mean at the first value [N/m], main effects only
-    share : of the variation of ln(quantity)
+    share : of the variation of ln(quantity);  resolved : whether it exceeds what the corners' errors can make
     """
 
     term: tuple[str, ...]
@@ -64,6 +67,7 @@ class Effect:
     percent: float
     difference: float | None
     share: float
+    resolved: bool
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -73,12 +77,21 @@ class Factorial:
     Attributes
     ----------
     keys : (k,) axes;  corners : (2,) * k, positive [N/m]
-    error : bound of every log_change that follows from the corners' own error estimates; None where there are none
+    errors : (2,) * k, the corners' relative errors, below 1; default: none
     """
 
     keys: tuple[str, ...]
     corners: np.ndarray
-    error: float | None = None
+    errors: np.ndarray = attrs.field(default=attrs.Factory(lambda self: np.zeros(self.corners.shape), takes_self=True))
+
+    @property
+    def error(self) -> float:
+        """What the corners' errors can move any effect by, at most."""
+        return float(2.0 * self._log_errors.mean())
+
+    @cached_property
+    def _log_errors(self) -> np.ndarray:
+        return -np.log1p(-self.errors)
 
     @cached_property
     def effects(self) -> list[Effect]:
@@ -95,18 +108,28 @@ class Factorial:
                     difference = last - first
                 share = e * e / squares if squares > 0.0 else 0.0
                 term = tuple(self.keys[k] for k in places)
-                terms.append(Effect(term, e, 100.0 * float(np.expm1(e)), difference, share))
+                terms.append(Effect(term, e, 100.0 * float(np.expm1(e)), difference, share, abs(e) > self.error))
         return sorted(terms, key=lambda effect: -abs(effect.log_change))
 
     def log_change(self, key: str, given: Mapping[str, int] | None = None) -> float:
         """Mean change of ln(quantity) along one axis, the axes in ``given`` held at an end (0 first, 1 last)."""
+        first, last = (self._mean(np.log(self.corners), {**(given or {}), key: end}) for end in (0, 1))
+        return last - first
+
+    def log_error(self, key: str, given: Mapping[str, int] | None = None) -> float:
+        """What the corners' errors can move that change by, at most."""
+        return sum(self._mean(self._log_errors, {**(given or {}), key: end}) for end in (0, 1))
+
+    def resolved_change(self, key: str, given: Mapping[str, int] | None = None) -> float:
+        """That change, or 0 where errors can make it."""
+        change = self.log_change(key, given)
+        return change if abs(change) > self.log_error(key, given) else 0.0
+
+    def _mean(self, values: np.ndarray, given: Mapping[str, int]) -> float:
         index: list[int | slice] = [slice(None)] * len(self.keys)
-        ends = []
-        for end in (0, 1):
-            for name, level in {**(given or {}), key: end}.items():
-                index[self.keys.index(name)] = level
-            ends.append(float(np.log(self.corners[tuple(index)]).mean()))
-        return ends[1] - ends[0]
+        for name, level in given.items():
+            index[self.keys.index(name)] = level
+        return float(values[tuple(index)].mean())
 
 
 def whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
@@ -134,9 +157,10 @@ def whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
 
 
 def trend(values: Sequence[float], errors: Sequence[float]) -> str:
-    """ "rises", "falls", "level" or "not monotonic" of a series; steps within their ends' relative errors are level."""
+    """ "rises", "falls", "level" or "not monotonic" of a series; differences within both ends' relative errors do not count."""
     y, e = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
-    steps = np.diff(y)
-    allowed = np.abs(y[1:]) * e[1:] + np.abs(y[:-1]) * e[:-1]
-    up, down = bool((steps > allowed).any()), bool((steps < -allowed).any())
+    off = np.abs(y) * e
+    change, allowed = y[None, :] - y[:, None], off[None, :] + off[:, None]
+    later = np.triu(np.ones(change.shape, dtype=bool), 1)
+    up, down = bool((change > allowed)[later].any()), bool((change < -allowed)[later].any())
     return {(False, False): "level", (True, False): "rises", (False, True): "falls", (True, True): "not monotonic"}[up, down]

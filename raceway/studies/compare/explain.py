@@ -37,11 +37,13 @@ def _what_was_run(comparison: Findings) -> str:
     text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {listed(axes)}."
     if not comparison.factorials:
         return text
-    one = next(iter(comparison.factorials.values()))
+    one, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
     text += f" The effects compare the first with the last value of each axis ({one.corners.size} runs)"
     text += ", as geometric means over the other settings"
     text += f", at {settings(comparison.held)}" if comparison.held else ""
-    return text + (f"; the runs' own errors move them by at most {100.0 * one.error:.2g} %." if one.error else ".")
+    text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
+    unknown = sum(row.doubt is None and not row.estimated for row in comparison.rows)
+    return text + (f" Of {unknown} runs no error was estimated: they count as exact." if unknown else "")
 
 
 def _few(axis: Axis) -> Sequence[Any]:
@@ -74,12 +76,15 @@ def _why_no_effects(comparison: Findings) -> str:
 def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     factorial, label = comparison.factorials[quantity], LABELS[quantity]
     low, high = factorial.corners.min() / 1e6, factorial.corners.max() / 1e6
-    parts, weak, inert = [], [], []
+    parts, hidden, weak, inert = [], [], [], []
     largest = factorial.effects[0]
     for effect in (e for e in factorial.effects if len(e.term) == 1):
         key = effect.term[0]
-        if max(abs(e.log_change) for e in factorial.effects if key in e.term) < HARDLY:
+        small = abs(effect.log_change) + factorial.error < HARDLY
+        if small and max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < HARDLY:
             inert.append(f"{key} ({percent(effect.log_change)})")
+        elif not small and not effect.resolved:
+            hidden.append(f"{key} ({percent(effect.log_change)}{_where_resolved(comparison, factorial, key)})")
         elif abs(effect.log_change) < HARDLY:
             weak.append(f"{key} ({percent(effect.log_change)})")
         else:
@@ -89,7 +94,12 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             mixed = ", a mean of rises and falls" if _mixed(factorial, key) else ""
             change = f"{percent(effect.log_change)} ({(effect.difference or 0.0) / 1e6:+.2f} N/um; {share}{mixed})"
             parts.append(f"{step(comparison.axis(key))} changes it by {change}")
-    words = [f"{label} lies between {low:.2f} and {high:.2f} N/um. On average {'; '.join(parts) or 'no axis moves it'}."]
+    none = "no axis is seen to move it" if hidden else "no axis moves it"
+    words = [f"{label} lies between {low:.2f} and {high:.2f} N/um. On average {'; '.join(parts) or none}."]
+    if hidden:
+        words.append(
+            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {listed(hidden)}."
+        )
     if weak:
         words.append(
             f"{label} on average hardly depends on {listed(weak)}, but does so together with other axes (see below)."
@@ -102,15 +112,25 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
 def _mixed(factorial: Factorial, key: str) -> bool:
     """Whether an axis raises the quantity at some value of another axis and lowers it at the other."""
     return any(
-        factorial.log_change(key, {other: 0}) * factorial.log_change(key, {other: 1}) < 0.0
+        factorial.resolved_change(key, {other: 0}) * factorial.resolved_change(key, {other: 1}) < 0.0
         for other in factorial.keys
         if other != key
     )
 
 
+def _where_resolved(comparison: Findings, factorial: Factorial, key: str) -> str:
+    """At which end of another axis the change along one is resolved although its mean is not."""
+    words = []
+    for other in (name for name in factorial.keys if name != key):
+        for end in (0, 1):
+            if change := factorial.resolved_change(key, {other: end}):
+                words.append(f"with {other} = {shown(comparison.axis(other).ends[end])} {percent(change)}")
+    return "".join(f"; {text}" for text in words)
+
+
 def _interactions(comparison: Findings, quantity: str) -> list[str]:
     factorial, label = comparison.factorials[quantity], LABELS[quantity]
-    large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= HARDLY]
+    large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= HARDLY and e.resolved]
     words = []
     for effect in large[:_MOST_INTERACTIONS]:
         given, moved = _ordered(comparison, factorial, effect)
@@ -119,12 +139,18 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
             f"{label}, interaction of {given.key} and {moved.key}: with {given.key} = {shown(given.ends[0])}, "
             f"{step(moved)} changes it by {percent(changes[0])}, with {shown(given.ends[1])} by {percent(changes[1])}."
         )
-    high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= HARDLY]
+    high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= HARDLY and e.resolved]
     if high:
         terms = "; ".join(f"{' x '.join(e.term)} ({percent(e.log_change)})" for e in high[:3])
         words.append(f"{label}, three or more axes together: {terms}.")
     if not large and not high and len(factorial.keys) > 1:
-        words.append(f"{label} has no interaction above 0.5 %: the axes act independently.")
+        most = max(abs(e.log_change) for e in factorial.effects if len(e.term) > 1)
+        if most + factorial.error < HARDLY:
+            words.append(f"{label} has no interaction above 0.5 %: the axes act independently.")
+        else:
+            words.append(
+                f"{label}: no interaction is resolved from the runs' errors (the largest would be {percent(most)})."
+            )
     return words
 
 

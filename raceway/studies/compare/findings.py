@@ -19,9 +19,8 @@ QUANTITIES = {
     "equivalent_stiffness": ("K(w)", ("equivalent_stiffness",)),
     "dynamic_stiffness": ("|Z|", ("dynamic_stiffness", "abs")),
 }
-#: A row whose own error estimate is larger, or whose motion is less 1x than other, is no basis for an explanation.
-MOST_ERROR = 0.01
-MOST_RESIDUAL = 1.0
+#: A row whose error is as large as its value, or whose motion is less 1x than other, is no basis for an explanation.
+MOST_ERROR, MOST_RESIDUAL = 1.0, 1.0
 #: Terms of third and higher order are listed from this size on.
 LEAST_HIGH_ORDER = 0.005
 
@@ -46,8 +45,18 @@ class Row:
 
     @property
     def error(self) -> float:
-        """Estimated relative error, 0 where none was estimated."""
+        """Estimated relative error of Z, 0 where none was estimated."""
         return float((self.result.get("error") or {}).get("total") or 0.0)
+
+    def error_of(self, quantity: str) -> float:
+        """Relative error of one of ``QUANTITIES``: that of Z over its own size, since m w^2 has none."""
+        own, z = self.value(quantity), self.value("dynamic_stiffness")
+        return self.error * (z or 0.0) / own if own else 0.0
+
+    @property
+    def estimated(self) -> bool:
+        """Whether the run has estimated its error."""
+        return (self.result.get("error") or {}).get("total") is not None
 
     @property
     def doubt(self) -> str | None:
@@ -61,8 +70,8 @@ class Row:
             value = self.value(quantity)
             if value is None or not math.isfinite(value) or value <= 0.0:
                 return f"{label} is not positive"
-        if self.error > MOST_ERROR:
-            return f"the estimated error is above {100 * MOST_ERROR:g} %"
+            if self.error_of(quantity) >= MOST_ERROR:
+                return f"the estimated error of {label} is as large as its value"
         if (found.get("residual") or 0.0) > MOST_RESIDUAL:
             return "the motion is larger at other frequencies than at the excitation's"
         return None
@@ -117,12 +126,11 @@ class Findings:
         index = tuple(slice(None) if end is None else end for end in part)
         keys = tuple(axis.key for axis, end in zip(self.varied, part, strict=True) if end is None)
         corners = self._corners[index]
-        # |effect| is off by at most 2^(1-k) times the sum of the corners' errors.
-        error = 2.0 * float(np.mean([row.error for row in corners.flat]))
-        return {
-            quantity: Factorial(keys, np.array([row.value(quantity) for row in corners.flat]).reshape(corners.shape), error)
-            for quantity in QUANTITIES
-        }
+        found = {}
+        for name in QUANTITIES:
+            values, errors = (np.array([of(row, name) for row in corners.flat]) for of in (Row.value, Row.error_of))
+            found[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
+        return found
 
     @cached_property
     def _corners(self) -> np.ndarray:
@@ -181,7 +189,7 @@ def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> dict[
     values = [row.value(quantity) or 0.0 for row in good]
     reaches = len(good) > 1 and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
     return {
-        "trend": trend(values, [row.error for row in good]) if len(good) > 1 else "unknown",
+        "trend": trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown",
         "percent": 100.0 * (values[-1] / values[0] - 1.0) if reaches else None,
         "doubtful": len(rows) - len(good),
     }

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from raceway.studies.axes import Axis
 from raceway.studies.compare.phrases import LABELS, percent, step
@@ -36,16 +35,16 @@ def inertia(comparison: Findings, leading: Axis | None) -> list[str]:
 def _opposite(comparison: Findings, leading: Axis) -> list[str]:
     """Where |Z| falls although K rises, and by how much each changes."""
     k, z = (comparison.factorials[name] for name in LABELS)
-    place = k.keys.index(leading.key)
-    k_change, z_change = (np.diff(np.log(f.corners), axis=place).ravel() for f in (k, z))
-    opposite = int(((k_change > 0.0) & (z_change < 0.0)).sum())
+    others = [key for key in k.keys if key != leading.key]
+    settings = [dict(zip(others, ends, strict=True)) for ends in product((0, 1), repeat=len(others))]
+    opposite = sum(k.resolved_change(leading.key, at) > 0.0 > z.resolved_change(leading.key, at) for at in settings)
     text = (
         f"{step(leading)} changes |Z| by {percent(z.log_change(leading.key))} and K(w) by "
         f"{percent(k.log_change(leading.key))} on average; "
     )
     if opposite:
         text += (
-            f"in {opposite} of {k_change.size} settings |Z| falls although K(w) rises: there the fall is the inertia of the "
+            f"in {opposite} of {len(settings)} settings |Z| falls although K(w) rises: there the fall is the inertia of the "
             "carried mass, not the bearing."
         )
     else:
