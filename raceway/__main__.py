@@ -1,16 +1,23 @@
-"""``raceway`` and ``python -m raceway``: Ctrl-C is answered before the commands themselves are loaded, too."""
+"""``raceway`` and ``python -m raceway``: a signal is answered before the commands are loaded and after they ended, too."""
 
 import sys
 
+from raceway.commands.interrupt import Interrupts, end, farewell
+
 
 def main() -> None:
-    """Load the commands and run them."""
+    """Load the commands, run them, end."""
+    Interrupts().__enter__()
+    code = 1
     try:
         from raceway.cli import main as commands
+
+        commands()
+    except SystemExit as ended:
+        code = ended.code if isinstance(ended.code, int) else 0
     except KeyboardInterrupt:
-        sys.stderr.write("stopped by Ctrl-C\n")
-        sys.exit(130)
-    commands()
+        code = farewell(lambda text: sys.stderr.write(f"{text}\n"))
+    end(code)
 
 
 if __name__ == "__main__":

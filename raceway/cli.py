@@ -56,7 +56,8 @@ def main() -> None:
       raceway run examples/b7206.toml       the answer
       raceway run examples/b7206.toml --set load.axial=400 --pictures
 
-    Exit codes: 0 success, 1 a numerical failure, 2 a mistake in the scene or on the command line, 130 Ctrl-C.
+    Exit codes: 0 success, 1 a numerical failure, 2 a mistake in the scene or on the command line; 130 Ctrl-C,
+    143 SIGTERM, 129 SIGHUP.
     """
     # Matrices of some hundred rows: threads of the linear algebra only wait for each other, and halve the speed of a run
     # on busy cores.  Read when numpy is imported, which is later than this.

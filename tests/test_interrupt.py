@@ -1,14 +1,26 @@
-"""Ctrl-C is answered wherever it arrives."""
+"""Ctrl-C, SIGTERM and SIGHUP are answered wherever they arrive, in one line, and leave no process behind."""
 
 from __future__ import annotations
 
+import json
+import os
 import signal
+import subprocess
+import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
-from raceway.commands.interrupt import Interrupts
+from raceway.commands.interrupt import Interrupts, farewell
+from raceway.errors import RacewayError
+from raceway.orphans import WATCH
+from raceway.plugins.executors.joblib import Joblib
+from raceway.studies.sweep import open_store
+from tests.command_line import ARTICLE, invoke
+
+CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
 class Finalized:
@@ -62,3 +74,102 @@ def test_a_handler_of_the_caller_and_other_threads_are_left_alone():
     thread.start()
     thread.join()
     assert seen == [1, 2]
+
+
+@pytest.mark.parametrize("number", CODES)
+def test_each_signal_is_told_once_and_has_its_code(number):
+    said = []
+    with pytest.raises(KeyboardInterrupt), Interrupts():
+        signal.raise_signal(number)
+    assert farewell(said.append) == farewell(said.append) == CODES[number]
+    assert len(said) == 1 and ("Ctrl-C" if number == signal.SIGINT else number.name) in said[0]
+
+
+def test_a_supervisor_that_asks_twice_does_not_break_what_is_put_in_order():
+    steps = []
+    with pytest.raises(KeyboardInterrupt), Interrupts():
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            signal.raise_signal(signal.SIGTERM)
+            signal.raise_signal(signal.SIGHUP)
+            steps.append("in order")
+    assert steps == ["in order"]
+
+
+def test_nohup_is_respected():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Interrupts():
+            signal.raise_signal(signal.SIGHUP)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_path):
+    words = ["sweep", ARTICLE, "--set", "integrator.turns=40", "--grid", "load.axial=400:2000:16", "--out", tmp_path / "s"]
+    command = [sys.executable, "-m", "raceway", *map(str, words)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
+    end = time.monotonic() + 100.0
+    done = 0
+    while not done and time.monotonic() < end:
+        time.sleep(0.05)
+        try:
+            with open_store(tmp_path / "s") as store:
+                done = store.status()["done"]
+        except RacewayError:
+            continue  # it is being made
+    process.send_signal(number)
+    error = process.communicate(timeout=60.0)[1].decode()
+    assert process.returncode == CODES[number], error
+    assert error.count(f"stopped by {number.name}; no file is left half-written") == 1
+    assert "Traceback" not in error and len(error.strip().splitlines()) == 2, error  # and what is done of how many
+    assert not members(process.pid)
+    found = invoke(*words, "--resume", "--json")
+    whole = invoke(*words[:-1], tmp_path / "whole", "--json")
+    assert json.loads(found.stdout)["rows"] == json.loads(whole.stdout)["rows"]
+
+
+def members(session: int) -> list[str]:
+    """Processes of a session that live."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, _, own, *_ = path.read_text().rpartition(")")[2].split()
+        except OSError:  # it ended meanwhile
+            continue
+        if int(own) == session and state != "Z":
+            found.append(path.parent.name)
+    return found
+
+
+WORKER = """
+import os, subprocess, sys, time
+child = "import os, sys, time; from raceway.orphans import end_with; end_with(int(sys.argv[1])); time.sleep(1000)"
+print(subprocess.Popen([sys.executable, "-c", child, str(os.getpid())]).pid, flush=True)
+time.sleep(1000)
+"""
+
+
+def test_a_worker_ends_with_the_process_that_it_works_for():
+    parent = subprocess.Popen([sys.executable, "-c", WORKER], stdout=subprocess.PIPE, text=True, start_new_session=True)
+    worker = int(parent.stdout.readline())
+    parent.kill()
+    parent.wait()
+    parent.stdout.close()
+    end = time.monotonic() + 30.0
+    while members(parent.pid) and time.monotonic() < end:
+        time.sleep(0.1)
+    left = members(parent.pid)
+    if left:
+        os.kill(worker, signal.SIGKILL)
+    assert not left
+
+
+def threads(_points):
+    return [thread.name for thread in threading.enumerate()]
+
+
+def test_workers_of_joblib_watch_their_parent_from_the_start():
+    assert all(WATCH in names for _, names in Joblib(workers=2).compute(threads, [(0, []), (1, [])]))

@@ -1,6 +1,6 @@
 """How the command line ends: one message for each thing that can go wrong, and the exit code.
 
-0 success, 1 a numerical failure, 2 the user's mistake, 130 stopped with Ctrl-C.  Part of ``raceway.cli``, which alone
+0 success, 1 a numerical failure, 2 the user's mistake; 130, 143, 129 stopped by Ctrl-C, SIGTERM, SIGHUP.  Part of ``raceway.cli``, which alone
 may print and exit.
 """
 
@@ -19,9 +19,13 @@ from typing import Any
 
 import click
 
-from raceway.commands.interrupt import Interrupts
+from raceway.commands.interrupt import Interrupts, farewell, stopped_by
 from raceway.errors import MeshError, RacewayError, SceneError
 from raceway.options import nearest
+
+
+class _Stopped(BaseException):
+    """An interruption that click does not see: it would answer with an empty line."""
 
 
 class Commands(click.Group):
@@ -33,6 +37,12 @@ class Commands(click.Group):
         words = list(sys.argv[1:] if args is None else args)
         extra["standalone_mode"] = False
         sys.exit(guarded(lambda: super(Commands, self).main(words, prog_name="raceway", **extra), words))
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as stop:
+            raise _Stopped from stop
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         known = self.list_commands(ctx)
@@ -56,13 +66,16 @@ def guarded(command: Callable[[], Any], words: list[str]) -> int:
                 code = command()
             sys.stdout.flush()
             return code if isinstance(code, int) else 0
-        except (click.Abort, KeyboardInterrupt):
-            warn("stopped by Ctrl-C; no file is left half-written", label="")
-            return 130
+        except (click.Abort, KeyboardInterrupt, _Stopped):
+            return farewell(_say)
         except BrokenPipeError:
             _silence_stdout()
             return 1
-        except Exception as error:  # the last resort: no traceback reaches the user unless asked for
+        except BaseException as error:  # the last resort: no traceback reaches the user unless asked for
+            if stopped_by() is not None:  # libraries turn an interruption into errors of their own
+                return farewell(_say)
+            if not isinstance(error, Exception):
+                raise
             if debug:
                 traceback.print_exc()
             return report(error, as_json)
@@ -157,6 +170,10 @@ def print_json(content: Any) -> None:
 
 def warn(text: str, label: str = "warning: ") -> None:
     click.echo(click.style(label, fg="yellow", bold=True) + text, err=True)
+
+
+def _say(text: str) -> None:
+    warn(text, label="")
 
 
 def _show_warning(message: Warning | str, category: type[Warning], *_rest: Any, **_named: Any) -> None:

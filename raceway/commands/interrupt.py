@@ -1,49 +1,130 @@
-"""Ctrl-C that is not lost where Python drops exceptions.  Part of ``raceway.cli``.
+"""Ctrl-C and a request to end (SIGTERM, SIGHUP) that are not lost where Python drops exceptions.  Part of ``raceway.cli``.
 
 The compiler of the kernels calls back into Python, and an exception that is raised in such a callback or in a finalizer is
-printed and forgotten.  A Ctrl-C that arrives there is delivered again a moment later.
+printed and forgotten.  A signal that arrives there is delivered again a moment later.
 """
 
 from __future__ import annotations
 
 import _thread
+import atexit
+import os
 import signal
+import sys
 import threading
+from collections.abc import Callable
+from contextlib import suppress
 from types import FrameType
-from typing import Self
+from typing import Any, NoReturn, Self
 
-#: Time after which a Ctrl-C is delivered again [s]: longer than a callback, short for a person.
+#: Time after which a signal is delivered again [s]: longer than a callback, short for a person.
 _AGAIN_S = 0.05
+#: Time that libraries get to end their own threads and processes once the command was stopped [s].
+_LEAVING_S = 3.0
 #: llvmlite's callbacks, finalizers, and weak references' callbacks by their file.
 _CALLBACKS, _FINALIZER, _WEAK = "_raw_object_cache", "__del__", "weakref.py"
+#: What ends a command in order, and what Python does about it when nobody asked for anything else.
+_ENDING = {
+    signal.SIGINT: signal.default_int_handler,
+    signal.SIGTERM: signal.SIG_DFL,
+    signal.SIGHUP: signal.SIG_DFL,
+}
+#: The first one that arrived in this command, and whether that was said.
+_first: int | None = None
+_told = False
+
+
+def stopped_by() -> int | None:
+    """Number of the signal that ended the command; None where none arrived."""
+    return _first
+
+
+def farewell(say: Callable[[str], Any]) -> int:
+    """Say once what stopped the command; the exit code."""
+    global _told
+    number = signal.SIGINT if _first is None else _first
+    if not _told:
+        _told = True
+        with suppress(OSError):  # a terminal that was closed
+            say(f"stopped by {_words(number)}; no file is left half-written")
+    return 128 + number
+
+
+def _words(number: int) -> str:
+    return "Ctrl-C" if number == signal.SIGINT else signal.Signals(number).name
 
 
 class Interrupts:
-    """While entered, Ctrl-C ends in a ``KeyboardInterrupt`` wherever it arrives; without effect outside the main thread."""
+    """While entered, a signal that asks for the end raises a ``KeyboardInterrupt`` wherever it arrives.
+
+    Without effect outside the main thread, and on signals that the caller handles or ignores (``nohup``) itself.  After the
+    first one only Ctrl-C interrupts what is being put in order.
+    """
 
     def __init__(self) -> None:
         self._timer: threading.Timer | None = None
-        self._ours = False
+        self._before: dict[signal.Signals, Any] = {}
 
     def __enter__(self) -> Self:
-        main = threading.current_thread() is threading.main_thread()
-        self._ours = main and signal.getsignal(signal.SIGINT) is signal.default_int_handler
-        if self._ours:
-            signal.signal(signal.SIGINT, self._arrived)
+        global _first, _told
+        if threading.current_thread() is threading.main_thread():
+            for number, usual in _ENDING.items():
+                if signal.getsignal(number) is usual:
+                    self._before[number] = signal.signal(number, self._arrived)
+            if self._before:
+                _first, _told = None, False
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._ours:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number, before in self._before.items():
+            signal.signal(number, before)
         if self._timer is not None:
             self._timer.cancel()
 
     def _arrived(self, number: int, frame: FrameType | None) -> None:
-        if not drops_exceptions(frame):
+        global _first
+        if drops_exceptions(frame):
+            self._timer = threading.Timer(_AGAIN_S, _thread.interrupt_main, (number,))
+            self._timer.daemon = True
+            self._timer.start()
+            return
+        again = _first is not None and number != signal.SIGINT
+        _first = _first or number
+        if not again:
             raise KeyboardInterrupt
-        self._timer = threading.Timer(_AGAIN_S, _thread.interrupt_main, (number,))
-        self._timer.daemon = True
-        self._timer.start()
+
+
+def end(code: int) -> NoReturn:
+    """End the process: whatever ends is in order, and a signal from here on ends it without a word of Python's own."""
+
+    def leave(number: int, _frame: FrameType | None) -> None:
+        if not _told:
+            with suppress(OSError):
+                os.write(2, f"stopped by {_words(number)}\n".encode())
+        os._exit(128 + number)
+
+    for number in _ENDING:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, leave)
+    if _first is not None:
+        _end_quietly(code)
+    sys.exit(code)
+
+
+def _end_quietly(code: int) -> NoReturn:
+    """What libraries still do is done, for a while, but what they complain of in a process that was stopped is not news."""
+    with suppress(OSError, ValueError):
+        sys.stdout.flush()
+    with suppress(OSError, ValueError):
+        sys.stderr.flush()
+    with suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    late = threading.Timer(_LEAVING_S, os._exit, (code,))
+    late.daemon = True
+    late.start()
+    atexit._run_exitfuncs()
+    # Not sys.exit: where an interruption passed through a C library, Python would end by another Ctrl-C of its own.
+    os._exit(code)
 
 
 def drops_exceptions(frame: FrameType | None) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import resource
 import signal
 from collections.abc import Callable, Iterator, Sequence
@@ -10,6 +11,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import TypeVar
 
+from raceway.orphans import end_with
 from raceway.registry import Registry, default_registry
 
 Task = TypeVar("Task")
@@ -37,7 +39,7 @@ def in_processes(
     if not tasks:
         return
     context = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
-    pool = ProcessPoolExecutor(min(processes, len(tasks)), context, _begin, (list(plugins),))
+    pool = ProcessPoolExecutor(min(processes, len(tasks)), context, _begin, (list(plugins), os.getpid()))
     try:
         places = {pool.submit(_do, function, task): place for place, task in enumerate(tasks)}
         for done in as_completed(places):
@@ -46,7 +48,8 @@ def in_processes(
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _begin(plugins: Sequence[Path]) -> None:
+def _begin(plugins: Sequence[Path], parent: int) -> None:
+    end_with(parent)
     # Ctrl-C is the parent's business: it keeps what is finished and drops what has not begun.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for file in plugins:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import os
-import threading
-import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -15,12 +12,10 @@ import attrs
 from raceway.contracts import Lost
 from raceway.errors import PluginError, extra
 from raceway.options import between, option
+from raceway.orphans import end_with
 
 if TYPE_CHECKING:
     from raceway.contracts import Batch
-
-#: How often a worker looks whether the process that it works for is alive [s].
-_WATCH_S = 1.0
 
 
 @attrs.frozen
@@ -74,7 +69,8 @@ class Joblib:
         # One worker too is a process of its own: joblib would take this one.
         workers = max(self.workers, 2)
         before = workers * 2 if self.workers > 1 else 1
-        with parallel_config(backend="loky", inner_max_num_threads=1):
+        begin = {"initializer": end_with, "initargs": (os.getpid(),)}
+        with parallel_config(backend="loky", inner_max_num_threads=1, **begin):
             pool = Parallel(n_jobs=workers, return_as="generator_unordered", batch_size=1, pre_dispatch=before)
             answers = pool(calls)
             try:
@@ -86,18 +82,4 @@ class Joblib:
 
 
 def _answer(work: Callable[[list[Any]], Any], number: int, points: list[Any]) -> tuple[int, Any]:
-    _end_with_parent()
     return number, work(points)
-
-
-@cache
-def _end_with_parent() -> None:
-    """In a worker: end when the process that it works for is killed; joblib's would wait for more to do for minutes."""
-    parent = os.getppid()
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(_WATCH_S)
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
