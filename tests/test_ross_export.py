@@ -144,6 +144,48 @@ def test_directions_give_both_columns_and_the_cross_terms():
         table(made({SPEED: SPEEDS, DIRECTION: [0, 90]}, tables, **changes))
 
 
+def noisy(at):
+    """Noise of either sign in Im Z below 10 000 r/min, a damping above [N/m]."""
+    w = at[SPEED] * RADIANS
+    noise = 10.0 * (-1.0) ** np.arange(w.size).reshape(w.shape)
+    return np.where(at[SPEED] < 1e4, noise, w * damping(at[SPEED]))
+
+
+def test_damping_that_is_not_resolved_is_zero_or_what_is_given():
+    data = made({SPEED: SPEEDS}, z_imag=noisy, error_total=lambda at: 5e-7 + 0 * at[SPEED],
+                equivalent_damping=lambda at: noisy(at) / (at[SPEED] * RADIANS))  # fmt: skip
+    found, raw = table(data), noisy({SPEED: SPEEDS}) / (SPEEDS * RADIANS)
+    hidden = SPEEDS < 1e4  # 5e-7 of 2e8 N/m are 100 N/m
+    assert raw.min() < 0.0 and hidden.sum() == 3
+    np.testing.assert_array_equal(found.damping[:, 0, 0], np.where(hidden, 0.0, raw))
+    np.testing.assert_array_equal(found.damping[:, 1, 1], found.damping[:, 0, 0])
+    assert "damping is not resolved at 3 of 9 points, smaller than its error: 0 stands there" in found.notes
+    given = coefficients(select(data, {}), unresolved=25.0)
+    np.testing.assert_array_equal(given.damping, np.where(hidden, 25.0, raw)[:, None, None] * np.eye(2))
+    assert any("cyy = czz = 25 N s/m stands there, as given" in note for note in given.notes)
+    still = coefficients(select(data, {}), "tangent", 25.0)
+    np.testing.assert_array_equal(still.damping, np.broadcast_to(25.0 * np.eye(2), still.damping.shape))
+    for wrong in (-1.0, np.nan, np.inf):
+        with pytest.raises(SceneError, match="must be a finite damping"):
+            coefficients(select(data, {}), unresolved=wrong)
+
+
+@pytest.mark.parametrize("error, hidden", [(1e-7, "nothing"), (1e-6, "cross terms"), (1e-5, "all")])
+def test_damping_along_directions_is_held_against_the_errors_of_their_receptances(error, hidden):
+    w = 1e3
+    k, c = np.array([[2e8, 1e7], [1e7, 2e8]]), np.array([[1.0, 0.1], [0.1, 1.0]])
+    h = np.linalg.inv(k - MASS * w**2 * np.eye(2) + 1j * w * c)
+    along = {angle: n @ h @ n for angle, n in ((0, [1, 0]), (45, [0.5**0.5, 0.5**0.5]), (90, [0, 1]))}
+    of = np.vectorize(lambda angle: 1.0 / along[angle])
+    data = made({SPEED: np.linspace(0.99, 1.01, 5) * w / RADIANS, DIRECTION: [0, 45, 90]}, scene(excitation={"kind": "unidirectional"}),
+                z_real=lambda at: of(at[DIRECTION]).real, z_imag=lambda at: of(at[DIRECTION]).imag,
+                frequency=lambda at: w / (2.0 * np.pi) + 0.0 * at[SPEED], error_total=lambda at: error + 0.0 * at[SPEED])  # fmt: skip
+    found = table(data).damping
+    # w C is 1000 and 100 N/m; 2e8 N/m times the error, and up to twice that for the difference that cross terms are.
+    expected = {"nothing": c, "cross terms": np.eye(2), "all": np.zeros((2, 2))}[hidden]
+    np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), rtol=1e-8)
+
+
 @pytest.mark.parametrize("tilt", ["locked", "free"])
 def test_forces_along_three_directions_find_the_tangent_of_a_loaded_bearing(tmp_path, tilt):
     """A real bearing with a load across its axis: two ways to one matrix with different diagonal and cross terms."""

@@ -86,13 +86,24 @@ def plot(
     "--from", "source", type=click.Choice(["rotating", "directions", "tangent"]),
     help="Where the matrix comes from [rotating force; tangent in a static sweep].",
 )  # fmt: skip
+@click.option(
+    "--damping", type=float, default=0.0, metavar="C",
+    help="cyy and czz [N s/m] where the sweep's own is smaller than its error [0].",
+)  # fmt: skip
 @click.option("--ross-version", type=click.Choice(["2", "3"]), help="Generation of ROSS [the installed one, else 3].")
 @click.option(
     "--node", type=click.IntRange(min=0), default=0, show_default=True, help="Of the rotor, where the bearing stands."
 )
 @common
 def export(
-    store: Path, ross: Path, at: tuple[str, ...], source: str | None, ross_version: str | None, node: int, as_json: bool
+    store: Path,
+    ross: Path,
+    at: tuple[str, ...],
+    source: str | None,
+    damping: float,
+    ross_version: str | None,
+    node: int,
+    as_json: bool,
 ) -> int:
     """Write kyy, kyz, kzy, kzz, cyy, ... over speed, and over speed and frequency, for ROSS.
 
@@ -114,7 +125,7 @@ def export(
     generation = int(ross_version) if ross_version else found or 3
     if ross_version is None and found is None:
         warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
-    table = coefficients(selection, source)
+    table = coefficients(selection, source, damping)
     file = ross_file(table, generation, slug(selection.title), node, head(selection))
     files: list[str] = []
     failed = attempt(lambda: [file.write(ross)], files)

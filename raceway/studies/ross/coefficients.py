@@ -11,6 +11,8 @@ Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken o
 
 from __future__ import annotations
 
+import math
+
 import attrs
 import numpy as np
 
@@ -56,12 +58,13 @@ class Coefficients:
         return {**found, "kxx": self.axial}
 
 
-def coefficients(selection: Selection, source: str | None = None) -> Coefficients:
+def coefficients(selection: Selection, source: str | None = None, unresolved: float = 0.0) -> Coefficients:
     """The coefficients of a selection.
 
     Parameters
     ----------
     source : "rotating", "directions" or "tangent"; by default what the sweep's excitation gives
+    unresolved : cyy and czz [N s/m] where the sweep's own is smaller than its error, which may have either sign
 
     Raises
     ------
@@ -70,6 +73,8 @@ def coefficients(selection: Selection, source: str | None = None) -> Coefficient
     RacewayError
         Points without result, or a source that this sweep does not have.
     """
+    if not (math.isfinite(unresolved) and unresolved >= 0.0):
+        raise SceneError.at("--damping", unresolved, "must be a finite damping of at least 0 N s/m")
     purpose = "and a table of coefficients goes over speed and frequency only"
     only_axes(selection, (SPEED, SPIN, DIRECTION), purpose)
     source = source or _default_source(selection)
@@ -80,15 +85,35 @@ def coefficients(selection: Selection, source: str | None = None) -> Coefficient
     _refuse_gaps(selection)
     _refuse_few(selection)
     if source == "tangent":
-        stiffness, damping, definition, notes = tangent(selection)
+        stiffness, damping, resolved, definition, notes = tangent(selection)
     else:
         refuse_without_motion(selection)
         made = rotating if source == "rotating" else directions
-        stiffness, damping, definition, notes = made(selection)
+        stiffness, damping, resolved, definition, notes = made(selection)
+    damping, told = _without_noise(damping, resolved, unresolved)
+    notes += told
     axial = reduced(selection)[..., 0, 0] if "stiffness" in selection.dataset else np.zeros(stiffness.shape[:-2])
     axial = axial[..., 0] if axial.ndim > stiffness.ndim - 2 else axial
     speed, frequency, stiffness, damping, axial = _table(selection, stiffness, damping, axial)
     return Coefficients(speed, frequency, stiffness, damping, axial, source, definition, tuple(notes))
+
+
+def _without_noise(damping: np.ndarray, resolved: np.ndarray, instead: float) -> tuple[np.ndarray, list[str]]:
+    """Damping (..., 2, 2) with what is not resolved replaced, and what was done.
+
+    Notes
+    -----
+    Noise of either sign would be read as damping, and a negative one as instability.  A point whose cyy or czz is not resolved has
+    no cross terms either: they alone would make the matrix indefinite.
+    """
+    known = resolved[..., 0, 0] & resolved[..., 1, 1]
+    out = np.where(resolved & known[..., None, None], damping, 0.0) + np.where(
+        known[..., None, None], 0.0, instead * np.eye(2)
+    )
+    if known.all():
+        return out, []
+    given = f"cyy = czz = {instead:g} N s/m stands there, as given" if instead else "0 stands there"
+    return out, [f"damping is not resolved at {int((~known).sum())} of {known.size} points, smaller than its error: {given}"]
 
 
 def _default_source(selection: Selection) -> str:

@@ -1,6 +1,7 @@
 """Where a matrix over y, z comes from: a rotating force, forces along fixed directions, the tangent of an equilibrium.
 
-Each source gives stiffness and damping (..., 2, 2) [N/m, N s/m], what they are in words, and notes for the table's reader.
+Each source gives stiffness and damping (..., 2, 2) [N/m, N s/m], where the damping is resolved (..., 2, 2), what they are in words,
+and notes for the table's reader.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ DIRECTION = "excitation.direction_deg"
 #: Backward over forward amplitude, or cross over direct receptance, above which one number does not stand for the bearing.
 MOST_ANISOTROPY = 0.01
 
-Found = tuple[np.ndarray, np.ndarray, str, list[str]]
+Found = tuple[np.ndarray, np.ndarray, np.ndarray, str, list[str]]
 
 
 def refuse_without_motion(selection: Selection) -> None:
@@ -49,11 +50,13 @@ def rotating(selection: Selection) -> Found:
     identity = np.eye(2)
     stiffness = data["equivalent_stiffness"].values[..., None, None] * identity
     damping = data["equivalent_damping"].values[..., None, None] * identity
+    resolved = np.abs(data["z_imag"].values) > _errors(data) * np.hypot(data["z_real"].values, data["z_imag"].values)
     notes = [
         f"isotropic: kyy = kzz = K, cyy = czz = C, no cross terms; the counter-rotating part of the orbits is at most {share:.1e}",
         *_common(selection),
     ]
-    return stiffness, damping, f"{_kind_words(selection)} under a rotating force ({kind}), {_tilt_words(selection)}", notes
+    words = f"{_kind_words(selection)} under a rotating force ({kind}), {_tilt_words(selection)}"
+    return stiffness, damping, np.broadcast_to(resolved[..., None, None], damping.shape), words, notes
 
 
 def directions(selection: Selection) -> Found:
@@ -63,7 +66,7 @@ def directions(selection: Selection) -> Found:
     -----
     Along a unit vector n the receptance is h = n' H n: h(0) = Hyy, h(90) = Hzz, h(45) = (Hyy + Hzz + Hyz + Hzy) / 2.  The
     matrix is taken as symmetric (no gyroscopic moments).  |Hzy| is known from the orbit under the force along y, too:
-    forward^2 + backward^2 = (|x_y|^2 + |x_z|^2) / 2.
+    forward^2 + backward^2 = (|x_y|^2 + |x_z|^2) / 2.  An error dH of H moves Z = H^-1 by at most |Z| |dH| |Z|.
     """
     given = selection.axes[DIRECTION]
     missing = [angle for angle in (0, 90) if angle not in given]
@@ -90,17 +93,32 @@ def directions(selection: Selection) -> Found:
             )
         cross = np.zeros_like(h[0])
         told = f"no cross terms: a force along one direction moves the ring across by at most {across:.1e} of its motion"
-    receptance = np.stack([np.stack([h[0], cross], -1), np.stack([cross, h[90]], -1)], -2)
-    dynamic = np.linalg.inv(receptance)
+    dynamic = np.linalg.inv(_symmetric(h[0], cross, h[90]))
+    off = {angle: _errors(data)[..., k] * np.abs(h[angle]) for k, angle in enumerate(given)}
+    apart = off[45] + 0.5 * (off[0] + off[90]) if 45 in given else np.zeros_like(off[0])
+    error = np.abs(dynamic) @ _symmetric(off[0], apart, off[90]) @ np.abs(dynamic)
     w, mass = w[..., 0, None, None], data["mass"].values[..., 0, None, None]
     stiffness = dynamic.real + mass * w**2 * np.eye(2)
     notes = [told, *_common(selection)]
     return (
         stiffness,
         dynamic.imag / w,
+        np.abs(dynamic.imag) > error,
         f"{_kind_words(selection)} under forces along fixed directions, {_tilt_words(selection)}",
         notes,
     )
+
+
+def _symmetric(first: np.ndarray, cross: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """(..., 2, 2) of the entries (...)."""
+    return np.stack([np.stack([first, cross], -1), np.stack([cross, last], -1)], -2)
+
+
+def _errors(data: Any) -> np.ndarray:
+    """Relative errors of Z; 0 where none was estimated."""
+    if "error_total" not in data:
+        return np.zeros(data["z_real"].shape)
+    return np.asarray(np.nan_to_num(data["error_total"].values), dtype=float)
 
 
 def _across(data: Any, given: list[Any], h: dict[Any, np.ndarray]) -> float:
@@ -122,7 +140,7 @@ def tangent(selection: Selection) -> Found:
     matrix = reduced(selection)
     coupling = np.abs(matrix[..., 0, 1:])
     radial = matrix[..., 1:, 1:]
-    notes = ["no damping: the tangent of an equilibrium has none, and cyy ... czz are 0"]
+    notes = ["the tangent of an equilibrium has no damping"]
     if selection.value("supports.axial") == "force":
         radial = radial - matrix[..., 1:, :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
         notes.append("kyy ... kzz at constant axial force (supports.axial), kxx with the radial motions held")
@@ -132,7 +150,8 @@ def tangent(selection: Selection) -> Found:
     if size > 1e-6:
         notes.append(f"left out: the coupling of axial and radial motions, {size:.1e} of the geometric mean of kxx and kyy")
     notes.append("small motions about the equilibrium under the constant loads: the unbalance does not change them")
-    return radial, np.zeros_like(radial), f"tangent of the equilibrium, {_tilt_words(selection)}", notes
+    none = np.zeros_like(radial)
+    return radial, none, none.astype(bool), f"tangent of the equilibrium, {_tilt_words(selection)}", notes
 
 
 def reduced(selection: Selection) -> np.ndarray:
@@ -155,7 +174,7 @@ def _kind_words(selection: Selection) -> str:
 
 
 def _common(selection: Selection) -> list[str]:
-    return [*_mass(selection), *_rotor(selection), *_amplitude(selection), *_resolved(selection)]
+    return [*_mass(selection), *_rotor(selection), *_amplitude(selection)]
 
 
 def _rotor(selection: Selection) -> list[str]:
@@ -187,18 +206,4 @@ def _amplitude(selection: Selection) -> list[str]:
     size = f"{low:.4g} N" if high - low <= 1e-6 * high else f"{low:.4g} to {high:.4g} N"
     return [
         f"under forces of amplitude {size}; a rotor model takes the numbers as linear: where its bearing force differs, iterate"
-    ]
-
-
-def _resolved(selection: Selection) -> list[str]:
-    """How many dampings are smaller than their error."""
-    data = selection.dataset
-    if "error_total" not in data:
-        return []
-    z = np.hypot(data["z_real"].values, data["z_imag"].values)
-    hidden = np.abs(data["z_imag"].values) <= np.nan_to_num(data["error_total"].values) * z
-    if not hidden.any():
-        return []
-    return [
-        f"damping is not resolved at {int(hidden.sum())} of {hidden.size} points: smaller than its error, of either sign"
     ]
