@@ -1,7 +1,7 @@
 """Documents made from the program itself: ``python -m benchmarks.documents`` writes docs/scene.md and README's screen.
 
 docs/scene.md holds every key of a scene with unit, default, rule and meaning, read from the declarations that the
-program checks scenes with.  README shows what ``raceway run examples/b7206.toml`` prints.
+program checks scenes with.  README shows the scene examples/minimal.toml and what ``raceway run`` prints of it.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from raceway.schema import keys
 ROOT = Path(__file__).resolve().parents[1]
 SCENE = ROOT / "docs" / "scene.md"
 README = ROOT / "README.md"
+SHOWN = ROOT / "examples" / "minimal.toml"
+_SCENE = re.compile(r"(<!-- scene -->\n```toml\n)(.*?)(```\n<!-- /scene -->)", re.DOTALL)
 _SCREEN = re.compile(r"(<!-- screen -->\n```\n)(.*?)(```\n<!-- /screen -->)", re.DOTALL)
 
 _HEAD = """# The scene file
@@ -113,9 +115,9 @@ def _default(value: Any) -> str:
 
 
 def screen() -> str:
-    """What ``raceway run examples/b7206.toml`` prints with warm caches, without the name of the folder."""
+    """What ``raceway run examples/minimal.toml`` prints with warm caches, without the name of the folder."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "raceway", "run", "examples/b7206.toml", "--out", folder]
+        command = [sys.executable, "-m", "raceway", "run", str(SHOWN.relative_to(ROOT)), "--out", folder]
         environment = {**os.environ, "COLUMNS": "110", "NO_COLOR": "1"}
         for _ in range(2):
             done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT, env=environment)
@@ -124,8 +126,16 @@ def screen() -> str:
 
 
 def with_screen(text: str, shown: str) -> str:
-    """The README with its screen replaced."""
+    """The README with its scene and the screen of that scene replaced."""
+    scene = SHOWN.read_text(encoding="utf-8")
+    text = _SCENE.sub(lambda match: match[1] + scene + match[3], text)
     return _SCREEN.sub(lambda match: match[1] + shown + match[3], text)
+
+
+def shown_scene(text: str) -> str:
+    """The scene that a README shows."""
+    found = _SCENE.search(text)
+    return found[2] if found else ""
 
 
 def shown_screen(text: str) -> str:

@@ -115,7 +115,8 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         bodies=None if model.bodies is None else model.bodies.report(model, equilibrium),
         warnings=tuple(
             dict.fromkeys(
-                [*unused(scene), *equilibrium.warnings, *_bodies_warnings(model, equilibrium), *_motion_warnings(motions)]
+                # A mesh too coarse for its answer comes first, keys without effect last.
+                [*_bodies_warnings(model, equilibrium), *equilibrium.warnings, *_motion_warnings(motions), *unused(scene)]
             )
         ),
     )

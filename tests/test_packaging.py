@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import raceway
-from benchmarks.documents import README, SCENE, scene_page, screen, shown_screen
+from benchmarks.documents import README, SCENE, SHOWN, scene_page, screen, shown_scene, shown_screen
 from benchmarks.time_loop import SAME, loops
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -68,12 +68,14 @@ def test_the_scene_page_is_what_the_declarations_say():
     assert SCENE.read_text(encoding="utf-8") == scene_page(), "run python -m benchmarks.documents"
 
 
-def test_the_readme_shows_the_real_screen():
+def test_the_readme_shows_the_screen_of_the_scene_that_it_shows():
     # Down to the tangents: below stand rounding, times and memory of one machine.
     def top(text: str) -> str:
         return text.partition("Dynamic stiffness at")[0]
 
-    shown = shown_screen(README.read_text(encoding="utf-8"))
+    text = README.read_text(encoding="utf-8")
+    assert shown_scene(text) == SHOWN.read_text(encoding="utf-8"), "run python -m benchmarks.documents"
+    shown = shown_screen(text)
     assert "tangent kyy" in top(shown)
     assert top(shown) == top(screen()), "run python -m benchmarks.documents"
 

@@ -49,7 +49,14 @@ def settings() -> dict[str, dict[str, Any]]:
             }
             for n in (2, 4, 8)
         },
-        "elastic, nodal, 3.2 mm elements": elastic("b7206_elastic"),
+        "elastic, nodal, 3.2 mm elements": {
+            "bodies": {"kind": "elastic", "formulation": "incompatible"},
+            "contact": {"kind": "penalty", "discretisation": "nodal"},
+            "mesh": {
+                "kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 36, "growth": 3.0,
+                "patch": 0.5, "ball_load": 300.0,
+            },
+        },
         "elastic, resultant, 3.2 mm elements": elastic("b7206_elastic_coarse"),
     }  # fmt: skip
 

@@ -8,11 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.evidence import Row, below
+from raceway.commands.frame import registry_with
+from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.study import stability
+from raceway.studies.stability.workers import in_parallel
 
 TITLE = "Stability: stiff and extreme cases"
 COMMAND = "raceway stability"
 #: The whole table, row by row.
+FOREIGN = Path(__file__).resolve().parents[2] / "tests" / "cubic_law.py"
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "reports" / "stability"
 _SECONDS = 480.0
 
@@ -29,7 +33,7 @@ def rows() -> list[Row]:
         ),
         below("processor time of both processes over two [s]", 0.5 * content["cpu_s"], _SECONDS, COMMAND, wall),
     ]
-    out += [*_limits(found), *_orbits(found), *_energy(found), *_chatter(found)]
+    out += [_foreign(), *_limits(found), *_orbits(found), *_energy(found), *_chatter(found)]
     for name in dict.fromkeys(row["case"] for row in found):
         own = [row for row in found if row["case"] == name]
         good = sum(row["verdict"] == "as expected" for row in own)
@@ -39,6 +43,15 @@ def rows() -> list[Row]:
             )
         )
     return out
+
+
+def _foreign() -> Row:
+    """A conforming law that is unlike Hertz', through every case of contact laws."""
+    cases = [one for one in catalogue(registry_with([FOREIGN])) if one.arguments.get("shown", {}).get("law") == "cubic"]
+    found = [row for _, rows in in_parallel(cases, 2, [FOREIGN]) for row in rows]
+    failed = sum(row.verdict == "failed" for row in found)
+    words = "rows that are not as expected of a foreign law, 2e17 N/m3 times the cube of the approach"
+    return below(words, float(failed), 0.0, f"{COMMAND} --plugin tests/cubic_law.py", f"of {len(found)}, {len(cases)} cases")
 
 
 def _of(found: Iterable[dict[str, Any]], case: str, keep: Callable[[dict[str, Any]], bool]) -> list[dict[str, Any]]:

@@ -51,7 +51,7 @@ class ElasticPoints(ElasticBodies):
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Contacts with too few points for their pressure; elements that lock."""
-        found = super().warnings(model, equilibrium)
+        found: list[str] = []
         columns = self.ball_columns(model, equilibrium)
         z = model.system.ball_count
         force = equilibrium.contact_force
@@ -65,4 +65,4 @@ class ElasticPoints(ElasticBodies):
                 f"only {least:.0f} surface points carry a loaded contact: its pressure and the displacement depend on the mesh; "
                 "take more mesh.nodes_per_semi_axis, with azimuth_cells = 'graded', or bodies.kind = 'condensed'"
             )
-        return found
+        return found + super().warnings(model, equilibrium)

@@ -46,7 +46,7 @@ class ElasticResultants(ElasticBodies):
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Meshes that do not tell the contacts' compliance from the bodies', contacts that moved away; elements that lock."""
-        found = super().warnings(model, equilibrium)
+        found = []
         unsure = self._uncertainty(model, equilibrium)
         if unsure > _UNSURE:
             found.append(
@@ -59,7 +59,7 @@ class ElasticResultants(ElasticBodies):
                 f"a contact angle lies {np.degrees(turned):.2g} deg from that with rigid bodies, where the mesh's own compliance "
                 "was looked at: compare with bodies.kind = 'condensed', which follows the angle"
             )
-        return found
+        return found + super().warnings(model, equilibrium)
 
     def _uncertainty(self, model: Model, equilibrium: Equilibrium) -> float:
         """Half the spread over depths of what is taken off, over the compliance of the most loaded contact."""

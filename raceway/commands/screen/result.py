@@ -24,7 +24,9 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_bodies(result.get("model"))]
     rows += _cost(result["cost"])
     rows += _stability(result["stability"])
-    parts: list[RenderableType] = [
+    # What makes the numbers doubtful is read before them.
+    parts: list[RenderableType] = [Text(f"warning: {text}", style="yellow") for text in result["warnings"]]
+    parts += [
         Text(result["title"], style="bold"),
         Text(_bearing(result["scene"]), style="dim"),
         sections(rows),
@@ -33,7 +35,6 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     shown = "; ".join(f"{p['part']} ({p['why']})" for p in left_out[:_LEFT_OUT_SHOWN])
     more = len(left_out) - _LEFT_OUT_SHOWN
     parts.append(Text(f"left out: {shown}{f'; and {more} more, see raceway plan' if more > 0 else ''}", style="dim"))
-    parts += [Text(f"warning: {text}", style="yellow") for text in result["warnings"]]
     parts += written(files)
     return Group(*parts)
 
