@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import json
-import sys
 
 import pytest
 
-from raceway import __main__ as start
-from tests.command_line import LAW, MINIMAL, invoke, raceway
+from tests.command_line import LAW, MINIMAL, invoke, python, raceway
+
+#: A signal while the commands are imported.
+LOADING = """
+import signal, sys
+class Interrupted:
+    def __getattr__(self, name):
+        signal.raise_signal(signal.{name})
+sys.modules["raceway.cli"] = Interrupted()
+from raceway.__main__ import main
+main()
+"""
 
 
-def test_ctrl_c_before_the_commands_are_loaded(monkeypatch, capsys):
-    class Interrupted:
-        def __getattr__(self, name):
-            raise KeyboardInterrupt
-
-    monkeypatch.setitem(sys.modules, "raceway.cli", Interrupted())
-    with pytest.raises(SystemExit) as ended:
-        start.main()
-    assert ended.value.code == 130
-    assert capsys.readouterr().err == "stopped by Ctrl-C\n"
+@pytest.mark.parametrize(("name", "code", "words"), [("SIGINT", 130, "Ctrl-C"), ("SIGTERM", 143, "SIGTERM")])
+def test_a_signal_before_the_commands_are_loaded(name, code, words):
+    found = python("-c", LOADING.format(name=name))
+    assert found.returncode == code
+    assert found.stderr == f"stopped by {words}; no file is left half-written\n"
 
 
 @pytest.mark.parametrize("as_json", [False, True])

@@ -71,7 +71,7 @@ class Interrupts:
             for number, usual in _ENDING.items():
                 if signal.getsignal(number) is usual:
                     self._before[number] = signal.signal(number, self._arrived)
-            if self._before:
+            if self._before:  # not inside another one of this command
                 _first, _told = None, False
         return self
 
