@@ -12,8 +12,9 @@ from tests.command_line import LAW, MINIMAL, invoke, python, raceway
 LOADING = """
 import signal, sys
 class Interrupted:
-    def __getattr__(self, name):
-        signal.raise_signal(signal.{name})
+    def __getattr__(self, attribute):
+        if attribute == "main":
+            signal.raise_signal(signal.{name})
 sys.modules["raceway.cli"] = Interrupted()
 from raceway.__main__ import main
 main()

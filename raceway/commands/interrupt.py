@@ -12,6 +12,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
@@ -21,6 +22,8 @@ from typing import Any, NoReturn, Self
 _AGAIN_S = 0.05
 #: Time that libraries get to end their own threads and processes once the command was stopped [s].
 _LEAVING_S = 3.0
+#: Time in which a supervisor that asks again is not heard [s].
+_ORDER_S = 5.0
 #: llvmlite's callbacks, finalizers, and weak references' callbacks by their file.
 _CALLBACKS, _FINALIZER, _WEAK = "_raw_object_cache", "__del__", "weakref.py"
 #: What ends a command in order, and what Python does about it when nobody asked for anything else.
@@ -58,12 +61,13 @@ class Interrupts:
     """While entered, a signal that asks for the end raises a ``KeyboardInterrupt`` wherever it arrives.
 
     Without effect outside the main thread, and on signals that the caller handles or ignores (``nohup``) itself.  After the
-    first one only Ctrl-C interrupts what is being put in order.
+    first one only Ctrl-C interrupts what is being put in order, for some seconds.
     """
 
     def __init__(self) -> None:
         self._timer: threading.Timer | None = None
         self._before: dict[signal.Signals, Any] = {}
+        self._until = 0.0
 
     def __enter__(self) -> Self:
         global _first, _told
@@ -88,8 +92,9 @@ class Interrupts:
             self._timer.daemon = True
             self._timer.start()
             return
-        again = _first is not None and number != signal.SIGINT
-        _first = _first or number
+        again = _first is not None and number != signal.SIGINT and time.monotonic() < self._until
+        if _first is None:
+            _first, self._until = number, time.monotonic() + _ORDER_S
         if not again:
             raise KeyboardInterrupt
 
