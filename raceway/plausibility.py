@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import attrs
 import numpy as np
 
 from raceway.core.record import Record
@@ -44,7 +45,8 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
     beyond: dict[str, str] = {}
     for k in chosen:
         force = record.contact_force[k]
-        inner, outer = contact_angles(model, record.displacement[k], record.ball[k], force, record.time[k])
+        now = attrs.evolve(model, system=model.system.at_speed(record.time[k]))
+        inner, outer = contact_angles(now, record.displacement[k], record.ball[k], force, record.time[k])
         least = min(least, float(np.nanmin(inner, initial=np.inf)))
         for text in beyond_the_groove(model, inner, outer, force):
             beyond.setdefault(text.split(" reaches ")[0], text)

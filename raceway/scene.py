@@ -226,7 +226,10 @@ class Kinematics:
         "none", help="gyroscopic moment of the balls: the hypothesis", rule=one_of("none", "outer_race", "shared")
     )
     spin_speed_rpm: float | None = option(
-        None, unit="r/min", help="default: excitation.speed_rpm, 0 in a static scene", rule=optional(between(0.0, 1e9))
+        None,
+        unit="r/min",
+        help="default: excitation.speed_rpm, which a run_up changes; 0 in a static scene",
+        rule=optional(between(0.0, 1e9)),
     )
     radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
     ring_growth: bool = option(False, help="adds the centrifugal growth of the inner ring")
@@ -295,6 +298,13 @@ class Scene:
         if rpm is None:
             rpm = getattr(self.excitation, "speed_rpm", 0.0) if self.excitation is not None else 0.0
         return rpm * pi / 30.0
+
+    @property
+    def spin_changes(self) -> bool:
+        """Whether the spin speed is that of an excitation that changes its speed, and changes with it."""
+        excitation = self.excitation
+        changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
+        return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
     def as_dict(self) -> dict[str, Any]:
         """Every key of the scene file with its value, defaults too; loads again as the same scene."""

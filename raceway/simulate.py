@@ -106,7 +106,7 @@ def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -
     start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
     if start != "orbit" or not method.inertial:
         return start, None, ()
-    excitation, system = model.excitation, model.system.at_standstill()
+    excitation, system = model.excitation, model.system.at_speed(0.0).at_standstill()
     if excitation.period_s is None:
         # What changes its speed starts on the orbit of its first moment.
         steady = getattr(excitation, "steady", None)
@@ -121,15 +121,17 @@ def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -
 
 
 def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:
-    q, ball = equilibrium.displacement, equilibrium.ball
+    q, ball, system = equilibrium.displacement, equilibrium.ball, model.system.at_speed(0.0)
     if getattr(model.scene.integrator.method, "steady", False):
         # Searched for from the equilibrium: what would happen there under the force at once is of no use.
         return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
+    if model.system.spin is not None and orbit is None:
+        q, ball, _ = system.settle(q)
     if not model.scene.integrator.method.inertial:
-        return static_orbit(model.system, q, ball, start == "ramp")
+        return static_orbit(system, q, ball, start == "ramp")
     if orbit is not None:
-        return from_orbit(model.system, orbit, dt)
-    return at_rest(model.system, q, ball, start == "ramp")
+        return from_orbit(system, orbit, dt)
+    return at_rest(system, q, ball, start == "ramp")
 
 
 def _ramp_turns(model: Model) -> float:

@@ -1,4 +1,4 @@
-"""What the running speed changes: preload of pairs, held displacements."""
+"""What the running speed changes: preload of pairs, held displacements, run-ups."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.scene_file import load_scene, scene_from_dict
 from tests.reference.mounted import FORCE, approach, axial, row, secant
 
-TITLE = "What the running speed changes: preload, held displacements"
+TITLE = "What the running speed changes: preload, held displacements, run-ups"
 MOUNTED = "python -m pytest tests/depth/test_mounting.py"
+RUN_UP = "python -m pytest tests/depth/test_speeds.py"
+#: K over a run-up against steady runs; damping that a run-up without any may tell [N s/m].
+_STEADY, _NOTHING = 5e-3, 1.0
 #: Of a stiffness or a force, against a solution by independent code.
 _LIMIT = 1e-3
 
 
 def rows() -> list[Row]:
-    return [*_pairs(), *_grown(), *_held()]
+    return [*_pairs(), *_grown(), *_held(), *_run_ups(), *_example()]
 
 
 def _scene(**tables: Any) -> Any:
@@ -76,3 +79,30 @@ def _held() -> list[Row]:
         note = f"{1e-6 * k:.2f} against {1e-6 * expected:.2f} N/um"
         out.append(below(f"{name} kyy", _off(k, expected), _LIMIT, MOUNTED, note))
     return out
+
+
+def _run_ups() -> list[Row]:
+    """B7206C, 400 N, 2 kg, 1e-4 kg m, tilt locked, half a second."""
+    out, common = [], {"load": {"axial": 400.0}, "rotor": {"mass": 2.0}}
+    for first, last in ((6000.0, 15000.0), (15000.0, 6000.0)):
+        excitation = {"kind": "run_up", "first_speed_rpm": first, "speed_rpm": last, "duration_s": 0.5, "unbalance": 1e-4}
+        identifier, steps = {"kind": "order_tracking", "window_turns": 4.0}, {"steps_per_turn": 120}
+        result = run(_scene(**common, excitation=excitation, identifier=identifier, integrator=steps))
+        found, mass = result.identification.series, result.model.mass_used
+        for rpm in (6150.0, 9000.0, 12000.0, 14900.0):
+            w, z = min(found, key=lambda one: abs(one[0] - rpm * np.pi / 30.0))
+            here = w * 30.0 / np.pi
+            steady = {"kind": "bidirectional", "speed_rpm": here, "unbalance": 1e-4}
+            expected = run(_scene(**common, excitation=steady)).identification.equivalent_stiffness
+            k = z.real + mass * w**2
+            note = f"{1e-6 * k:.2f} against {1e-6 * expected:.2f} N/um; C {z.imag / w:.2g} N s/m"
+            name = f"{first:g} to {last:g} r/min: error of K at {here:.0f} r/min against a steady run"
+            out.append(below(name, _off(k, expected), _STEADY, RUN_UP, note))
+    return out
+
+
+def _example() -> list[Row]:
+    found = run(load_scene("examples/run_up.toml")).identification
+    worst = max(abs(z.imag / w) for w, z in found.series)
+    note = "largest of the series; m (w' + 2 w A' / A) / w is 12 to 31 N s/m"
+    return [below("examples/run_up.toml, no damping: C, N s/m", worst, _NOTHING, "raceway run examples/run_up.toml", note)]

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.contracts import ContactPairs
+from raceway.core.changing_speed import ChangingSpeed
 from raceway.core.geometry import BallBearing
 from raceway.core.hertz import Ellipse, contact_modulus
 from raceway.core.plugin_kernel import plugin_kernel
@@ -17,7 +18,7 @@ from raceway.core.signatures import FORCE
 from raceway.errors import PluginError, RacewayError
 from raceway.estimate import axial_approach
 from raceway.plan import Plan
-from raceway.ring import ring_inertia
+from raceway.ring import radial_growth, ring_inertia
 from raceway.scene import Scene
 
 
@@ -111,10 +112,7 @@ def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
     rotor = scene.rotor
     mass, tilt = ring_inertia(scene)
     translation, rotation = rotor.mass + mass, rotor.transverse_inertia + tilt
-    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0])
-    # dH/dt of a spinning rotor: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
-    damping[3, 4] = rotor.polar_inertia * scene.spin_speed
-    damping[4, 3] = -damping[3, 4]
+    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0]) + rotor_gyroscopic(scene)
     shaft = scene.supports.tilt if isinstance(scene.supports.tilt, float) else 0.0
     return {
         "mass": np.diag([translation] * 3 + [rotation] * 2),
@@ -137,6 +135,27 @@ def excitation(scene: Scene) -> dict[str, Any]:
             f"excitation '{scene.excitation.name}': parameters() returned shape {parameters.shape}; it must be (k,)"
         )
     return {"force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"), "force_params": parameters}
+
+
+def changing_speed(scene: Scene) -> ChangingSpeed | None:
+    """What follows the speed of an excitation that changes it; None where the spin speed is steady."""
+    if not scene.spin_changes:
+        return None
+    growth = radial_growth(scene) - scene.kinematics.radial_expansion
+    return ChangingSpeed(scene.excitation.phase, scene.spin_speed, growth, rotor_gyroscopic(scene))
+
+
+def rotor_gyroscopic(scene: Scene) -> np.ndarray:
+    """(5, 5) part of the damping that a spinning rotor makes [N m s/rad].
+
+    Notes
+    -----
+    dH/dt: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
+    """
+    found = np.zeros((5, 5))
+    found[3, 4] = scene.rotor.polar_inertia * scene.spin_speed
+    found[4, 3] = -found[3, 4]
+    return found
 
 
 def seat_of(scene: Scene, inner: bool) -> str | float:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.bodies.basis import Basis, Built, excitation, law_params, linear_parts, make_basis
+from raceway.bodies.basis import Basis, Built, changing_speed, excitation, law_params, linear_parts, make_basis
 from raceway.bodies.mounting import place_ring
 from raceway.core.bodies import ring
 from raceway.core.geometry import BallBearing
@@ -41,6 +41,7 @@ def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
         table=_ball_table(scene, plan, basis.geometry, basis.inner, basis.outer, basis.azimuth),
         **linear_parts(scene, plan),
         **excitation(scene),
+        spin=changing_speed(scene),
     )
 
 

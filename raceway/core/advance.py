@@ -64,18 +64,21 @@ def advance(
     if start.memory is not None:
         memory[:] = start.memory
     done, last = schedule.first, schedule.first + schedule.steps
+    # A speed that changes is another one in every step, which ends at its time.
+    addressed, longest = (system, _CHUNK) if system.spin is None else (_addressed(system), 1)
     while done < last:
-        count = min(_CHUNK, last - done)
+        count = min(longest, last - done)
+        now = addressed.at_speed((done + count) * schedule.dt)
         taken = loop(
-            system.kernel, system.law, system.force, system.law_params, system.scalars, system.table,
-            system.force_params, system.mass, system.damping, system.stiffness, system.free, system.load,
+            now.kernel, now.law, now.force, now.law_params, now.scalars, now.table,
+            now.force_params, now.mass, now.damping, now.stiffness, now.free, now.load,
             coefficients, schedule.dt, schedule.ramp, done, count, motion, ball, before, memory,
             schedule.stride, rows, probes, counters,
         )  # fmt: skip
         done += taken
         if taken < count:
             raise _failure(system, schedule, done, motion, ball, counters)
-        if on_chunk is not None:
+        if on_chunk is not None and (longest == _CHUNK or done == last or done % _CHUNK == 0):
             on_chunk(done - schedule.first, schedule.steps)
     kept = int(counters[ROWS])
     rows, probes = rows[:kept], probes[:kept]
@@ -97,6 +100,13 @@ def advance(
             "peak_contact_force_n": float(counters[CONTACT_FORCE]),
         },
     )
+
+
+def _addressed(system: System) -> System:
+    """For loops that are called for every step."""
+    from raceway.core.address import by_address
+
+    return by_address(system)
 
 
 def _step(

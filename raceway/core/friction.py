@@ -54,13 +54,17 @@ def friction_energy(system: System, record: Record) -> FrictionEnergy:
 def _place(system: System, record: Record) -> np.ndarray:
     """(n, Z, 2) tangential place of the inner and the outer contact [m]; the slip is the place at which nothing pulls."""
     scalars, table = system.scalars, system.table
-    azimuth = np.arctan2(table[:, SINE], table[:, COSINE]) + scalars[CAGE] * record.time[:, None]
+    travelled, rest = scalars[CAGE] * record.time, scalars[REST_RADIAL]
+    if system.spin is not None:
+        travelled = system.spin.cage_angle(scalars[CAGE], record.time)
+        rest = rest + system.spin.growth * ((system.spin.speed(record.time) / system.spin.reference) ** 2 - 1.0)[:, None]
+    azimuth = np.arctan2(table[:, SINE], table[:, COSINE]) + travelled[:, None]
     c, s = np.cos(azimuth), np.sin(azimuth)
     x, y, z, tilt_y, tilt_z = (record.displacement[:, k, None] for k in range(5))
     side, lever = table[:, SIDE], table[:, LEVER]
     turn = side * (tilt_y * s - tilt_z * c)
     axial = scalars[REST_AXIAL] + table[:, SHIFT] + side * x + scalars[TILT_ARM] * turn
-    radial = scalars[REST_RADIAL] + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
+    radial = rest + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
     p = record.ball
     groove = scalars[OFFSET_INNER] + 0.5 * scalars[DIAMETER]
     inner = scalars[OFFSET_INNER] * np.arctan2(axial - p[:, :, 0], radial - p[:, :, 1]) - groove * turn

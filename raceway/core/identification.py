@@ -69,6 +69,22 @@ def stiffness(force: np.ndarray, displacement: np.ndarray) -> complex:
     return complex(power / work) if abs(work) > 0.0 and abs(power) > 0.0 else complex(np.nan, np.nan)
 
 
+def steady_stiffness(force: np.ndarray, displacement: np.ndarray, change: np.ndarray) -> complex:
+    """Z [N/m] of the steady motion, from the 1x vectors (5,) of one that changes under the additional forces ``change`` (5,).
+
+    Notes
+    -----
+    With D the (5, 5) dynamic stiffness of the steady motion, D x + change = F, and D (x + d) = F where D d = change, so that
+    F^H d = (x + d)^H D^H d.  D is symmetric: along a motion whose stiffness is Z, D^H is D Z* / Z, and to first order in
+    ``change`` F^H d = Z* / Z x^H change, moments on free tilts included.
+    """
+    value = stiffness(force, displacement)
+    power, work = np.vdot(force[:3], force[:3]), np.vdot(force[:3], displacement[:3])
+    if not abs(work) > 0.0 or not abs(value) > 0.0:
+        return value
+    return complex(power / (work + value.conjugate() / value * np.vdot(displacement, change)))
+
+
 def identification(
     definition: str,
     frequency_hz: float,

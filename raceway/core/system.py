@@ -23,6 +23,7 @@ from raceway.core.bodies.ring import (
     place,
     stop,
 )
+from raceway.core.changing_speed import ChangingSpeed
 from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.core.record import Record
 from raceway.core.root import find_root
@@ -70,6 +71,7 @@ class System:
     free : (5,) 1 for unknowns, 0 for coordinates that are held
     load : (5,) constant load [N, N m]
     force : compiled ``FORCE``, the excitation;  force_params : (k,)
+    spin : how the speed changes that constants belong to; None for a steady one
     """
 
     kernel: Any
@@ -86,6 +88,7 @@ class System:
     load: np.ndarray
     force: Any
     force_params: np.ndarray
+    spin: ChangingSpeed | None = None
 
     @property
     def ball_count(self) -> int:
@@ -201,6 +204,10 @@ class System:
         if status != 0:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
         return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball, new)
+
+    def at_speed(self, t: float) -> System:
+        """With the speed of a time: itself where the speed is steady."""
+        return self if self.spin is None else self.spin.at(self, t)
 
     def stopped(self, t: float) -> System:
         """A copy whose orbiting balls stand still where they are at a time."""

@@ -60,10 +60,11 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
     inertia = parts.decide(
         inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
     )
-    if inertia and getattr(scene.excitation, "first_speed_rpm", None) is not None:
+    if scene.spin_speed > 0.0 and getattr(scene.excitation, "first_speed_rpm", None) is not None:
         rpm = scene.spin_speed * 30.0 / pi
-        why_not = f"balls, ring and rotor keep what belongs to {rpm:.6g} r/min (kinematics.spin_speed_rpm) at every speed"
-        parts.leave_out("change of centrifugal forces with the speed", why_not)
+        why = f"balls, ring and rotor follow the speed of excitation '{scene.excitation.name}'"
+        why_not = f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
+        parts.decide(scene.spin_changes, "change of centrifugal and gyroscopic terms with the speed", why, why_not)
     rates = scene.excitation is not None and (scene.integrator.method.inertial or not uses_record(scene))
     why_not = (
         "contact.damping is 0" if scene.contact.damping == 0.0 else "nothing moves, or no rates: a series of equilibria"

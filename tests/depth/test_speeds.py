@@ -6,6 +6,10 @@ import numpy as np
 import pytest
 
 from raceway import SceneError
+from raceway.core.bodies.ring import CAGE, CENTRIFUGAL, COSINE, SINE
+from raceway.core.record import Schedule
+from raceway.core.start import at_rest
+from raceway.core.stepping.bearing import SteppedBearing
 from raceway.plugins.excitations.run_up import RunUp
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
@@ -144,6 +148,114 @@ def test_short_run_up_is_refused_with_the_remedy():
         run(scene_from_dict(rising(duration=0.02)))
 
 
-def test_plan_says_what_a_run_up_leaves_out(built):
-    plan = built(**{k: v for k, v in rising().items() if k != "title"}).plan
-    assert any("centrifugal forces with the speed" in part.part and "9000" in part.why for part in plan.left_out)
+def test_plan_says_whether_balls_follow_a_run_up(built):
+    tables = {k: v for k, v in rising().items() if k != "title"}
+    held = built(**tables).plan
+    assert any("terms with the speed" in part.part and "9000" in part.why for part in held.left_out)
+    followed = built(**{**tables, "kinematics": {}}).plan
+    assert any("terms with the speed" in part.part for part in followed.kept)
+
+
+#: Everything that goes with the speed.
+ALL = {"orbiting": True, "gyroscopic": "outer_race", "ring_growth": True, "radial_expansion": 1e-6}
+#: B7206C, 400 N, 2 kg, 1e-4 kg m; the spin speed is the excitation's.
+ROTOR = {"load": {"axial": 400.0}, "rotor": {"mass": 2.0}}
+
+
+def turning(first, last, **more):
+    excitation = {"kind": "run_up", "first_speed_rpm": first, "speed_rpm": last, "duration_s": 0.5, "unbalance": 1e-4}
+    identifier = {"kind": "order_tracking", "window_turns": 4.0}
+    return b7206c(
+        **{**ROTOR, "excitation": excitation, "identifier": identifier, "integrator": {"steps_per_turn": 120}, **more}
+    )
+
+
+@pytest.mark.parametrize("bodies", ["rigid", "condensed"])
+def test_constants_of_a_moment_are_those_of_a_steady_scene(built, bodies):
+    """Half-way between 6000 and 15 000 r/min, against a bearing built for 10 500; balls have travelled with the phase."""
+    more = {"kinematics": ALL, "bodies": {"kind": bodies}, "supports": {"tilt": "free"}}
+    more["rotor"] = {"mass": 2.0, "transverse_inertia": 2e-3, "polar_inertia": 1e-3}
+    model = built(**turning(6000.0, 15000.0, **more))
+    excitation = {"kind": "bidirectional", "speed_rpm": 10500.0, "unbalance": 1e-4}
+    still = built(**b7206c(**{**ROTOR, **more}, excitation=excitation)).system
+    now = model.system.at_speed(0.25)
+    assert now.scalars == pytest.approx(still.scalars, rel=1e-8)
+    assert now.damping == pytest.approx(still.damping, rel=1e-8)
+    assert now.table[:, CENTRIFUGAL:] == pytest.approx(still.table[:, CENTRIFUGAL:], rel=1e-8)
+    direction = now.centre_vectors(np.zeros(5), 0.25)[1]
+    turned = 0.25 * 0.5 * (6000.0 + 10500.0) * still.scalars[CAGE] / 10500.0
+    expected = np.arctan2(still.table[:, SINE], still.table[:, COSINE]) + turned
+    assert direction[:, 0] == pytest.approx(np.cos(expected), abs=1e-7)
+    assert direction[:, 1] == pytest.approx(np.sin(expected), abs=1e-7)
+    assert now.at_speed(0.4) is now and model.system.scalars[CAGE] > now.scalars[CAGE]
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "integrator"),
+    [
+        (6000.0, 15000.0, "newmark"),
+        (15000.0, 6000.0, "newmark"),
+        (6000.0, 15000.0, "central_difference"),
+        (15000.0, 6000.0, "quasi_static"),
+    ],
+)
+def test_stiffness_over_a_run_up_is_that_of_steady_runs(first, last, integrator):
+    """0.5 %, where the constants of the last speed make -17 and +23 %; near 6150 and 14 900 r/min an independent program's."""
+    result = run(scene_from_dict(turning(first, last, integrator={"kind": integrator, "steps_per_turn": 120})))
+    mass, found = result.model.mass_used, result.identification.series
+    speeds = np.array([w for w, _ in found])
+    chosen = [int(np.argmin(np.abs(speeds - rpm * np.pi / 30.0))) for rpm in (6150.0, 10000.0, 14900.0)]
+    stiffness = {}
+    for k in chosen:
+        w, z = found[k]
+        excitation = {"kind": "bidirectional", "speed_rpm": float(w) * 30.0 / np.pi, "unbalance": 1e-4}
+        same = {"kind": integrator, "turns": 3}
+        one = run(scene_from_dict(b7206c(**ROTOR, excitation=excitation, integrator=same))).identification
+        stiffness[k] = z.real + mass * w**2
+        assert stiffness[k] == pytest.approx(one.equivalent_stiffness, rel=5e-3)
+    if integrator == "newmark":
+        k, told = (chosen[0], 182.1) if first < last else (chosen[-1], 147.7)
+        assert 1e-6 * stiffness[k] == pytest.approx(told, rel=5e-3)
+    assert result.stability["energy_drift"] is None  # what changes the balls' speed does work
+
+
+@pytest.mark.parametrize("integrator", ["newmark", "central_difference"])
+def test_steps_from_python_follow_the_speed(built, integrator):
+    """The loops in Python take the same steps as the compiled ones."""
+    model = built(**turning(6000.0, 15000.0, kinematics=ALL, integrator={"kind": integrator, "steps_per_turn": 360}))
+    schedule = Schedule(1.0 / 250.0 / 360.0, 360, 1)
+    system = model.system.at_speed(0.0)
+    q, ball, _ = system.settle(model.guess)
+    start = at_rest(system, q, ball, False)
+    compiled = model.scene.integrator.method.advance(model.system, start, schedule)
+    stepped = model.scene.integrator.method.advance(SteppedBearing(model.system), start, schedule)
+    # 1e-9 of the step's forces is Newton's tolerance.
+    assert np.abs(stepped.displacement - compiled.displacement).max() < 1e-6 * np.abs(compiled.displacement).max()
+
+
+@pytest.mark.parametrize("damping", [0.0, 500.0])
+@pytest.mark.parametrize("tilt", ["locked", "free"])
+def test_a_changing_speed_is_not_told_as_damping(damping, tilt):
+    """Without subtraction C is m (w' + 2 w A' / A) / w, some 5 m w' / w: 12 to 31 N s/m here; left are 0.5, and 1 % of C."""
+    rotor = {"mass": 2.0, "transverse_inertia": 2e-4, "damping": damping}
+    more = {"rotor": rotor, "supports": {"tilt": tilt}, "load": {"axial": 2000.0}}
+    result = run(scene_from_dict(turning(6000.0, 15000.0, **more)))
+    found = np.array([z.imag / w for w, z in result.identification.series])
+    assert len(found) > 30
+    assert np.abs(found - damping).max() < 0.5 + 0.01 * damping
+
+
+@pytest.mark.parametrize("tables", [{"bodies": {"kind": "elastic"}}, {"contact": {"discretisation": "nodal"}}])
+def test_bodies_whose_forces_do_not_follow_are_refused(tables):
+    """With a speed of their own they run."""
+    from raceway import make_plan
+
+    nodal = {"contact": {"kind": "unilateral", "discretisation": "nodal"}, "bodies": {"kind": "condensed"}}
+    whole = {
+        "bodies": {"kind": "elastic"},
+        "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0},
+    }
+    more = whole if "bodies" in tables else nodal
+    with pytest.raises(SceneError, match=r"excitation\.kind.*kinematics\.spin_speed_rpm"):
+        make_plan(scene_from_dict(turning(6000.0, 15000.0, **more)))
+    make_plan(scene_from_dict(turning(6000.0, 15000.0, **more, kinematics={"spin_speed_rpm": 9000.0})))

@@ -20,8 +20,8 @@ class SteppedBearing:
     ----------
     system : object
         Offers ``ball_count``, ``ball_columns``, ``rated_columns``, ``conservative``, ``arm``, ``mass``, ``damping``, ``stiffness`` (5, 5), ``free``, ``load``
-        (5,), ``law_state``, ``outer_force(t)``, ``critical_time_step(tangent)``, ``stopped(t)`` (a copy whose balls stand
-        where they are at t), and ``evaluate(q, v, ball, ball_rate, t, dt=, ball_gain=, memory=)``, an ``Evaluation``.
+        (5,), ``law_state``, ``outer_force(t)``, ``critical_time_step(tangent)``, ``at_speed(t)`` (itself, or with the constants
+        of the speed at t), ``stopped(t)`` (a copy whose balls stand where they are at t), and ``evaluate(q, v, ball, ball_rate, t, dt=, ball_gain=, memory=)``, an ``Evaluation``.
 
     Notes
     -----
@@ -41,6 +41,7 @@ class SteppedBearing:
         self._now: Any = None
         self._guess: np.ndarray | None = None
         self._stiffest = np.zeros(5)
+        self._damping: np.ndarray = system.damping
 
     def begin(self, motion: Motion) -> State:
         self._ball, self._before = motion.ball.copy(), motion.ball_before.copy()
@@ -60,7 +61,8 @@ class SteppedBearing:
         return np.asarray(self.system.load + scale * self.system.outer_force(t))
 
     def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        system, rate, gain = self.system, np.zeros_like(self._ball), 0.0
+        system, rate, gain = self.system.at_speed(t), np.zeros_like(self._ball), 0.0
+        self._damping = system.damping
         guess, rated = self._ball.copy(), system.rated_columns
         if dt > 0.0:
             gain = 1.5 / dt
@@ -76,16 +78,18 @@ class SteppedBearing:
 
     def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray) -> np.ndarray:
         s, now = self.system, self._now
-        return self._free_solve(c_k * (now.stiffness + s.stiffness) + c_c * (now.damping + s.damping) + c_m * s.mass, right)
+        return self._free_solve(
+            c_k * (now.stiffness + s.stiffness) + c_c * (now.damping + self._damping) + c_m * s.mass, right
+        )
 
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         return np.asarray(self.system.mass @ a)
 
     def damping_times(self, v: np.ndarray) -> np.ndarray:
-        return np.asarray(self.system.damping @ v)
+        return np.asarray(self._damping @ v)
 
     def divide_mass(self, r: np.ndarray, c: float = 0.0) -> np.ndarray:
-        return self._free_solve(self.system.mass + c * self.system.damping, r)
+        return self._free_solve(self.system.mass + c * self._damping, r)
 
     def measure(self, r: np.ndarray) -> float:
         return float(np.abs(r * self._weight).max())

@@ -83,17 +83,18 @@ def last_turn(result: Result, frames: int) -> Turn:
     size = np.abs(turn * [1.0, 1.0, 1.0, model.system.arm, model.system.arm]).max()
     factor = _round_down(_LARGEST * model.geometry.ball_diameter / max(float(size), 1e-12))
     chosen = first + np.unique(np.linspace(0, len(turn), frames, endpoint=False).astype(int))
-    cage = model.geometry.cage_speed(model.scene.spin_speed) if model.scene.kinematics.orbiting else 0.0
     z = model.system.ball_count
     states = []
     for k in chosen:
         load, t = record.contact_force[k], float(record.time[k])
-        angle = np.concatenate(contact_angles(model, record.displacement[k], record.ball[k], load, t))
+        now = attrs.evolve(model, system=model.system.at_speed(t))
+        angle = np.concatenate(contact_angles(now, record.displacement[k], record.ball[k], load, t))
         halves, peaks = zip(
             *(_ellipse(e, part) for e, part in ((model.inner, load[:z]), (model.outer, load[z:]))), strict=True
         )
         motion = factor * (record.displacement[k] - result.equilibrium.displacement)
-        azimuth = model.azimuth + cage * t
+        direction = now.system.centre_vectors(record.displacement[k], t)[1]
+        azimuth = np.arctan2(direction[:, 1], direction[:, 0])
         states.append(State(azimuth, load, angle, np.concatenate(halves), np.concatenate(peaks), motion))
     angle = 2.0 * np.pi * (chosen - first) / per_turn
     return Turn(states, factor, turn[:, 1:3], record.force[chosen, 1:3], angle)
