@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from matplotlib.figure import Figure
 
 from raceway import build_model, make_plan, scene_from_dict
 from raceway.model import Model
+from tests.figures import outside
 
 
 def b7206c(**tables: Any) -> dict[str, Any]:
@@ -33,3 +35,17 @@ def built():
         return build_model(scene, make_plan(scene))
 
     return build
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_drawn_outside_its_axes(monkeypatch):
+    """Every figure that a test draws is looked at, whatever the test is about."""
+    found, draw = list[str](), Figure.draw
+
+    def looked_at(self: Figure, renderer: Any) -> None:
+        draw(self, renderer)
+        found.extend(outside(self))
+
+    monkeypatch.setattr(Figure, "draw", looked_at)
+    yield
+    assert not found, found[:5]

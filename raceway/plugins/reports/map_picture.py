@@ -95,19 +95,17 @@ def _maps(content: dict[str, Any], quantity: str, change: Any, look: dict[str, A
             if one["status"] != "completed":
                 failed.append((1e-3 * point[SPEED], point[AXIAL]))
         speed, axial = 1e-3 * np.array(axes[SPEED]), np.array(axes[AXIAL])
-        shown = panel.pcolormesh(
-            speed,
-            axial,
-            np.ma.masked_invalid(values),
-            rasterized=True,
-            shading="gouraud" if np.isfinite(values).all() else "nearest",
-            **look,
-        )
+        whole = bool(np.isfinite(values).all())
+        # Round a point without number there are cells; halves of them between loads are halves on the axis' own scale.
+        at = (speed, axial) if whole else (_edges(speed), np.exp(_edges(np.log(axial))))
+        shading = "gouraud" if whole else "flat"
+        shown = panel.pcolormesh(*at, np.ma.masked_invalid(values), rasterized=True, shading=shading, **look)
         _contours(panel, speed, axial, values, levels)
         _boundaries(panel, [c for c in content["curves"] if c["tilt"] == tilt and c["contact_angle_deg"] == angle], quantity)
         if failed:
             panel.plot(*np.array(failed).T, "x", color="#b3261e", markersize=6)
         panel.set_yscale("log")
+        panel.set_ylim(float(at[1][0]), float(at[1][-1]))
         panel.set_title(f"{angle:g} deg, tilt {_tilt(tilt)}", fontsize=11)
         if row == len(tilts) - 1:
             panel.set_xlabel("speed [1000 r/min]")
@@ -115,6 +113,12 @@ def _maps(content: dict[str, Any], quantity: str, change: Any, look: dict[str, A
             panel.set_ylabel("axial load [N]")
     _legend(figure, quantity, any(one["status"] != "completed" for one in content["rows"]), narrow)
     return figure, shown, panels, narrow
+
+
+def _edges(places: np.ndarray) -> np.ndarray:
+    """Edges (n + 1,) of cells round ascending places (n,), n at least 2."""
+    half = 0.5 * np.diff(places)
+    return np.concatenate([places[:1] - half[:1], places[:-1] + half, places[-1:] + half[-1:]])
 
 
 def _contours(panel: Axes, speed: np.ndarray, axial: np.ndarray, values: np.ndarray, levels: tuple[float, ...]) -> None:

@@ -161,16 +161,18 @@ def _excitation_panel(
             steady = taken(setting, curves.values(setting, load, measure))
             known = np.isfinite(steady)
             axes.plot(w[known], steady[known], style, marker="o", markersize=3, color=colour, linewidth=width, label=name)
-            axes.plot(w, taken(setting, curves.unstable(setting, load, measure)), "x", color=colour, markersize=6, zorder=1)
-        _finish(axes, f"{tilt}, {load:g} N", _SPEED, label, legend=2)
         _cut(axes, [taken(s, curves.values(s, load, measure)) for s in (*lines.values(), *light.values())])
+        for pair, setting in lines.items():
+            crosses = np.clip(taken(setting, curves.unstable(setting, load, measure)), *axes.get_ylim())
+            axes.plot(w, crosses, "x", color=_PAIRS[pair][0], markersize=6, zorder=1, clip_on=False)
+        _finish(axes, f"{tilt}, {load:g} N", _SPEED, label, legend=2)
 
     words = "; ".join(f"{_PAIRS[pair][3]}: {_ends(taken(s, curves.values(s, load, measure)))}" for pair, s in lines.items())
     alternative = f"{label} over w* from 0 to 1, {tilt}: {words}"
     bad = [curves.unstable(setting, load, measure) for setting in lines.values()]
     caption = "Dashed: the same with weightless balls."
     if np.isfinite(bad).any():
-        caption += " Crosses: unstable motions, which a ring does not stay on."
+        caption += " Crosses: unstable motions, which a ring does not stay on; at the edge where they lie outside."
     return Panel(draw, alternative, caption)
 
 

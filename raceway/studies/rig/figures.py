@@ -38,8 +38,9 @@ def procedures(study: RigStudy) -> Figure:
         panel.set_title(f"{axial:g} N axial", fontsize=11)
         panel.set_xlabel("speed [r/min]")
         panel.set_xticks(speeds)
-        panel.set_ylim(bottom=0.0)
         panel.grid(color="#d8dee4", linewidth=0.7)
+    # One scale for all panels, and set when all are drawn: a limit that is set holds, whatever comes after it.
+    figure.axes[0].set_ylim(bottom=0.0)
     figure.axes[0].set_ylabel("K [N/µm]")
     figure.legend(
         *figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9
@@ -59,7 +60,8 @@ def causes(study: RigStudy) -> Figure:
     words = [fill(f"{kind}: {what}" if kind != "none" else what, 46) for kind, what in reversed(names)]
     axes.set_yticks(range(len(names)), words, fontsize=8)
     axes.set_xscale("log")
-    axes.set_xlim(0.8 * _LEAST_PERCENT, 200.0)
+    largest = 100.0 * max(abs(cause.error) for point in study.points for cause in point.causes)
+    axes.set_xlim(0.8 * _LEAST_PERCENT, max(200.0, 1.5 * largest))
     for limit in (1.0, 3.0):
         axes.axvline(limit, color="#1c2733", linewidth=0.8, linestyle="--")
     axes.set_xlabel("error of K by this cause alone [%]")

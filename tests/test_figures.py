@@ -1,0 +1,179 @@
+"""Every figure of the project shows what it draws: no point lies outside its axes, whatever the numbers are."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import attrs
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import raceway
+from raceway import scene_from_dict
+from raceway.plugins.reports import comparison, map_picture, pictures, precision, store_picture
+from raceway.plugins.reports.view import contacts
+from raceway.plugins.reports.view.bearing import Bearing
+from raceway.run import run
+from raceway.studies.article import figures as article
+from raceway.studies.map.curves import curves as map_curves
+from raceway.studies.measured import figures as measured
+from raceway.studies.measured.angle import turning
+from raceway.studies.measured.orders import order
+from raceway.studies.rig import figures as rig
+from raceway.studies.sweep.plotting import layout
+from raceway.studies.sweep.selection import select
+from raceway.studies.view.states import at_rest
+from tests import article_study, test_compare, test_map
+from tests.conftest import b7206c
+from tests.figures import outside
+from tests.rig.test_orders import made as a_record
+from tests.stores import SPEEDS, as_list, made
+
+LOADS = np.linspace(200.0, 2000.0, 5)
+
+
+def shown(figure: Figure) -> list[str]:
+    """What lies outside once the figure is laid out, which is when its limits are known."""
+    figure.draw_without_rendering()
+    return outside(figure)
+
+
+def of_a_run() -> list[Figure]:
+    excitation = {"kind": "unidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0}
+    tables = b7206c(
+        load={"axial": 100.0}, excitation=excitation, integrator={"turns": 2, "steps_per_turn": 60, "start": "ramp"}
+    )
+    moving, still = run(scene_from_dict(tables)), run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
+    return [pictures.orbit(moving), pictures.spectrum(moving), pictures.ball_loads(moving), pictures.ball_loads(still)]
+
+
+def of_a_sweep() -> list[Figure]:
+    data = made({"load.axial": LOADS, "excitation.speed_rpm": SPEEDS})
+    found = [layout(select(data, {}), kind=kind) for kind in ("curves", "map", "surface")]
+    found += [layout(select(as_list(data).isel(point=slice(0, 30)), {}), kind=kind) for kind in ("curves", "map")]
+    three = {"load.axial": LOADS[:3], "supports.tilt": ["free", "locked"], "excitation.speed_rpm": SPEEDS}
+    found.append(layout(select(made(three), {})))
+    return [store_picture.draw(p.data, p.kind, p.x, p.y, p.panels, p.title, p.remark) for p in found]
+
+
+def of_a_comparison() -> list[Figure]:
+    whole = test_compare.with_error(test_compare._synthetic(test_compare._k), 1.2, **test_compare.ONE)
+    far = [attrs.evolve(row, result={**row.result, "identification": {**row.result["identification"], "equivalent_stiffness": 9e9}})
+           if row.doubt else row for row in whole.rows]  # fmt: skip
+    dots = [row for row in whole.rows if row.point["excitation.speed_rpm"] == 10000]
+    axes = tuple(axis for axis in whole.axes if axis.key != "excitation.speed_rpm")
+    return [
+        comparison.draw(attrs.evolve(whole, rows=tuple(far)).as_dict()),
+        comparison.draw(attrs.evolve(whole, axes=axes, rows=tuple(dots)).as_dict()),
+    ]
+
+
+def of_precision() -> list[Figure]:
+    rows = [
+        {"setting": {"integrator.steps_per_turn": n}, "family": f"order {p}", "error": n ** -float(p), "time_s": 1e-5 * n, "base": p < 4}
+        for p in (1, 2, 4) for n in (10, 100, 10000)
+    ]  # fmt: skip
+    whole = {"title": "made up", "rows": rows, "front": [0, 3, 5]}
+    return [precision.draw({**whole, "reference": {"error": bound}}) for bound in (1e-6, None)]
+
+
+def of_a_map() -> list[Figure]:
+    rows = []
+    for load, exponent in ((1.0, 0.1), (100.0, -1.5), (10000.0, 2.5)):
+        for row in test_map.rows(lambda speed, exponent=exponent: 1e7 * (speed / 1e3) ** exponent):
+            rows.append({**row, "point": {**row["point"], map_picture.AXIAL: load}, "lost": int(load == 1.0)})
+    rows[-1] = {**rows[-1], "status": "failed", "stiffness": None, "small_signal": None}
+    names = (map_picture.ANGLE, map_picture.TILT, map_picture.AXIAL, map_picture.SPEED)
+    axes = {name: sorted({row["point"][name] for row in rows}) for name in names}
+    found = map_curves(rows)
+    content = {"axes": axes, "rows": rows, "curves": [attrs.asdict(c) if attrs.has(type(c)) else c for c in found]}
+    return [map_picture.change_map(content), map_picture.exponent_map(content), map_picture.curves_figure(content)]
+
+
+def of_the_article() -> list[Figure]:
+    """An unstable motion a hundred times as stiff as the rest."""
+
+    def k(setting, load, w):
+        return (1e10,) if setting.tilt == "free" and w > 0.9 else 1e8 * (1.0 + 0.1 * w)
+
+    found = article_study.study(article_study.curves(k))
+    return [panel.figure() for panel in article.pictures(found)]
+
+
+def of_a_rig() -> list[Figure]:
+    """The first load's K is a quarter of the second's, and one cause is ten times K."""
+    points = []
+    for axial, true in ((400.0, 30e6), (2000.0, 120e6)):
+        for speed in (1100.0, 1300.0, 1500.0):
+            state = SimpleNamespace(speed=speed, stiffness=true)
+            readings = [SimpleNamespace(correction=f"way {k}", stiffness=true * (0.2 + 0.3 * k)) for k in range(6)]
+            causes = [
+                SimpleNamespace(kind="noise", what=f"cause {k}", error=e) for k, e in enumerate((0.0, 1e-9, -0.01, 10.0))
+            ]
+            points.append(
+                SimpleNamespace(
+                    axial=axial, state=state, found=SimpleNamespace(state=state), readings=readings, causes=causes
+                )
+            )
+    study = SimpleNamespace(points=points)
+    return [rig.procedures(study), rig.causes(study)]
+
+
+def of_a_record() -> list[Figure]:
+    turned = turning(a_record(noise=1e-6))
+    found = order(turned)
+    state = SimpleNamespace(sensor=3.0 * found.line, deflection=9.0 * found.line)
+    whole = SimpleNamespace(turning=turned, order=found, state=state)
+    return [measured.signals(whole), measured.spectrum(whole), measured.orbits(whole)]
+
+
+def of_contacts() -> list[Figure]:
+    found = run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
+    return [contacts.contacts(Bearing.of(found), at_rest(found), "made up")]
+
+
+#: Module that makes figures -> how they come about here.
+DRAWN: dict[object, Callable[[], list[Figure]]] = {
+    pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
+    article: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("draw", DRAWN.values(), ids=lambda draw: draw.__name__)
+def test_every_drawn_point_lies_inside_its_axes(draw):
+    figures = draw()
+    assert figures and [line for figure in figures for line in shown(figure)] == []
+
+
+def test_no_module_makes_figures_that_are_not_looked_at_here():
+    folder = Path(raceway.__file__).parent
+    making = set()
+    for path in folder.rglob("*.py"):
+        called = [node.func for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+        names = {getattr(call, "id", getattr(call, "attr", None)) for call in called}
+        if names & {"new_figure", "Figure"}:
+            making.add(path)
+    assert making == {Path(module.__file__) for module in DRAWN}  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("what", ["line", "scatter", "lines", "patch", "log", "across"])
+def test_what_lies_outside_is_seen(what):
+    axes = Figure().subplots()
+    axes.plot([0.0, 1.0], [1.0, 2.0])
+    axes.set(xlim=(0.0, 1.0), ylim=(0.5, 2.5))
+    assert outside(axes.figure) == []
+    draw = {
+        "line": lambda: axes.plot([0.5], [120.0], "o"),
+        "scatter": lambda: axes.scatter([0.5, 0.6], [2.0, 2.6]),
+        "lines": lambda: axes.vlines([0.5], 1.0, 3.0),
+        "patch": lambda: axes.fill([0.0, 1.0, 2.0], [1.0, 2.0, 1.0]),
+        "log": lambda: (axes.set_yscale("log"), axes.plot([0.5], [0.1])),
+        "across": lambda: axes.axhline(3.0),  # its ends along x are parts of the axes, its place along y is data
+    }
+    draw[what]()
+    axes.set(xlim=(0.0, 1.0), ylim=(0.5, 2.5))
+    assert len(outside(axes.figure)) == 1
