@@ -16,6 +16,9 @@ from raceway.errors import PluginError
 #: Gaps [m] and rates [m/s] that are tried, all contacts at once.
 _GAPS = (1e-3, 1e-9, 0.0, -1e-9, -1e-6, -1e-5)
 _RATES = (0.0, -0.02, 0.02)
+#: Relative step of the differences that slopes are held against, and how far they may be apart: the force is not a line, and
+#: one side of a kink may be given.
+_STEP, _SLOPE = 1e-4, 1e-3
 #: Stands in outputs before a call; no force is so small.
 _MARK = -7.25e-301
 
@@ -45,7 +48,8 @@ def probe_law(
     check_compiled(kernel, who, LAW, "LAW")
     state = np.ascontiguousarray(state, dtype=float)
     _probe_alone(kernel, params, state, who)  # first: what lies behind all rows may be anything
-    for gap in (*_GAPS, *(-float(depth) for depth in depths)):
+    depths = [float(depth) for depth in depths if depth > 0.0]
+    for gap in (*_GAPS, *(-depth for depth in depths)):
         for rate in _RATES:
             where = f"at gap {gap:g} m, rate {rate:g} m/s"
             force, d_gap, d_rate, new = _call_law(kernel, params, state, gap, rate, who, where)
@@ -56,6 +60,31 @@ def probe_law(
                 raise PluginError(f"{who}: force {worst:.4g} {where}, outside contact; the contract says zero for gap >= 0")
             if (force < 0.0).any():
                 raise PluginError(f"{who}: force {force.min():.4g} {where}; the contract says never negative")
+
+    for depth in depths or [-min(_GAPS)]:
+        _probe_slopes(kernel, params, state, -depth, _RATES[1], who)
+
+
+def _probe_slopes(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str) -> None:
+    """Refuse derivatives that differences of the force contradict: with them an iteration converges, if it does, to a wrong stiffness."""
+    where = f"at gap {gap:g} m, rate {rate:g} m/s"
+    force, *given, _ = _call_law(kernel, params, state, gap, rate, who, where)
+    for word, slope, step in (("d_gap", given[0], (_STEP * gap, 0.0)), ("d_rate", given[1], (0.0, _STEP * rate))):
+        size = abs(sum(step))
+        sides = []
+        for sign in (1.0, -1.0):
+            there = _call_law(kernel, params, state, gap + sign * abs(step[0]), rate + sign * abs(step[1]), who, where)[0]
+            sides.append(sign * (there - force) / size)
+        low, high = np.minimum(*sides), np.maximum(*sides)
+        # Rounding of the differences: 1e-16 of the force over the step.
+        slack = _SLOPE * np.maximum(np.abs(low), np.abs(high)) + 1e-12 * np.abs(force) / size
+        off = np.maximum(low - slack - slope, slope - high - slack)
+        if len(off) and off.max() > 0.0:
+            worst = int(np.argmax(off))
+            raise PluginError(
+                f"{who}: `{word}` = {slope[worst]:.6g} {where}, where differences of the force give {high[worst]:.6g}; the "
+                "contract says the derivative, memory held"
+            )
 
 
 def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: str | None = None) -> None:

@@ -25,7 +25,7 @@ from raceway import hookspecs
 from raceway.contracts import KINDS, broken_duties
 from raceway.errors import PluginError, RacewayError
 from raceway.options import nearest
-from raceway.plugin_sources import chosen_entry_points, import_file
+from raceway.plugin_sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -143,7 +143,9 @@ class Registry:
                 self.manager.subset_hook_caller(hook, others)(**arguments)
             except RacewayError:
                 raise
-            except Exception as why:  # a third party's own code
+            except BaseException as why:  # a third party's own code
+                if not is_foreign_fault(why):
+                    raise
                 raise PluginError(
                     f"plug-in `{names[id(implementation.plugin)]}`: `{hook}` raises {type(why).__name__}: {why}. "
                     "Name it in RACEWAY_DISABLE to run without it."
@@ -213,11 +215,13 @@ class Registry:
         return [key for key, found in sorted(self.entries.items()) if len(found) > 1]
 
     def _load(self, point: EntryPoint) -> None:
-        distribution = point.dist.name if point.dist else point.name
-        version = point.dist.version if point.dist else ""
+        distribution, version = owner(point)
         try:
-            plugin = point.load()
-        except (Exception, SystemExit) as why:  # whatever a third party's import raises: it is reported by name
+            with foreign_words():
+                plugin = point.load()
+        except BaseException as why:  # whatever a third party's import raises: it is reported by name
+            if not is_foreign_fault(why):
+                raise
             self.faults.append(Fault(f"{point.name} ({distribution})", f"fails to import: {type(why).__name__}: {why}"))
             return
         self._register(plugin, point.name, distribution, version)
@@ -231,34 +235,57 @@ class Registry:
         except TypeError as why:
             self.faults.append(Fault(label, f"cannot be registered: {why}; name a module, or an object that can be hashed"))
             return
-        except (pluggy.PluginValidationError, ValueError) as why:
+        except BaseException as why:  # pluggy refuses its hooks, or looking at it runs code of its own
+            if not is_foreign_fault(why):
+                raise
             if self.manager.get_plugin(label) is plugin:
                 self.manager.unregister(name=label)
-            self.faults.append(Fault(label, f"does not fit the hooks: {why}"))
+            own = isinstance(why, pluggy.PluginValidationError | ValueError)
+            told = str(why) if own else f"looking at it raises {type(why).__name__}: {why}"
+            self.faults.append(Fault(label, f"does not fit the hooks: {told}"))
             return
         for kind, (hook_name, _) in KINDS.items():
             others = [p for p in self.manager.get_plugins() if p is not plugin]
             try:
-                lists = self.manager.subset_hook_caller(hook_name, others)()
-            except Exception as why:  # a third party's own code
+                with foreign_words():
+                    lists = self.manager.subset_hook_caller(hook_name, others)()
+            except BaseException as why:  # a third party's own code
+                if not is_foreign_fault(why):
+                    raise
                 self.faults.append(Fault(label, f"`{hook_name}` raises {type(why).__name__}: {why}"))
                 continue
             for one in lists:
                 if not isinstance(one, list | tuple):
-                    self.faults.append(Fault(label, f"`{hook_name}` returns {one!r}, which is not a list of classes"))
+                    self.faults.append(Fault(label, f"`{hook_name}` returns {_shown(one)}, which is not a list of classes"))
                     continue
                 for found in one:
-                    self._add(Entry(kind, str(getattr(found, "name", "?")), found, distribution, version, source), label)
+                    self._add(kind, found, label, distribution, version, source)
 
-    def _add(self, entry: Entry, label: str) -> None:
-        faults = broken_duties(entry.kind, entry.plugin)
+    def _add(self, kind: str, found: Any, label: str, distribution: str, version: str, source: str) -> None:
+        try:
+            faults = broken_duties(kind, found)
+            entry = Entry(kind, str(getattr(found, "name", "?")), found, distribution, version, source)
+        except BaseException as why:  # an attribute of a metaclass, or a name, that raises
+            if not is_foreign_fault(why):
+                raise
+            told = f"looking at {kind.replace('_', ' ')} {_shown(found)} raises {type(why).__name__}: {why}"
+            self.faults.append(Fault(label, told))
+            return
         if faults:
-            what = getattr(entry.plugin, "__qualname__", repr(entry.plugin))
+            what = getattr(entry.plugin, "__qualname__", _shown(entry.plugin))
             self.faults.append(Fault(label, f"{entry.kind.replace('_', ' ')} `{what}` " + ", ".join(faults)))
             return
         same = self.entries.setdefault((entry.kind, entry.name), [])
         if all(e.plugin is not entry.plugin for e in same):
             same.append(entry)
+
+
+def _shown(thing: Any) -> str:
+    """A third party's object in words; its type where it has none."""
+    try:
+        return repr(thing)
+    except Exception:  # its own __repr__
+        return f"an object of type {type(thing).__name__}"
 
 
 def _version() -> str:

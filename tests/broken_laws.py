@@ -77,6 +77,38 @@ def wrong_slope(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d
 
 
 @jit(LAW)
+def double_slope(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        force[i] = params[i, 0] * approach**1.5
+        d_gap[i] = -3.0 * params[i, 0] * np.sqrt(approach)
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def half_a_damper(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        force[i] = params[i, 0] * approach * max(1.0 - gap_rate[i], 0.0)
+        d_gap[i] = -params[i, 0] * max(1.0 - gap_rate[i], 0.0)
+        d_rate[i] = -0.5 * params[i, 0] * approach
+
+
+@jit(LAW)
+def endless(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    i = 0
+    while i < gap.size + 1:
+        force[:], d_gap[:], d_rate[:] = 0.0, 0.0, 0.0
+        i -= 1 if gap.size > 0 else -1
+
+
+@jit(LAW)
+def far_beyond(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    for i in range(1 << 34):
+        force[i] = 0.0
+
+
+@jit(LAW)
 def losing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     for i in range(gap.size):
         approach = max(-gap[i], 0.0)

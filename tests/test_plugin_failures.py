@@ -10,6 +10,24 @@ from tests.fake_site import LAW, FakeSite
 BROKEN = {
     "import": ("import a_module_that_nobody_has", "fails to import: ModuleNotFoundError"),
     "exit": ("import sys; sys.exit(3)", "fails to import: SystemExit"),
+    "import-beyond-exceptions": (
+        "class Odd(BaseException): pass\nraise Odd('not an Exception')",
+        "fails to import: Odd: not an Exception",
+    ),
+    "hook-exits": (
+        "import sys\nfrom raceway import hookimpl\n@hookimpl\ndef raceway_excitations(): sys.exit(4)",
+        "`raceway_excitations` raises SystemExit: 4",
+    ),
+    "name-raises": (
+        "import attrs\nfrom raceway import hookimpl\nclass Meta(type):\n    @property\n    def name(cls): raise KeyError('no name')\n"
+        + "@attrs.frozen\nclass Law(metaclass=Meta): pass\n@hookimpl\ndef raceway_contact_laws(): return [Law]",
+        "raises KeyError: 'no name'",
+    ),
+    "repr-raises": (
+        "from raceway import hookimpl\nclass Odd:\n    def __repr__(self): raise KeyError('no repr')\n"
+        + "@hookimpl\ndef raceway_contact_laws(): return Odd()",
+        "returns an object of type Odd, which is not a list of classes",
+    ),
     "hook-unknown": (
         "from raceway import hookimpl\n@hookimpl\ndef raceway_contact_lows(): return []",
         "does not fit the hooks: unknown hook 'raceway_contact_lows'",
@@ -59,6 +77,25 @@ def test_a_broken_plugin_is_named_and_the_others_work(site, case):
     assert registry.find("contact_law", "hertz").distribution == "raceway"
     with pytest.raises(PluginError, match="broken"):
         registry.find("contact_law", "no_such_law")
+
+
+def test_a_distribution_that_was_half_removed_takes_nothing_down(site):
+    """Its entry points are there, its METADATA is not."""
+    site.install("gone", "import a_module_that_was_removed")
+    (site.folder / "gone-1.0.dist-info" / "METADATA").unlink()
+    site.install("good", LAW.format(name="good_law", cls="Good"))
+    registry = Registry()
+    (told,) = [str(f) for f in registry.faults]
+    assert "plug-in `gone (gone)`: fails to import: ModuleNotFoundError" in told
+    assert registry.find("contact_law", "good_law").distribution == "good"
+
+
+def test_what_a_plugin_prints_while_it_is_loaded_does_not_break_json(site, capsys):
+    shouting = LAW.format(name="loud", cls="Loud").replace("    return [Loud]", "    print('HOOK')\n    return [Loud]")
+    site.install("loud", "print('IMPORT')\n" + shouting)
+    Registry().find("contact_law", "loud")
+    said = capsys.readouterr()
+    assert said.out == "" and "IMPORT" in said.err and "HOOK" in said.err
 
 
 def test_two_plugins_of_one_name_shadow_each_other(site):

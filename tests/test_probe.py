@@ -30,6 +30,9 @@ def _probe(kernel, state_size=0, params=None):
         ("raising", "the kernel raises ValueError: too deep at gap -1e-05 m"),
         ("other_signature", "its kernel has .* the rule is .*: decorate it with @jit"),
         ("plain_python", "which is not compiled: decorate it with @jit"),
+        ("double_slope", "`d_gap` = .* at gap -1e-05 m, rate -0.02 m/s, where differences of the force give"),
+        ("wrong_slope", "`d_gap` = .*where differences of the force give"),
+        ("half_a_damper", "`d_rate` = .*where differences of the force give"),
     ],
 )
 def test_broken_kernels_are_refused(kernel, found):

@@ -26,7 +26,7 @@ def plugin_kernel(plugin: Any, kind: str, signature: Any, name: str) -> Any:
         kernel = plugin.kernel()
     except RacewayError as why:
         raise PluginError(f"{label}: {why}") from why
-    except Exception as why:  # a third party's own code
+    except (Exception, SystemExit) as why:  # a third party's own code
         raise PluginError(f"{label}: kernel() raises {type(why).__name__}: {why}") from why
     check_compiled(kernel, label, signature, name)
     return kernel

@@ -44,9 +44,10 @@ class _Source:
 
 
 class ExecutorSuite(Suite):
-    """Duties of ``raceway.contracts.Executor``."""
+    """Duties of ``raceway.contracts.Executor``.  Its work is in processes of its own, and clusters do not survive a fork."""
 
     kind = "executor"
+    apart = False
 
     @duty("a frozen attrs class whose options are declared")
     def test_declaration(self, executor: Any) -> None:

@@ -8,6 +8,8 @@ Expected failures: a file ``raceway_expected_failures.toml`` beside the plug-in'
     [contact_law.my_law]            # kind and name
     unit_invariance = "the stiffness table is in N/mm"     # check and reason
 
+A check that ends its process, by a wrong shape or for want of an end, is a failure like others: it runs in a child.
+
 It is honoured strictly: a listed check that passes is a failure, and so is a name that no check has.
 """
 
@@ -20,6 +22,8 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import attrs
+
+from raceway.testing.child import Died, apart
 
 PASSED, FAILED, EXPECTED, UNEXPECTED = "passed", "failed", "expected failure", "unexpectedly passed"
 EXPECTED_FAILURES = "raceway_expected_failures.toml"
@@ -101,10 +105,12 @@ class Suite:
     plugin : an instance of the plug-in's class, or the class; a class whose options have no defaults offers
         ``examples()``, a classmethod that returns instances for the suite
     kind : of plug-in
+    apart : whether a duty runs in a child process with limits, so that the suite survives what it tests
     """
 
     plugin: ClassVar[Any] = None
     kind: ClassVar[str] = ""
+    apart: ClassVar[bool] = True
 
     @classmethod
     def checks(cls) -> dict[str, Any]:
@@ -174,10 +180,8 @@ class Suite:
         method = self.checks()[name]
         status, message = PASSED, ""
         try:
-            notes = [self._run(method.check, plugin) for plugin in self._examples()]
-            require(notes, "there is no example to check")
-            message = "; ".join(dict.fromkeys(n for n in notes if n))
-        except ConformityError as why:
+            message = apart(lambda: self._notes(method.check)) if self.apart else self._notes(method.check)
+        except (ConformityError, Died) as why:
             status, message = FAILED, str(why)
         try:
             reason = self.expected().get(name)
@@ -188,6 +192,12 @@ class Suite:
                 return Row(name, method.duty, EXPECTED, f"{reason} ({message})")
             return Row(name, method.duty, UNEXPECTED, f"it passes: remove it from {EXPECTED_FAILURES}")
         return Row(name, method.duty, status, message)
+
+    def _notes(self, check: Callable[..., str | None]) -> str:
+        """What a check says of all examples."""
+        notes = [self._run(check, plugin) for plugin in self._examples()]
+        require(notes, "there is no example to check")
+        return "; ".join(dict.fromkeys(n for n in notes if n))
 
     def _examples(self) -> list[Any]:
         try:

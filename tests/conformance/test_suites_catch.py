@@ -1,6 +1,7 @@
 """The suites find what they claim to find: each check is failed by a plug-in made for it."""
 
 import importlib
+import os
 import re
 
 import attrs
@@ -14,7 +15,7 @@ from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.identifiers.sine_fit import SineFit
-from raceway.testing import ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
+from raceway.testing import ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, child, suite_of
 from raceway.testing.suite import EXPECTED_FAILURES
 from raceway.testing.units import exponents
 from tests import broken_laws
@@ -64,6 +65,32 @@ class Dissipating(broken_laws.Broken):
 def test_contact_laws(plugin, check, found):
     message = failed(ContactLawSuite, plugin).get(check, "it passes")
     assert re.search(found, message), message
+
+
+@attrs.frozen
+class Deadly(broken_laws.Broken):
+    """Ends the process that looks at it."""
+
+    name = "deadly"
+
+    def build(self, pairs):
+        os.abort()
+
+
+@pytest.mark.parametrize(
+    ("plugin", "check", "how"),
+    [
+        (law("far_beyond"), "never_negative", "died: its process ended by SIGSEGV"),
+        (law("endless"), "never_negative", "died: it had not ended after 2 s"),
+        (Deadly(function=broken_laws.losing), "parameters", "died: its process ended by SIGABRT"),
+    ],
+    ids=["SIGSEGV", "endless", "SIGABRT"],
+)
+def test_a_suite_survives_what_it_tests(plugin, check, how, monkeypatch):
+    monkeypatch.setattr(child, "LIMIT_S", 2.0)
+    suite = type("Run", (ContactLawSuite,), {"plugin": plugin})()
+    assert suite.row(check).message == how
+    assert suite.row("declaration").good, "the next duty is looked at"
 
 
 def test_a_sound_law_fails_nothing():
