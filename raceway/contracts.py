@@ -100,8 +100,9 @@ class Integrator(Protocol):
        contains inertia forces (K = Re Z + m w^2) or is a series of equilibria.
     3. ``dissipative``: whether the method removes energy by itself.  ``steady``, if there is one and it is True: the method
        solves for the motion that repeats itself every turn of the schedule, whatever it starts from; ``counts["error"]`` is
-       the error of its displacement over the amplitude, ``counts["floquet"]``, if there is one, goes to result.json, and a
-       scene that has no such motion is refused with a ``SceneError``.
+       the error of its displacement over the amplitude, ``counts["floquet"]``, if there is one, goes to result.json,
+       ``counts["orbits"]``, a list of all steady motions that were found, to its ``motion.orbits``, and a scene that has no
+       such motion is refused with a ``SceneError``.
     4. ``advance(system, start, schedule, on_chunk)``: take the steps of the schedule and return a ``Record``; call
        ``on_chunk(done, total)`` now and then, whose exceptions pass through; on failure raise ``ConvergenceError`` or
        ``StabilityError`` with the last good state.

@@ -37,6 +37,9 @@ _LEAST_RATIO = 1.1
 #: Turns of a second run with more steps, which is shorter so that it costs no more than the first.
 _LEAST_TURNS = 4
 
+#: Largest deviation of a turn from all turns over |Z| up to which turns repeat.
+_REPEATS = 1e-2
+
 _NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
 
 
@@ -86,8 +89,17 @@ def error_table(
     if model.scene.bodies.kind == "elastic":
         how["total"] = "not estimated: that of the mesh is not known, and is the largest"
         return table
+    if motions and _wanders(motions[-1][1], found):
+        how["total"] = "not estimated: no steady motion was found, and the turns that are used do not repeat"
+        return table
     table["total"] = _total(parts)
     return table
+
+
+def _wanders(simulation: Simulation, found: Identification) -> bool:
+    """Whether a ramp that stands in for an orbit ends in turns that do not repeat: single turns may be far from where they lead."""
+    start = simulation.start
+    return not start.settled and start.orbit is None and (found.spread is None or found.spread > _REPEATS)
 
 
 def _total(parts: dict[str, Part]) -> float | None:
@@ -124,8 +136,7 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
     turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     try:
         again = [
-            simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, orbit=m.orbit)
-            for one, m in motions
+            simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, begun=m) for one, m in motions
         ]
     except ConvergenceError as why:
         return Part(None, f"the run with {other} steps a turn failed: {why}")
@@ -177,9 +188,11 @@ def _transient(model: Model, equilibrium: Equilibrium, simulation: Simulation, f
             found.spread, f"what identifier '{model.scene.identifier.kind}' says of it: its spread over turns, if any"
         )
     clean = without_free_vibration(model, equilibrium, simulation)
+    by_turns = Part(found.spread, "largest deviation of a single turn from all turns that are used")
     if clean is None:
-        if found.spread is None:
-            return Part(None, "a single turn tells nothing of a transient")
-        return Part(found.spread, "largest deviation of a single turn from all turns that are used")
+        return Part(None, "a single turn tells nothing of a transient") if found.spread is None else by_turns
     shift = (value - clean.value + clean.lasting) / abs(value)
+    if not simulation.start.settled and (found.spread or 0.0) > abs(shift):
+        # What began on no stable orbit may be on its way from one motion to another.
+        return by_turns
     return Part(float(abs(shift)), clean.how, shift)

@@ -61,7 +61,7 @@ class Result:
                 "equilibrium": equilibrium_table(self.model, self.equilibrium),
                 "identification": self._identification(),
                 "model": self.bodies,
-                "motion": None if self.simulation is None else motion_table(self.model, self.simulation.record),
+                "motion": self._motion(),
                 "error": self.error,
                 "cost": self.cost,
                 "stability": self.stability,
@@ -69,6 +69,10 @@ class Result:
                 "warnings": list(self.warnings),
             }
         )
+
+    def _motion(self) -> dict[str, Any] | None:
+        found = self.simulation
+        return None if found is None else {**motion_table(self.model, found.record), "orbits": found.orbits}
 
     def _identification(self) -> dict[str, Any] | None:
         found = self.identification

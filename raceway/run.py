@@ -209,7 +209,7 @@ def _drift(model: Model, simulation: Simulation) -> float | None:
     law = model.scene.contact.law
     potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
     # What changes the speed of the balls does work, too.
-    steady = simulation.start != "ramp" and not model.scene.kinematics.orbiting and model.system.spin is None
+    steady = simulation.start.kind != "ramp" and not model.scene.kinematics.orbiting and model.system.spin is None
     if not (potential and steady and model.scene.integrator.method.inertial):
         return None
     return energy_balance(model.system, simulation.whole).drift

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import ceil
+from typing import Any
 
 import attrs
 import numpy as np
 
-from raceway.core.orbit import Orbit, steady_orbit
+from raceway.core.orbit import Orbit
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
-from raceway.errors import ConvergenceError, StabilityError
+from raceway.errors import StabilityError
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
 from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn
+from raceway.starting import Start, chosen_start
 from raceway.statics import Equilibrium, settle
 
 OnProgress = Callable[[str, int, int], None]
@@ -29,17 +31,20 @@ class Simulation:
     ----------
     record : the turns that identification uses;  whole : all of them
     critical_time_step : 2 / (largest frequency of the stiffest state met) [s]
-    start : how it began: "orbit", "ramp", "static"
+    start : how it began
     warnings : what a user should know
-    orbit : the steady orbit that it began on
     """
 
     record: Record
     whole: Record
     critical_time_step: float | None
-    start: str
+    start: Start
     warnings: tuple[str, ...]
-    orbit: Orbit | None = None
+
+    @property
+    def orbits(self) -> list[dict[str, Any]]:
+        """``motion.orbits`` of result.json: the steady motions that were found; empty where none were looked for."""
+        return list(self.whole.counts.get("orbits", self.start.orbits))
 
 
 def simulate(
@@ -47,7 +52,7 @@ def simulate(
     equilibrium: Equilibrium,
     on_progress: OnProgress | None = None,
     steps_per_turn: int | None = None,
-    orbit: Orbit | None = None,
+    begun: Simulation | None = None,
     near: Simulation | None = None,
 ) -> Simulation:
     """Integrate the plan's turns.
@@ -55,7 +60,7 @@ def simulate(
     Parameters
     ----------
     steps_per_turn : instead of the scene's
-    orbit : the steady orbit, where it is known already
+    begun : of the same scene with other steps, whose start is taken
     near : of a similar scene by the same integrator, for integrators that can start from it
 
     Raises
@@ -65,7 +70,8 @@ def simulate(
     """
     system, method, scene = model.system, model.scene.integrator.method, model.scene
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
-    start, orbit, warnings = _chosen_start(model, equilibrium, orbit)
+    begin = chosen_start(model, equilibrium) if begun is None else begun.start
+    start, orbit, warnings = begin.kind, begin.orbit, begin.warnings
     critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
     dt = period / steps_per_turn
@@ -95,29 +101,7 @@ def simulate(
     if start == "static" and method.inertial and not getattr(method, "steady", False):
         used = max(model.plan.turns // 3, 1)
     warnings += tuple(whole.counts.get("warnings", ()))
-    return Simulation(whole.last(max(used, 1)), whole, critical, start, warnings, orbit)
-
-
-def _chosen_start(model: Model, equilibrium: Equilibrium, known: Orbit | None) -> tuple[str, Orbit | None, tuple[str, ...]]:
-    """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
-    scene, method = model.scene, model.scene.integrator.method
-    if getattr(method, "steady", False):
-        return "static", None, ()
-    start = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
-    if start != "orbit" or not method.inertial:
-        return start, None, ()
-    excitation, system = model.excitation, model.system.at_speed(0.0).at_standstill()
-    if excitation.period_s is None:
-        # What changes its speed starts on the orbit of its first moment.
-        steady = getattr(excitation, "steady", None)
-        if steady is None:
-            return "ramp", None, ("the excitation does not repeat every turn: started with a ramp instead of on the orbit",)
-        excitation = steady()
-        system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
-    try:
-        return start, known or steady_orbit(system, excitation.period_s, equilibrium.displacement), ()
-    except ConvergenceError as why:
-        return "ramp", None, (f"{why}: started with a ramp instead",)
+    return Simulation(whole.last(max(used, 1)), whole, critical, begin, warnings)
 
 
 def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:

@@ -98,13 +98,26 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
         for loop in dict.fromkeys(_METHODS.values()):
             needed = integrates and _METHODS.get(method) == loop
             decide(needed, f"{_LOOPS}.{loop}", f"takes the steps of {method}", unused)
-    decide(integrates and method == "periodic", "raceway.core.periodic", "the steady orbit", unused)
+    searched = method == "periodic" or searches_orbits(scene)
+    unused = unused if not integrates else f"{unused}, no steady orbit is searched for"
+    decide(integrates and searched, "raceway.core.periodic", "steady orbits and their multipliers", unused)
     mesher = getattr(scene.mesh, "name", None) if kind != "rigid" else None
     for library, meshers in _MESHING.items():
         decide(mesher in meshers, library, f"mesh.kind is {mesher}", "no mesh of another program is read or made")
     for library in _PICTURES:
         decide(False, library, "", "pictures are drawn by --pictures and raceway view only")
     return tuple(found)
+
+
+def searches_orbits(scene: Scene) -> bool:
+    """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
+    integrator, excitation, contact = scene.integrator, scene.excitation, scene.contact
+    if excitation is None or getattr(integrator.method, "steady", False) or not integrator.method.inertial:
+        return False
+    on_orbit = integrator.start == "orbit" and not getattr(excitation, "ramp_turns", 0.0) > 0.0
+    repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
+    compiled = scene.bodies.kind != "elastic" and contact.discretisation != "nodal"
+    return on_orbit and repeats and compiled and contact.law.state_size == 0
 
 
 def _not(kind: str, wanted: str, else_why: str) -> str:

@@ -22,6 +22,7 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     result : content of result.json;  files : what was written
     """
     rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_bodies(result.get("model"))]
+    rows += _orbits((result.get("motion") or {}).get("orbits") or [])
     rows += _cost(result["cost"])
     rows += _stability(result["stability"])
     # What makes the numbers doubtful is read before them.
@@ -227,6 +228,19 @@ def _inertia(inertia: Mapping[str, Any]) -> list[Row]:
     rings = min(inertia[f"{known[word]}_hz"] for word in known if word != "ball along its grooves")
     remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
     return [("slowest own motion", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
+
+
+def _orbits(found: Sequence[Mapping[str, Any]]) -> list[Row]:
+    """Steady motions under the same force, where more than one was found."""
+    if len(found) < 2:
+        return []
+    rows: list[Row] = [("Steady motions that were found", "", "")]
+    for k, one in enumerate(found):
+        z, word = one["dynamic_stiffness"], "unstable" if not one["stable"] else one["verdict"]
+        grows = f"{word}, multiplier {one['multiplier']:.4g} a turn, found {one['found']}{'; reported above' if one['taken'] else ''}"
+        value = f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j N/µm"
+        rows.append((f"Z of motion {k + 1}", value, f"{1e6 * one['amplitude_m']:.4g} µm; {grows}"))
+    return rows
 
 
 def _cost(cost: Mapping[str, Any]) -> list[Row]:

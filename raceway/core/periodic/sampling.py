@@ -47,7 +47,7 @@ def record(solved: Solved, schedule: Schedule, counts: dict[str, Any]) -> Record
     if a_turn * schedule.stride != schedule.steps_per_turn or abs(inside * every - span) > 1e-9 * span:
         inside = total
     inside = min(inside, total)
-    q, v, a, ball, rate, gap, force = _states(solved, angles[:inside])
+    q, v, a, ball, rate, gap, force = _with_contacts(solved, angles[:inside])
     repeat = _Repeat(problem, inside, total)
     push = np.empty((total, 5))
     time = schedule.dt * schedule.stride * np.arange(1, total + 1)
@@ -73,8 +73,8 @@ def record(solved: Solved, schedule: Schedule, counts: dict[str, Any]) -> Record
     )
 
 
-def _states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Motion, balls, gaps and contact forces at any angles: those beyond the span are turned there."""
+def states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
+    """q, dq/dtheta, d2q/dtheta2 (n, 5), balls and rates (n, Z, c) at any angles (n,): those beyond the span are turned there."""
     problem, symmetry = solved.problem, solved.problem.symmetry
     # A sample at the very end of a span belongs to it: nothing has to be turned then.
     spans = np.maximum(np.ceil(angles / symmetry.span - 1e-12).astype(int) - 1, 0)
@@ -85,8 +85,21 @@ def _states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
         q, v, a = (np.einsum("nij,nj->ni", turn, x) for x in (q, v, a))
         order = repeat.orders[spans][:, :, None]
         ball, rate = (np.take_along_axis(x, np.broadcast_to(order, x.shape), axis=1) for x in (ball, rate))
-    ball, rate = np.ascontiguousarray(ball), np.ascontiguousarray(rate)
-    system = problem.system
+    return q, v, a, np.ascontiguousarray(ball), np.ascontiguousarray(rate)
+
+
+def half_a_turn_later(solved: Solved, problem: Problem) -> Path:
+    """The motion on its own mesh as it is half a turn later, for a problem whose force is the opposite of its own."""
+    nodes = solved.path.nodes
+    q, v, _, _, _ = states(solved, nodes + np.pi)
+    _, _, a, ball, rate = states(solved, problem.angles(nodes) + np.pi)
+    return Path(nodes, np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a), ball, rate)
+
+
+def _with_contacts(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The same, balls where they are at rest, with gaps and contact forces (n, 2 Z)."""
+    problem, system = solved.problem, solved.problem.system
+    q, v, a, ball, rate = states(solved, angles)
     gap, force = np.empty((2, len(angles), 2 * system.ball_count))
     done = contacts(
         *system.model, system.law_state, angles / problem.speed, np.ascontiguousarray(q),

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.core.address import by_address
 from raceway.core.bodies.ring import CAGE, FRICTION
-from raceway.core.periodic.floquet import Floquet, floquet
 from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.sampling import record
 from raceway.core.periodic.search import Found, find, problem_of
+from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.system import System
 from raceway.errors import SceneError
@@ -54,14 +55,14 @@ def steady(
         )
         raise SceneError.at("integrator.kind", "periodic", why)
     found = find(problem, q, tangent, tolerance, start.near)
-    fate = floquet(found.refined.solved, found.highest)
-    refined = found.refined
+    refined, told = found.refined, orbits(found.all)
     counts = {
         "steps": refined.solved.path.intervals,
         "evaluations": refined.evaluations,
         "error": refined.error,
-        "floquet": {**fate.as_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": found.how},
-        "warnings": warnings(found, fate, tolerance),
+        "floquet": {**found.fate.as_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": found.how},
+        "orbits": told,
+        "warnings": warnings(found, told, tolerance),
     }
     out = attrs.evolve(record(refined.solved, schedule, counts), solution=neighbour_of(refined.solved, q, tangent))
     if on_chunk is not None:
@@ -98,24 +99,16 @@ def refuse(system: System, schedule: Schedule) -> None:
         raise SceneError.at("integrator.kind", "periodic", "the force does not repeat itself every turn. Use 'newmark'")
 
 
-def warnings(found: Found, fate: Floquet, tolerance: float) -> tuple[str, ...]:
-    """What a user should know of a motion that was hard to find, is not stable, or is not as exact as asked for."""
-    out = []
+def warnings(found: Found, told: list[dict[str, Any]], tolerance: float) -> tuple[str, ...]:
+    """What a user should know of a motion that was hard to find, is not stable or not alone, or not as exact as asked for."""
+    out = list(several(told))
     if found.fold is not None:
         out.append(
             f"no motion grows out of rest: its branch turns back at {100.0 * found.fold:.3g} % of the force (an internal "
             f"resonance); this motion was reached {found.how}, and others may exist"
         )
-    if fate.verdict == "unstable":
-        ways = {
-            "+1": "through +1: it drifts to another motion",
-            "-1": "through -1: the period doubles",
-            "pair": "as a pair: a second frequency comes in",
-        }
-        out.append(
-            f"the periodic motion is unstable, disturbances grow {fate.largest:.4g} times a turn, {ways[fate.leaves_by]}; a "
-            "real ring does not stay on it"
-        )
+    if found.fate.verdict == "unstable":
+        out.append(f"the periodic motion is unstable, {unstable(told[0])}; a real ring does not stay on it")
     if found.refined.error > tolerance:
         out.append(f"the mesh cannot follow the motion closer than {found.refined.error:.1e} of its amplitude")
     return tuple(out)

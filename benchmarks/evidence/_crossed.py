@@ -1,0 +1,115 @@
+"""Random scenes of the report ``several_motions``, each run by two integrators."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway import scene_from_dict
+from raceway.errors import RacewayError
+from raceway.result import Result
+from raceway.run import run
+
+Tables = dict[str, Any]
+_METHODS = ("newmark", "generalized_alpha", "central_difference", "periodic")
+#: Integrators that solve for the motion itself refuse friction.
+_TRANSIENTS = _METHODS[:3]
+
+
+@attrs.frozen
+class Pair:
+    """Two runs of one scene.
+
+    Attributes
+    ----------
+    apart : distance of their Z over the sum of their stated errors, both absolute; None where a run failed or states none
+    several : whether one of them tells that several steady motions exist, or that its motion is unstable
+    """
+
+    number: int
+    words: str
+    tables: tuple[Tables, Tables]
+    results: tuple[Result | None, Result | None]
+    apart: float | None
+    several: bool
+    why: str = ""
+
+
+def crossed(number: int) -> tuple[Tables, Tables]:
+    """The same scene for two integrators: loads, speeds, masses and forces from linear response to lift-off."""
+    rng = np.random.default_rng(number)
+
+    def decades(low: float, high: float) -> float:
+        return float(f"{10.0 ** rng.uniform(np.log10(low), np.log10(high)):.4g}")
+
+    axial, friction = decades(100.0, 3000.0), float(rng.choice([0.0, 0.0, 0.0, 0.0, 0.0, 0.03]))
+    bearing: Tables = {"preset": "B7206C"}
+    if rng.random() < 0.3:
+        bearing |= {
+            "ball_count": int(rng.integers(7, 19)),
+            "ball_diameter": 7.5e-3,
+            "contact_angle_deg": float(rng.uniform(12, 40)),
+        }
+    base: Tables = {
+        "bearing": bearing,
+        "load": {"axial": axial, "radial": [decades(1.0, 0.5 * axial) if rng.random() < 0.3 else 0.0, 0.0]},
+        "supports": {"tilt": ["locked", "free", decades(1e3, 1e6)][int(rng.integers(3))]},
+        "rotor": {"mass": decades(0.3, 100.0), "damping": decades(10.0, 1e4) if rng.random() < 0.6 else 0.0},
+        "excitation": {
+            "kind": str(rng.choice(["bidirectional", "unidirectional"])),
+            "speed_rpm": decades(2000.0, 20000.0),
+            "amplitude": "constant",
+            "force": axial * decades(0.01, 0.8),
+        },
+        "contact": {"kind": "hertz", "damping": float(rng.choice([1e-3, 1.0, 100.0])), "friction": friction},
+        "kinematics": {"ball_inertia": bool(rng.random() < 0.5)},
+    }
+    methods = rng.permutation(_TRANSIENTS if friction else _METHODS)[:2]
+    pair = []
+    for method in methods:
+        tables = copy.deepcopy(base)
+        tables["integrator"] = {"kind": str(method)}
+        if method != "periodic":
+            start = str(rng.choice(["orbit", "orbit", "orbit", "ramp"]))
+            tables["integrator"] |= {"start": start, "turns": int(rng.choice([12, 24, 36]))}
+            if method != "central_difference":
+                tables["integrator"]["steps_per_turn"] = int(rng.choice([120, 360]))
+        pair.append(tables)
+    return pair[0], pair[1]
+
+
+def compared(number: int) -> Pair:
+    """Both runs of one scene, and how far apart their answers are."""
+    tables = crossed(number)
+    words = " against ".join(_words(one) for one in tables)
+    results: list[Result | None] = []
+    why = ""
+    for one in tables:
+        try:
+            results.append(run(scene_from_dict(one)))
+        except RacewayError as error:
+            results.append(None)
+            why = why or f"{_words(one)}: {error}"
+    first, second = results
+    if first is None or second is None:
+        return Pair(number, words, tables, (first, second), None, False, why)
+    totals = [found.error["total"] for found in (first, second)]
+    several = any(_several(found) for found in (first, second))
+    if None in totals:
+        return Pair(number, words, tables, (first, second), None, several, "no error is stated")
+    z = [found.identification.dynamic_stiffness for found in (first, second)]
+    apart = abs(z[0] - z[1]) / sum(total * abs(value) for total, value in zip(totals, z, strict=True))
+    return Pair(number, words, tables, (first, second), apart, several)
+
+
+def _words(tables: Tables) -> str:
+    own = tables["integrator"]
+    return " ".join(str(own[key]) for key in ("kind", "start", "turns", "steps_per_turn") if key in own)
+
+
+def _several(result: Result) -> bool:
+    """Whether a result says that its motion is not the only one that a ring may be on."""
+    return any(key in text for text in result.warnings for key in ("steady motions that are not unstable", "unstable"))

@@ -1,0 +1,111 @@
+"""The periodic motion that a transient starts on, with what is known of its stability and of others.
+
+Notes
+-----
+The search of ``raceway.core.periodic.search``, so that a transient and the steady orbit that is solved for directly are of one
+motion.  Where it finds nothing, Fourier collocation (``raceway.core.orbit``) may: its damped iteration ends on any motion.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.address import by_address
+from raceway.core.orbit import Orbit, at_time, evaluate_many, steady_orbit
+from raceway.core.periodic.collocation import Path, Problem, solve
+from raceway.core.periodic.first_guess import standing
+from raceway.core.periodic.refinement import refine
+from raceway.core.periodic.sampling import states
+from raceway.core.periodic.search import Found, can_follow, find, found_by, highest_order, mesh_of, problem_of
+from raceway.core.periodic.told import orbits, several, unstable
+from raceway.core.system import System
+from raceway.errors import ConvergenceError
+
+#: Samples of an orbit, as many as Fourier collocation has, and error of the search over the motion.
+_SAMPLES, _TOLERANCE = 65, 1e-7
+
+
+@attrs.frozen(eq=False)
+class Beginning:
+    """What a transient starts on.
+
+    Attributes
+    ----------
+    orbit : periodic motion at equidistant times
+    told : every motion that was found, as ``raceway.core.periodic.told`` tells them; empty where nothing could be said
+    warnings : what a user should know
+    """
+
+    orbit: Orbit
+    told: list[dict[str, Any]] = attrs.field(factory=list)
+    warnings: tuple[str, ...] = ()
+
+
+def beginning(system: System, period: float, q: np.ndarray) -> Beginning | None:
+    """The motion to start on; None where it is not searched for, because each try would take seconds.
+
+    Parameters
+    ----------
+    system : with compiled forces, without friction, memory and orbiting balls;  q : (5,) static equilibrium
+
+    Raises
+    ------
+    ConvergenceError
+        No periodic motion found.
+    """
+    system = by_address(system)
+    tangent = system.evaluate(q).stiffness
+    problem = problem_of(system, 2.0 * np.pi / period, q)
+    if not can_follow(problem, q, tangent):
+        return None
+    try:
+        found = find(problem, q, tangent, _TOLERANCE)
+    except ConvergenceError:
+        found = _collocated(problem, period, q, tangent)
+    told = orbits(found.all)
+    warnings = several(told)
+    if not told[0]["stable"]:
+        warnings += (
+            f"the motion starts on a steady orbit that is unstable, {unstable(told[0])}; no stable one was found, and a real "
+            "ring does not stay on it",
+        )
+    return Beginning(sampled(found, period), told, warnings)
+
+
+def _collocated(problem: Problem, period: float, q: np.ndarray, tangent: np.ndarray) -> Found:
+    """The motion of Fourier collocation, solved for once more on a mesh."""
+    orbit = steady_orbit(problem.system, period, q, _SAMPLES)
+    highest = highest_order(problem, tangent)
+    path = _path(problem, orbit, mesh_of(problem, highest))
+    return found_by(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
+
+
+def _path(problem: Problem, orbit: Orbit, nodes: np.ndarray) -> Path:
+    """An orbit on a mesh."""
+    w = problem.speed
+
+    def at(values: np.ndarray, angles: np.ndarray) -> np.ndarray:
+        return np.array([at_time(values, orbit.period, angle / w) for angle in angles])
+
+    q, v, a = orbit.displacement, orbit.velocity / w, orbit.acceleration / w**2
+    still = standing(problem, np.zeros(5), nodes)
+    return attrs.evolve(still, q=at(q, nodes), v=at(v, nodes), a=at(a, problem.angles(nodes)))
+
+
+def sampled(found: Found, period: float) -> Orbit:
+    """A motion at equidistant times of a turn."""
+    solved = found.refined.solved
+    problem, system = solved.problem, solved.problem.system
+    times = period / _SAMPLES * np.arange(_SAMPLES)
+    q, v, a, ball, rate = states(solved, problem.speed * times)
+    q, v = np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed)
+    f, K, C = np.empty((_SAMPLES, 5)), np.empty((_SAMPLES, 5, 5)), np.empty((_SAMPLES, 5, 5))
+    done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
+    if done < _SAMPLES:
+        raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
+    force = np.array([system.outer_force(t) for t in times])
+    iterations = found.refined.sweeps
+    return Orbit(period, q, v, a * problem.speed**2, force, ball, K, found.refined.error, iterations)
