@@ -3,7 +3,7 @@
 Notes
 -----
 At surface points the bodies deform and a law may leave some overlap: its share of the approach is how much too soft the
-contact is.  A law of whole contacts on rigid bodies is held against exact Hertz at the same load.  Both say what the model
+contact is.  A law of whole contacts on rigid bodies is held against exact Hertz at the same load, in its approach and in its stiffness.  Both say what the model
 is off by, not the numbers: the entry is no part of ``total``.
 """
 
@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from raceway.model import Model
+from raceway.pressure import law_of_pair
 from raceway.statics import Equilibrium
 
 #: Differences from Hertz's approach below this are rounding, of an equilibrium solved to 1e-11.
@@ -19,7 +20,7 @@ _ROUNDING = 1e-8
 
 
 def contact_error(model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
-    """Relative error of the approaches at the equilibrium, the largest of all loaded contacts, or None; and how or why not."""
+    """Relative error of approaches and stiffnesses at the equilibrium, the largest of all loaded contacts, or None; and how."""
     loaded = equilibrium.contact_force > 0.0
     if not loaded.any():
         return None, "no contact carries anything"
@@ -34,10 +35,18 @@ def contact_error(model: Model, equilibrium: Equilibrium) -> tuple[float | None,
     split = model.system.ball_count
     force = equilibrium.contact_force
     hertz = np.concatenate([model.inner.approach(force[:split]), model.outer.approach(force[split:])])
-    off = float(np.abs(-equilibrium.gap[loaded] / hertz[loaded] - 1.0).max())
-    if off < _ROUNDING:
+    approach = -equilibrium.gap
+    off = float(np.abs(approach[loaded] / hertz[loaded] - 1.0).max())
+    slope = np.concatenate([
+        law_of_pair(model, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
+    ])  # fmt: skip
+    stiffness = float(np.abs(slope[loaded] * hertz[loaded] / (1.5 * force[loaded]) - 1.0).max())
+    if max(off, stiffness) < _ROUNDING:
         return None, "the law is Hertz's: what it assumes (smooth, dry half-spaces) is not estimated"
-    return off, "largest difference of a contact's approach from exact Hertz at the same load; not part of the total"
+    return max(off, stiffness), (
+        f"largest difference of a contact's stiffness ({stiffness:.1e}) or approach ({off:.1e}) from exact Hertz at the same "
+        "load; not part of the total"
+    )
 
 
 def _penetration(model: Model, equilibrium: Equilibrium, loaded: np.ndarray) -> tuple[float | None, str]:

@@ -32,6 +32,9 @@ class ContactLaw(Protocol):
     5. A law for both discretisations tells them apart by ``pairs.area``, which is None for resultants.
     6. ``constraint`` = True, if it is there, says that the law stands for no penetration at all: condensed bodies then hold
        the gap exactly and do not call the kernel.
+    7. ``foundation`` = True, if it is there, says that a resultant is the integral of a pressure that follows from the overlap
+       at each place: results then tell the law's own peak pressure and semi-axes, sqrt(A B) / pi dQ/ddelta and the overlap
+       ellipse's, instead of Hertz's at the same load.
     """
 
     name: ClassVar[str]

@@ -8,10 +8,11 @@ import numpy as np
 
 from raceway.core.record import Record
 from raceway.model import Model
+from raceway.pressure import contact_ellipse
 
 
 def motion_table(model: Model, record: Record) -> dict[str, Any]:
-    """Mean axial displacement, and the largest ball loads with their Hertz pressure, in the turns that are used.
+    """Mean axial displacement, and the largest ball loads with their pressure, in the turns that are used.
 
     Parameters
     ----------
@@ -22,8 +23,8 @@ def motion_table(model: Model, record: Record) -> dict[str, Any]:
     return {
         "axial_displacement_m": float(record.displacement[:, 0].mean()),
         "peak_ball_load_n": inner,
-        "peak_pressure_inner_pa": float(model.inner.peak_pressure(np.array([inner]))[0]),
-        "peak_pressure_outer_pa": float(model.outer.peak_pressure(np.array([outer]))[0]),
+        "peak_pressure_inner_pa": float(contact_ellipse(model, 0, np.array([inner]))[0][0]),
+        "peak_pressure_outer_pa": float(contact_ellipse(model, 1, np.array([outer]))[0][0]),
     }
 
 

@@ -17,6 +17,7 @@ from raceway.core.system import COORDINATES
 from raceway.files import write_whole
 from raceway.model import Model
 from raceway.motion import motion_table
+from raceway.pressure import contact_ellipse
 from raceway.simulate import Simulation
 from raceway.statics import Equilibrium
 
@@ -145,11 +146,11 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         "contact_angle_inner_deg": np.degrees(equilibrium.angle_inner),
         "contact_angle_outer_deg": np.degrees(equilibrium.angle_outer),
     }
-    for race, ellipse, load in (("inner", model.inner, load_inner), ("outer", model.outer, load_outer)):
-        a, b = ellipse.semi_axes(load)
-        columns[f"peak_pressure_{race}_pa"] = ellipse.peak_pressure(load)
-        columns[f"semi_major_{race}_m"] = a
-        columns[f"semi_minor_{race}_m"] = b
+    for race, (word, load) in enumerate((("inner", load_inner), ("outer", load_outer))):
+        pressure, a, b = contact_ellipse(model, race, load)
+        columns[f"peak_pressure_{word}_pa"] = pressure
+        columns[f"semi_major_{word}_m"] = a
+        columns[f"semi_minor_{word}_m"] = b
     more = getattr(model.bodies, "ball_columns", None)
     if more is not None:
         columns |= more(model, equilibrium)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, pi, sqrt
+from math import asin, cos, pi, sin, sqrt
 from typing import Any
 
 from raceway.scene import Scene
@@ -13,30 +13,50 @@ def ring_inertia(scene: Scene) -> tuple[float, float]:
 
     Notes
     -----
-    A hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h), less the groove's circular segment; with
-    ``bearing.inner_profile`` that section, exactly.
+    Of ``bearing.inner_profile``, or of a hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h); the groove
+    is cut out exactly.
     """
+    moments = _moments(scene)
+    places = [place for _, place in scene.bearing.rows]
+    if moments is None:
+        return 0.0, 0.0
+    mass, transverse, _ = (scene.bearing.rings.density * moment for moment in moments)
+    return mass * len(places), sum(transverse + mass * place**2 for place in places)
+
+
+def _moments(scene: Scene) -> tuple[float, float, float] | None:
+    """Volume [m3] of one inner ring, transverse and polar inertia over density [m5]; None when bore or width are not known."""
     b = scene.bearing
-    places = [place for _, place in b.rows]
     if b.inner_profile is not None:
         from raceway.core.meshing.ring_shape import ring_shape
 
-        mass, transverse = (b.rings.density * moment for moment in ring_shape(b, True).moments)
-        return mass * len(places), sum(transverse + mass * place**2 for place in places)
+        return ring_shape(b, True).moments
     if b.bore is None or b.width is None:
-        return 0.0, 0.0
-    d, depth = b.ball_diameter, shoulder_height(scene)
-    bottom = b.pitch_diameter - d
-    land = bottom + 2.0 * depth
-    groove = b.conformity_inner * d
-    half = sqrt(max(2.0 * groove * depth - depth * depth, 0.0))
-    segment = groove * groove * asin(min(half / groove, 1.0)) - half * (groove - depth)
-    solid = b.rings.density * pi / 4.0 * (land**2 - b.bore**2) * b.width
-    cut = b.rings.density * segment * pi * (bottom + 1.2 * depth)
-    mass = solid - cut
-    inner, outer = b.bore / 2.0, land / 2.0
-    transverse = mass * (3.0 * (inner**2 + outer**2) + b.width**2) / 12.0
-    return mass * len(places), sum(transverse + mass * place**2 for place in places)
+        return None
+    import numpy as np
+
+    offset = (b.conformity_inner - 0.5) * b.ball_diameter
+    groove, centre_x = b.conformity_inner * b.ball_diameter, offset * sin(b.contact_angle)
+    centre_r = 0.5 * b.pitch_diameter + offset * cos(b.contact_angle)
+    bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + shoulder_height(scene)
+    half = sqrt(max(groove**2 - (centre_r - land) ** 2, 0.0))
+    # Where the groove meets the land, or a side face before that.
+    ends = [min(max(x, -0.5 * b.width), 0.5 * b.width) for x in (centre_x - half, centre_x + half)]
+    low, high = (asin(max(min((x - centre_x) / groove, 1.0), -1.0)) for x in ends)
+    at, weight = np.polynomial.legendre.leggauss(48)
+    angle = 0.5 * (low + high) + 0.5 * (high - low) * at
+    sections = [
+        (centre_x + groove * np.sin(angle), centre_r - groove * np.cos(angle), 0.5 * (high - low) * groove * np.cos(angle)),
+    ]
+    for left, right in ((-0.5 * b.width, ends[0]), (ends[1], 0.5 * b.width)):
+        x = 0.5 * (left + right) + 0.5 * (right - left) * at
+        sections.append((x, np.full_like(x, land), np.full_like(x, 0.5 * (right - left))))
+    out = np.zeros(3)
+    for x, r, slope in sections:
+        square, fourth = r**2 - bore**2, r**4 - bore**4
+        for k, part in enumerate((square, 0.25 * fourth + x**2 * square, 0.5 * fourth)):
+            out[k] += pi * float(weight @ (part * slope))
+    return float(out[0]), float(out[1]), float(out[2])
 
 
 def radial_growth(scene: Scene) -> float:

@@ -78,7 +78,10 @@ class Bearing:
         rule=one_of("rigid", "spring"),
     )
     row_distance: float | None = option(
-        None, unit="m", help="axial distance of a pair's rows; default: the width of one bearing", rule=optional(positive())
+        None,
+        unit="m",
+        help="axial distance of a pair's rows, between the planes of their inner groove centres; default: the width of one bearing",
+        rule=optional(positive()),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
     rings: Material = attrs.field(factory=Material, metadata={"help": "material of both rings"})
@@ -245,7 +248,7 @@ class Contact:
     stick_stiffness: float | None = option(
         None,
         unit="N/m",
-        help="of a sticking contact; default: Mindlin's ratio times the normal stiffness under the axial load",
+        help="of a sticking contact; default: of the contact ellipse along its major axis (Mindlin), at the ball load under the axial load",
         rule=optional(positive()),
     )
     damping: float = option(0.0, unit="N s/m", help="normal, each contact", rule=at_least(0.0))

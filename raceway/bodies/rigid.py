@@ -100,10 +100,9 @@ def _scalars(
 
 
 def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) -> float:
-    """Tangential stiffness [N/m] of a sticking contact: 2 (1 - nu) / (2 - nu) of the normal one (Mindlin 1949)."""
+    """Tangential stiffness [N/m] of a contact that sticks along the groove, the ellipse's major axis; mean of both races."""
     nu = 0.5 * (scene.bearing.rings.poisson + scene.bearing.balls.poisson)
-    normal = [1.5 * load / float(e.approach(load)) for e in (inner, outer)]
-    return 2.0 * (1.0 - nu) / (2.0 - nu) * 0.5 * sum(normal)
+    return 0.5 * sum(e.stick_ratio(nu)[0] * 1.5 * load / float(e.approach(load)) for e in (inner, outer))
 
 
 def _ball_table(

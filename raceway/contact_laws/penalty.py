@@ -30,6 +30,7 @@ class Penalty:
     discretisations: ClassVar[frozenset[str]] = frozenset({"resultant", "nodal"})
     state_size: ClassVar[int] = 0
     dissipative: ClassVar[bool] = False
+    foundation: ClassVar[bool] = True
 
     stiffness: float | None = option(
         None, unit="N/m3", help="pressure per penetration k_n; excludes calibrate_at", rule=optional(positive())

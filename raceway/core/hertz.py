@@ -89,6 +89,26 @@ class Ellipse:
         s, d = self.curvature_sum, self.curvature_difference
         return 0.25 * s * (1.0 - d), 0.25 * s * (1.0 + d)
 
+    def stick_ratio(self, poisson: float) -> tuple[float, float]:
+        """Stiffness of the sticking contact along the major and the minor axis over the normal one, bodies of one material.
+
+        Notes
+        -----
+        Without slip the traction is that of a flat punch, 1 / sqrt(1 - x^2/a^2 - y^2/b^2); Cerruti's solution gives the
+        displacement T ((1 - nu) K + nu D) / (2 pi G a) along the major axis, with K - D for D along the minor one, against
+        (1 - nu) K / (2 pi G a) normal to it: K and D = (K - E) / e^2 at e^2 = 1 - (b/a)^2.  A circle has 2 (1 - nu) / (2 - nu).
+
+        References
+        ----------
+        Mindlin, J. Appl. Mech. 16 (1949) 259; Vermeulen, Johnson, J. Appl. Mech. 31 (1964) 338.
+        """
+        m1 = (self.b_star / self.a_star) ** 2
+        first = float(ellipkm1(m1))
+        # D runs to pi / 4 at a circle, where its formula is 0 / 0.
+        along = 0.25 * np.pi if 1.0 - m1 < 1e-9 else (first - float(ellipe(1.0 - m1))) / (1.0 - m1)
+        normal = (1.0 - poisson) * first
+        return normal / (normal + poisson * along), normal / (normal + poisson * (first - along))
+
     def semi_axes(self, load: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
         """a, b [m] at a load [N]."""
         unit = np.cbrt(1.5 * np.asarray(load) / (self.curvature_sum * self.contact_modulus))

@@ -126,14 +126,14 @@ class RingShape:
         return 2.0 * pi * radius * self.groove * (high - low)
 
     @property
-    def moments(self) -> tuple[float, float]:
-        """Volume [m3], and the integral of r^2 / 2 + x^2 over it [m5]: transverse inertia about x = 0 over density."""
+    def moments(self) -> tuple[float, float, float]:
+        """Volume [m3], and the integrals of r^2 / 2 + x^2 and r^2 over it [m5]: inertia about y and x over density."""
         at, weights = np.polynomial.legendre.leggauss(48)
-        out = np.zeros(2)
+        out = np.zeros(3)
 
         def add(x: np.ndarray, r: np.ndarray, slope: np.ndarray, side: float) -> None:
             # Between the axis and the line, so that the section is the difference of its two lines.
-            for k, part in enumerate((r**2, r**4 / 4.0 + x**2 * r**2)):
+            for k, part in enumerate((r**2, r**4 / 4.0 + x**2 * r**2, r**4 / 2.0)):
                 out[k] += side * pi * float(weights @ (part * slope))
 
         def along(line: np.ndarray, side: float) -> None:
@@ -150,7 +150,7 @@ class RingShape:
         angle = 0.5 * (low + high) + 0.5 * (high - low) * at
         x, r = self.surface(angle).T
         add(x, r, 0.5 * (high - low) * self.groove * np.cos(angle), race)
-        return float(out[0]), float(out[1])
+        return float(out[0]), float(out[1]), float(out[2])
 
     def surface(self, angles: np.ndarray) -> np.ndarray:
         """(n, 2) x and radius of points of the groove, angle from its bottom towards +x [rad]."""
