@@ -27,8 +27,10 @@ from raceway.statics import settle
 EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "b7206.toml"
 #: Two loops of the same physics, solved to 1e-9 of the largest force, differ by rounding only.
 SAME = 1e-12
-LIMIT = 1.5
-_TURNS, _STEPS_PER_TURN = 60, 360
+#: Composed over hand-fused, by the mass of the balls.
+LIMIT = {"with centrifugal force": 1.15, "weightless": 1.3}
+#: Short runs, many and by turns: on a machine that others use, only the least times of both meet the same machine.
+_TURNS, _STEPS_PER_TURN, _REPEATS = 20, 360, 60
 
 
 @attrs.frozen
@@ -52,12 +54,13 @@ class Loop:
         return self.composed / self.fused
 
 
-def loops(repeats: int = 7) -> list[Loop]:
+def loops(repeats: int = _REPEATS) -> list[Loop]:
     """Both ball models with both kinds of time step, on the example's bearing."""
-    return [_loop(kind, inertial, repeats) for kind in ("newmark", "central_difference") for inertial in (True, False)]
+    return [compare(kind, inertial, repeats) for kind in ("newmark", "central_difference") for inertial in (True, False)]
 
 
-def _loop(kind: str, inertial: bool, repeats: int) -> Loop:
+def compare(kind: str, inertial: bool, repeats: int = _REPEATS, enough: float = 0.0) -> Loop:
+    """One comparison; it ends before its last repeat as soon as the ratio is no more than ``enough``."""
     changes = (
         f'integrator.kind="{kind}"',
         f"integrator.turns={_TURNS}",
@@ -79,6 +82,8 @@ def _loop(kind: str, inertial: bool, repeats: int) -> Loop:
         rows, iterations = _fused(model, start, schedule, inertial)
         composed.append(middle - begin)
         fused.append(time.process_time() - middle)
+        if min(composed) <= enough * min(fused):
+            break
     ours = record.displacement
     deviation = float(np.abs(rows[:, 1:6] - ours).max() / np.abs(ours).max())
     if iterations != record.counts["evaluations"]:

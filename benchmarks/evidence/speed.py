@@ -18,7 +18,7 @@ def rows() -> list[Row]:
         name = f"{loop['integrator']}, balls {loop['balls']}"
         ours, fused = loop["composed"] * 1e9, loop["fused"] * 1e9
         note = f"{ours:.0f} ns against {fused:.0f} ns a step of {loop['iterations']:.1f} iterations"
-        out.append(below(f"composed over hand-fused time loop: {name}", loop["ratio"], LIMIT, COMMAND, note))
+        out.append(below(f"composed over hand-fused time loop: {name}", loop["ratio"], LIMIT[loop["balls"]], COMMAND, note))
         out.append(below(f"largest relative difference of displacements: {name}", loop["deviation"], SAME, COMMAND))
     run, second = found["run"], found["second_process"]
     note = f"median {run['median_s']:.2f} s of {run['repeats']}"

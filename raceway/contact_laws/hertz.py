@@ -32,10 +32,9 @@ class Hertz:
     def build(self, pairs: ContactPairs) -> np.ndarray:
         import numpy as np
 
-        none = np.zeros_like(pairs.hertz_factor)
         if pairs.area is not None:
-            return np.column_stack([none, point_stiffness(pairs, pairs.reference_load)])
-        return np.column_stack([pairs.hertz_factor, none])
+            return np.column_stack([np.zeros_like(pairs.hertz_factor), point_stiffness(pairs, pairs.reference_load)])
+        return pairs.hertz_factor[:, np.newaxis]
 
     def kernel(self) -> Any:
         from raceway.core.contact_laws.point_or_pair import three_halves_or_linear

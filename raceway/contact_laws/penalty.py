@@ -63,7 +63,7 @@ class Penalty:
             factor = np.pi * self.stiffness / (2.0 * np.sqrt(pairs.curvature_a * pairs.curvature_b))
         else:
             factor = load / np.cbrt(load / pairs.hertz_factor) ** 4
-        return np.column_stack([factor, none])
+        return np.asarray(factor)[:, np.newaxis]
 
     def kernel(self) -> Any:
         from raceway.core.contact_laws.point_or_pair import square_or_linear

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from raceway.core.address import by_address
 from raceway.core.integrators import (
     BALLS,
     CONTACT_FORCE,
@@ -65,7 +66,7 @@ def advance(
         memory[:] = start.memory
     done, last = schedule.first, schedule.first + schedule.steps
     # A speed that changes is another one in every step, which ends at its time.
-    addressed, longest = (system, _CHUNK) if system.spin is None else (_addressed(system), 1)
+    addressed, longest = by_address(system), _CHUNK if system.spin is None else 1
     while done < last:
         count = min(longest, last - done)
         now = addressed.at_speed((done + count) * schedule.dt)
@@ -100,13 +101,6 @@ def advance(
             "peak_contact_force_n": float(counters[CONTACT_FORCE]),
         },
     )
-
-
-def _addressed(system: System) -> System:
-    """For loops that are called for every step."""
-    from raceway.core.address import by_address
-
-    return by_address(system)
 
 
 def _step(

@@ -6,7 +6,7 @@ from raceway.core.jit import jit
 from raceway.core.signatures import LAW_POINTER, MATRIX, VECTOR
 
 
-@jit(void(float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR))
+@jit(void(float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR), inline=True)
 def add_damping(damping, gap, gap_rate, force, d_gap, d_rate):
     """Add a viscous force -damping * gap_rate [N] to closed contacts; the sum never pulls.
 

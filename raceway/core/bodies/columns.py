@@ -37,7 +37,7 @@ def slips_end(scalars, ball):
     return ball.shape[1] - 2 if are_condensed(scalars) else ball.shape[1]
 
 
-@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX))
+@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
 def next_balls(scalars, dt, ball, before, known, trial):
     """First guess of the balls after a step, and the part of their rates that is known by then.
 
@@ -45,15 +45,26 @@ def next_balls(scalars, dt, ball, before, known, trial):
     -----
     Rates follow the second-order backward difference (1.5 new - 2 now + 0.5 before) / dt.
     """
-    end = slips_end(scalars, ball)
+    end, inverse = slips_end(scalars, ball), 1.0 / dt
     for k in range(ball.shape[0]):
         for c in range(ball.shape[1]):
-            if c < 2 or c >= end:
-                known[k, c] = (0.5 * before[k, c] - 2.0 * ball[k, c]) / dt
-                trial[k, c] = 2.0 * ball[k, c] - before[k, c]
-            else:
-                known[k, c] = ball[k, c]
-                trial[k, c] = ball[k, c]
+            now, last = ball[k, c], before[k, c]
+            committed = 2 <= c < end
+            known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
+            trial[k, c] = now if committed else 2.0 * now - last
+
+
+@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
+def accept_balls(scalars, dt, ball, before, known, trial):
+    """Commit ``trial``, then what ``next_balls`` gives for the step after it: in one pass."""
+    end, inverse = slips_end(scalars, ball), 1.0 / dt
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            now, last = trial[k, c], ball[k, c]
+            committed = 2 <= c < end
+            before[k, c], ball[k, c] = last, now
+            known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
+            trial[k, c] = now if committed else 2.0 * now - last
 
 
 @jit(void(VECTOR, MATRIX, MATRIX))

@@ -63,44 +63,44 @@ def rigid_inertial(
     for k in range(z):
         work[SEARCH, k] = 0.0
         work[DONE, z + k] = 0.0
-        seat = lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
-        if ball[k, 0] == 0.0 and ball[k, 1] == 0.0:
-            length = np.sqrt(work[CENTRE, k] * work[CENTRE, k] + work[CENTRE, z + k] * work[CENTRE, z + k])
-            if length > li + lo:
-                scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
-                ball[k, 0], ball[k, 1] = scale * work[CENTRE, k], scale * work[CENTRE, z + k]
-            else:
-                ball[k, 1] = seat
-        elif ball[k, 0] * ball[k, 0] + ball[k, 1] * ball[k, 1] <= lo * lo:
-            ball[k, 0], ball[k, 1] = 0.0, seat
+        if ball[k, 0] * ball[k, 0] + ball[k, 1] * ball[k, 1] > lo * lo:
+            continue
+        # A guess off the outer race: on its seat there, or, where nothing is known, on the line of the groove centres.
+        length = np.sqrt(work[CENTRE, k] * work[CENTRE, k] + work[CENTRE, z + k] * work[CENTRE, z + k])
+        if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 and length > li + lo:
+            scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
+            ball[k, 0], ball[k, 1] = scale * work[CENTRE, k], scale * work[CENTRE, z + k]
+        else:
+            ball[k, 0], ball[k, 1] = 0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
     remaining = z
     for _ in range(_ITERATIONS):
         for k in range(z):
             pa, pr = ball[k, 0], ball[k, 1]
-            work[LENGTH, z + k] = np.sqrt(pa * pa + pr * pr)
             xa, xr = work[CENTRE, k] - pa, work[CENTRE, z + k] - pr
-            work[LENGTH, k] = np.sqrt(xa * xa + xr * xr)
-            work[OUTER, k], work[OUTER, z + k] = pa / work[LENGTH, z + k], pr / work[LENGTH, z + k]
-            if work[LENGTH, k] > 0.0:
-                work[INNER, k], work[INNER, z + k] = xa / work[LENGTH, k], xr / work[LENGTH, k]
-            else:
-                work[INNER, k], work[INNER, z + k] = work[OUTER, k], work[OUTER, z + k]
-            gap[k] = li - work[LENGTH, k] + work[SHIFT, k]
-            gap[z + k] = lo - work[LENGTH, z + k] + work[SHIFT, z + k]
-            own_a = ball_gain * pa + ball_known[k, 0]
-            own_r = ball_gain * pr + ball_known[k, 1]
-            rate[k] = -(work[INNER, k] * (work[VELOCITY, k] - own_a) + work[INNER, z + k] * (work[VELOCITY, z + k] - own_r))
-            rate[z + k] = -(work[OUTER, k] * own_a + work[OUTER, z + k] * own_r)
-            rate[k] += work[SHIFT_RATE, k]
-            rate[z + k] += work[SHIFT_RATE, z + k]
+            so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
+            by_so = 1.0 / so
+            oa, orr = pa * by_so, pr * by_so
+            ia, ir = oa, orr
+            if si > 0.0:
+                by_si = 1.0 / si
+                ia, ir = xa * by_si, xr * by_si
+            own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
+            rate_i = work[SHIFT_RATE, k] - (ia * (work[VELOCITY, k] - own_a) + ir * (work[VELOCITY, z + k] - own_r))
+            rate_o = work[SHIFT_RATE, z + k] - (oa * own_a + orr * own_r)
+            gap_i, gap_o = li - si + work[SHIFT, k], lo - so + work[SHIFT, z + k]
+            work[LENGTH, k], work[LENGTH, z + k] = si, so
+            work[OUTER, k], work[OUTER, z + k] = oa, orr
+            work[INNER, k], work[INNER, z + k] = ia, ir
+            gap[k], gap[z + k], rate[k], rate[z + k] = gap_i, gap_o, rate_i, rate_o
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
         for k in range(z):
             if work[DONE, z + k] != 0.0:
                 continue
-            fi, fo = force[k], force[z + k]
-            ga = -fi * work[INNER, k] + fo * work[OUTER, k]
-            gr = -fi * work[INNER, z + k] + fo * work[OUTER, z + k] - table[k, CENTRIFUGAL]
+            fi, fo, gap_i, gap_o = force[k], force[z + k], gap[k], gap[z + k]
+            ia, ir, oa, orr = work[INNER, k], work[INNER, z + k], work[OUTER, k], work[OUTER, z + k]
+            ga = fo * oa - fi * ia
+            gr = fo * orr - fi * ir - table[k, CENTRIFUGAL]
             if work[SEARCH, k] < 0.0:
                 # Beyond the minimum along the last step by more than it began with: go half-way back.
                 along = ga * work[STEP, k] + gr * work[STEP, z + k]
@@ -113,22 +113,19 @@ def rigid_inertial(
                     continue
             ki = -d_gap[k] - ball_gain * d_rate[k]
             ko = -d_gap[z + k] - ball_gain * d_rate[z + k]
-            wi, wo = fi / work[LENGTH, k] if work[LENGTH, k] > 0.0 else 0.0, fo / work[LENGTH, z + k]
-            haa = (ki - wi) * work[INNER, k] * work[INNER, k] + wi + (ko - wo) * work[OUTER, k] * work[OUTER, k] + wo
-            har = (ki - wi) * work[INNER, k] * work[INNER, z + k] + (ko - wo) * work[OUTER, k] * work[OUTER, z + k]
-            hrr = (
-                (ki - wi) * work[INNER, z + k] * work[INNER, z + k]
-                + wi
-                + (ko - wo) * work[OUTER, z + k] * work[OUTER, z + k]
-                + wo
-            )
+            by_si = 1.0 / work[LENGTH, k] if work[LENGTH, k] > 0.0 else 0.0
+            wi, wo = fi * by_si, fo / work[LENGTH, z + k]
+            haa = (ki - wi) * ia * ia + wi + (ko - wo) * oa * oa + wo
+            har = (ki - wi) * ia * ir + (ko - wo) * oa * orr
+            hrr = (ki - wi) * ir * ir + wi + (ko - wo) * orr * orr + wo
             det = haa * hrr - har * har
             if not det > 1e-14 * (haa + hrr) * (haa + hrr):
                 shift = 1e-7 * (haa + hrr) + 1.0
                 haa += shift
                 hrr += shift
                 det = haa * hrr - har * har
-            sa, sr = -(hrr * ga - har * gr) / det, -(haa * gr - har * ga) / det
+            inverse = 1.0 / det
+            sa, sr = (har * gr - hrr * ga) * inverse, (har * ga - haa * gr) * inverse
             size = np.sqrt(sa * sa + sr * sr)
             reach = 0.2 * lo
             if size > reach:
@@ -136,25 +133,18 @@ def rigid_inertial(
                 sr *= reach / size
             # The shallower of the closed contacts sets the scale: under a light ring load the centrifugal force presses
             # the ball far deeper into the outer race than the inner race is.  Below rounding nothing can be asked.
-            shallow = -gap[z + k] if gap[k] >= 0.0 else (-gap[k] if gap[z + k] >= 0.0 else min(-gap[k], -gap[z + k]))
+            shallow = -gap_o if gap_i >= 0.0 else (-gap_i if gap_o >= 0.0 else min(-gap_i, -gap_o))
             if size <= max(1e-8 * shallow, 1e-14 * lo):
                 # One linear correction ends the iteration: what it leaves is of second order.
-                inner = work[INNER, k] * sa + work[INNER, z + k] * sr
-                outer = work[OUTER, k] * sa + work[OUTER, z + k] * sr
-                force[k] = max(fi - ki * inner, 0.0)
-                force[z + k] = max(fo + ko * outer, 0.0)
-                gap[k] += inner
-                gap[z + k] -= outer
-                if work[LENGTH, k] > 0.0:
-                    work[INNER, k] -= (sa - work[INNER, k] * inner) / work[LENGTH, k]
-                    work[INNER, z + k] -= (sr - work[INNER, z + k] * inner) / work[LENGTH, k]
+                inner, outer = ia * sa + ir * sr, oa * sa + orr * sr
+                gap[k], gap[z + k] = gap_i + inner, gap_o - outer
                 ball[k, 0] += sa
                 ball[k, 1] += sr
                 # Kept for the tangent below, since the law is called again for the balls that still move.
-                work[12, k], work[12, z + k] = force[k], force[z + k]
+                work[12, k], work[12, z + k] = max(fi - ki * inner, 0.0), max(fo + ko * outer, 0.0)
                 work[13, k], work[13, z + k] = d_gap[k], d_gap[z + k]
                 work[14, k], work[14, z + k] = d_rate[k], d_rate[z + k]
-                work[15, k], work[15, z + k] = work[INNER, k], work[INNER, z + k]
+                work[15, k], work[15, z + k] = ia - (sa - ia * inner) * by_si, ir - (sr - ir * inner) * by_si
                 work[DONE, z + k] = 1.0
                 remaining -= 1
                 continue

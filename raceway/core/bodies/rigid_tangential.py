@@ -141,13 +141,12 @@ def rigid_tangential(
             done[k] = 2.0
             remaining -= 1
             continue
-        seat = lo + (centrifugal / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
         if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
             if length > li + lo:
                 scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
                 ball[k, 0], ball[k, 1] = scale * ea[k], scale * er[k]
             else:
-                ball[k, 0], ball[k, 1] = 0.0, seat
+                ball[k, 0], ball[k, 1] = 0.0, lo + (centrifugal / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
     for attempt in range(_ITERATIONS):
         if attempt == _PATIENCE:
             # Forces without a potential can lead in circles: once more from the seat on the outer race.

@@ -55,56 +55,56 @@ def rigid_weightless(
     place(t, q, v, scalars, table, work, DIRECTION, NORMAL, VELOCITY)
     for k in range(z):
         a, r = work[NORMAL, k], work[NORMAL, z + k]
-        work[LENGTH, k] = np.sqrt(a * a + r * r)
-        inverse = 1.0 / max(work[LENGTH, k], 1e-300)
-        work[NORMAL, k], work[NORMAL, z + k] = a * inverse, r * inverse
-        work[SPEED, k] = work[VELOCITY, k] * work[NORMAL, k] + work[VELOCITY, z + k] * work[NORMAL, z + k]
-        work[APPROACH, z + k] = work[LENGTH, k] - li - lo - work[SHIFT, k] - work[SHIFT, z + k]
-        work[BRACKET, k], work[BRACKET, z + k] = 0.0, max(work[APPROACH, z + k], 0.0)
-        share = table[k, OUTER_SHARE] if work[APPROACH, z + k] > 0.0 else 0.5
-        work[OUTER, z + k] = share * work[APPROACH, z + k]
-    # All balls go through every iteration, settled ones too, so that each loop is free of branches.
+        length = np.sqrt(a * a + r * r)
+        inverse = 1.0 / max(length, 1e-300)
+        na, nr = a * inverse, r * inverse
+        speed = work[VELOCITY, k] * na + work[VELOCITY, z + k] * nr
+        approach = length - li - lo - work[SHIFT, k] - work[SHIFT, z + k]
+        outer = (table[k, OUTER_SHARE] if approach > 0.0 else 0.5) * approach
+        own = ball_gain * (lo + work[SHIFT, z + k] + outer) + ball_known[k, 0]
+        rate_i, rate_o = own - speed + work[SHIFT_RATE, k], work[SHIFT_RATE, z + k] - own
+        work[NORMAL, k], work[NORMAL, z + k] = na, nr
+        work[APPROACH, z + k], work[LENGTH, k] = approach, length
+        work[OUTER, z + k] = outer
+        work[BRACKET, k], work[BRACKET, z + k] = 0.0, approach
+        gap[k], gap[z + k], rate[k], rate[z + k] = outer - approach, -outer, rate_i, rate_o
     moving = 1
     for _ in range(_ITERATIONS):
-        for k in range(z):
-            own = ball_gain * (lo + work[SHIFT, z + k] + work[OUTER, z + k]) + ball_known[k, 0]
-            gap[k] = work[OUTER, z + k] - work[APPROACH, z + k]
-            gap[z + k] = -work[OUTER, z + k]
-            rate[k] = own - work[SPEED, k] + work[SHIFT_RATE, k]
-            rate[z + k] = -own + work[SHIFT_RATE, z + k]
         law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
         add_damping(damping, gap, rate, force, d_gap, d_rate)
         moving = 0
         for k in range(z):
             ki = -d_gap[k] - ball_gain * d_rate[k]
             ko = -d_gap[z + k] - ball_gain * d_rate[z + k]
-            stiff = ki + ko
-            imbalance = force[k] - force[z + k] if work[APPROACH, z + k] > 0.0 and stiff > 0.0 else 0.0
-            work[BRACKET, k] = work[OUTER, z + k] if imbalance > 0.0 else work[BRACKET, k]
-            work[BRACKET, z + k] = work[OUTER, z + k] if imbalance < 0.0 else work[BRACKET, z + k]
-            step = imbalance / max(stiff, 1e-300)
-            trial = work[OUTER, z + k] + step
-            # A correction this small ends the iteration linearly: what it leaves is of second order.
-            last = abs(step) <= 1e-8 * work[APPROACH, z + k]
-            middle = 0.5 * (work[BRACKET, k] + work[BRACKET, z + k])
-            between = trial > work[BRACKET, k] and trial < work[BRACKET, z + k]
-            trial = trial if last or between else middle
-            trial = trial if imbalance != 0.0 else work[OUTER, z + k]
-            final = step if last else 0.0
-            gap[k] += final
-            gap[z + k] -= final
-            force[k] -= ki * final
-            force[z + k] += ko * final
-            moving += 1 if not last and imbalance != 0.0 and trial != work[OUTER, z + k] else 0
+            fi, fo, approach, outer = force[k], force[z + k], work[APPROACH, z + k], work[OUTER, z + k]
+            stiff, imbalance = ki + ko, fi - fo
+            if not approach > 0.0 or not stiff > 0.0 or imbalance == 0.0:
+                continue
+            step = imbalance / stiff
+            if abs(step) <= 1e-8 * approach:
+                # A correction this small ends the iteration linearly: what it leaves is of second order.
+                inner = gap[k] + step
+                work[OUTER, z + k] = outer + step
+                gap[k], gap[z + k] = inner, -outer - step
+                force[k], force[z + k] = fi - ki * step, fo + ko * step
+                continue
+            work[BRACKET, k if imbalance > 0.0 else z + k] = outer
+            low, high = work[BRACKET, k], work[BRACKET, z + k]
+            trial = outer + step if low < outer + step < high else 0.5 * (low + high)
+            moving += 1 if trial != outer else 0
+            step = trial - outer
             work[OUTER, z + k] = trial
+            gap[k], gap[z + k] = trial - approach, -trial
+            rate[k] += ball_gain * step
+            rate[z + k] -= ball_gain * step
         if moving == 0:
             break
     for k in range(z):
         closed = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
-        force[k] *= closed
-        force[z + k] *= closed
+        fi, fo, na, nr = force[k] * closed, force[z + k] * closed, work[NORMAL, k], work[NORMAL, z + k]
         ball[k, 0] = lo + work[SHIFT, z + k] + work[OUTER, z + k]
-        work[CARRIED, k], work[CARRIED, z + k] = force[k] * work[NORMAL, k], force[k] * work[NORMAL, z + k]
+        force[k], force[z + k] = fi, fo
+        work[CARRIED, k], work[CARRIED, z + k] = fi * na, fi * nr
     ring_force(table, arm, work, DIRECTION, CARRIED, f)
     if work.shape[0] > WORK_ROWS:
         # Both contacts carry the same force, and feel both shifts alike.

@@ -41,19 +41,21 @@ def place(t, q, v, scalars, table, work, direction, centre, velocity):
     A ball that orbits meets the ring at another place every moment: de/dt has a part of the cage speed.
     """
     n = table.shape[0]
-    arm, cage = scalars[4], scalars[6]
+    rest_a, rest_r, arm, cage = scalars[0], scalars[1], scalars[4], scalars[6]
     turn_c, turn_s = 1.0, 0.0
     if cage != 0.0:
         turn_c, turn_s = np.cos(cage * t), np.sin(cage * t)
+    # Everything that the balls share is read before the first row is written: afterwards it would be read again for each.
+    x, y, z, tilt_y, tilt_z = q[0], q[1], q[2], q[3], q[4]
+    vx, vy, vz, turn_y, turn_z = v[0], v[1] + cage * z, v[2] - cage * y, v[3] + cage * tilt_z, v[4] - cage * tilt_y
     for k in range(n):
-        side, lever = table[k, 5], table[k, 6]
-        c, s = table[k, 0] * turn_c - table[k, 1] * turn_s, table[k, 1] * turn_c + table[k, 0] * turn_s
+        cosine, sine, side, lever, shift = table[k, 0], table[k, 1], table[k, 5], table[k, 6], table[k, 7]
+        c, s = cosine * turn_c - sine * turn_s, sine * turn_c + cosine * turn_s
+        u, u_rate = tilt_y * s - tilt_z * c, turn_y * s - turn_z * c
         work[direction, k], work[direction, n + k] = c, s
-        y, z = q[1] + lever * q[4], q[2] - lever * q[3]
-        work[centre, k] = scalars[0] + table[k, 7] + side * (q[0] + arm * (q[3] * s - q[4] * c))
-        work[centre, n + k] = scalars[1] + y * c + z * s
-        work[velocity, k] = side * (v[0] + arm * ((v[3] + cage * q[4]) * s - (v[4] - cage * q[3]) * c))
-        work[velocity, n + k] = (v[1] + lever * v[4] + cage * z) * c + (v[2] - lever * v[3] - cage * y) * s
+        work[centre, k], work[centre, n + k] = rest_a + shift + side * (x + arm * u), rest_r + y * c + z * s - lever * u
+        work[velocity, k] = side * (vx + arm * u_rate)
+        work[velocity, n + k] = vy * c + vz * s - lever * u_rate
 
 
 @jit(void(float64, VECTOR, MATRIX))
@@ -65,7 +67,7 @@ def stop(t, scalars, table):
     scalars[6] = 0.0
 
 
-@jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR))
+@jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR), inline=True)
 def ring_force(table, arm, work, direction, row, f):
     """f (5,): the balls' forces on the ring [N], from work[row] = axial (Z,), radial (Z,); f = sum J^T (axial, radial).
 

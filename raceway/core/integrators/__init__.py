@@ -31,7 +31,7 @@ COUNTERS = 8
 NO_FAILURE, BALLS, NEWTON, UNBOUNDED = range(4)
 
 
-@jit(void(FORCE_POINTER, float64, VECTOR, float64, VECTOR))
+@jit(void(FORCE_POINTER, float64, VECTOR, float64, VECTOR), inline=True)
 def outer_force(force, t, params, ramp, out):
     """out (5,): the excitation at time t, under a ramp 10 s^3 - 15 s^4 + 6 s^5 (twice continuously differentiable)."""
     force(t, params, out)
@@ -41,13 +41,14 @@ def outer_force(force, t, params, ramp, out):
             out[i] *= s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
 
 
-@jit(void(int64, MATRIX, CUBE, int64, VECTOR, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR))
+@jit(void(int64, MATRIX, CUBE, int64, VECTOR, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR), inline=True)
 def note_step(number, rows, probes, stride, t, motion, outer, work, ball, counters):
     """Keep a step in the record (t is (1,)) and the extremes in the counters."""
     n = work.shape[1]
+    lowest, largest = -counters[3], counters[4]
     for i in range(n):
-        counters[3] = max(counters[3], -work[0, i])
-        counters[4] = max(counters[4], work[2, i])
+        lowest, largest = min(lowest, work[0, i]), max(largest, work[2, i])
+    counters[3], counters[4] = -lowest, largest
     if number % stride != 0:
         return
     row = int64(counters[5])
@@ -62,6 +63,7 @@ def note_step(number, rows, probes, stride, t, motion, outer, work, ball, counte
     for i in range(n):
         probes[row, 0, i] = work[0, i]
         probes[row, 1, i] = work[2, i]
-    for k in range(ball.shape[0]):
-        for c in range(ball.shape[1]):
-            probes[row, 2 + c // 2, 2 * k + c % 2] = ball[k, c]
+    for pair in range(ball.shape[1] // 2):
+        for k in range(ball.shape[0]):
+            probes[row, 2 + pair, 2 * k] = ball[k, 2 * pair]
+            probes[row, 2 + pair, 2 * k + 1] = ball[k, 2 * pair + 1]

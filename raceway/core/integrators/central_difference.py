@@ -13,7 +13,7 @@ Belytschko, Liu, Moran: Nonlinear Finite Elements for Continua and Structures, b
 
 import numpy as np
 
-from raceway.core.bodies.columns import next_balls, work_rows
+from raceway.core.bodies.columns import accept_balls, next_balls, work_rows
 from raceway.core.dense import solve
 from raceway.core.integrators import note_step, outer_force
 from raceway.core.jit import jit
@@ -34,6 +34,7 @@ def central_difference(
     known, trial = np.empty_like(ball), np.empty_like(ball)
     law_new = law_state.copy()
     gain = 1.5 / dt
+    next_balls(scalars, dt, ball, ball_before, known, trial)
     inverse = np.zeros((5, 5))
     for column in range(5):
         J, rhs = np.zeros((5, 5)), np.zeros(5)
@@ -48,50 +49,55 @@ def central_difference(
             return 0
         for i in range(5):
             inverse[i, column] = rhs[i]
-    for step in range(count):
-        number = first + step + 1
+    # A bearing alone has no linear damping and stiffness at all.
+    linear = damping.any() or stiffness.any()
+    taken = 0
+    while taken < count:
+        number = first + taken + 1
         t = number * dt
         time[0] = t
         outer_force(force, t, force_params, ramp, outer)
         for i in range(5):
-            half[i] = motion[1, i] + 0.5 * dt * motion[2, i]
-            guess[i] = motion[1, i] + dt * motion[2, i]
-            q[i] = motion[0, i] + dt * half[i]
-        next_balls(scalars, dt, ball, ball_before, known, trial)
+            q0, v0, a0 = motion[0, i], motion[1, i], motion[2, i]
+            half[i], guess[i], q[i] = v0 + 0.5 * dt * a0, v0 + dt * a0, q0 + dt * (v0 + 0.5 * dt * a0)
         counters[0] += 1.0
         status = system(
             t, dt, q, guess, trial, gain, known, law, law_params, law_state, law_new, scalars, table, work, f, K, C
         )
         if status != 0:
             counters[1] = 1.0
-            return step
+            break
         for i in range(5):
-            rest = load[i] + outer[i] - f[i]
-            for j in range(5):
-                rest -= damping[i, j] * half[j] + stiffness[i, j] * q[j]
-            f[i] = rest
+            f[i] = load[i] + outer[i] - f[i]
+        if linear:
+            for i in range(5):
+                rest = f[i]
+                for j in range(5):
+                    rest -= damping[i, j] * half[j] + stiffness[i, j] * q[j]
+                f[i] = rest
         bounded = True
         for i in range(5):
-            a[i] = 0.0
+            total = 0.0
             for j in range(5):
-                a[i] += inverse[i, j] * f[j]
-            if not abs(q[i]) < 1.0 or not np.isfinite(a[i]):
+                total += inverse[i, j] * f[j]
+            a[i] = total
+            if not abs(q[i]) < 1.0 or not np.isfinite(total):
                 bounded = False
         if not bounded:
             counters[1] = 3.0
-            return step
+            break
         for i in range(5):
-            motion[0, i] = q[i]
-            motion[1, i] = half[i] + 0.5 * dt * a[i]
-            motion[2, i] = a[i]
+            motion[0, i], motion[1, i], motion[2, i] = q[i], half[i] + 0.5 * dt * a[i], a[i]
+        accept_balls(scalars, dt, ball, ball_before, known, trial)
+        if law_state.size > 0:
+            for i in range(law_state.shape[0]):
+                for j in range(law_state.shape[1]):
+                    law_state[i, j] = law_new[i, j]
+        note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)
+        taken += 1
+    if taken > 0:
+        for i in range(5):
             motion[3, i] = 0.0
             for j in range(5):
-                motion[3, i] -= mass[i, j] * a[j]
-        for k in range(z):
-            for c in range(ball.shape[1]):
-                ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
-        for i in range(law_state.shape[0]):
-            for j in range(law_state.shape[1]):
-                law_state[i, j] = law_new[i, j]
-        note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)
-    return count
+                motion[3, i] -= mass[i, j] * motion[2, j]
+    return taken

@@ -15,7 +15,7 @@ Newmark, J. Eng. Mech. Div. ASCE 85 (1959); Chung, Hulbert, J. Appl. Mech. 60 (1
 
 import numpy as np
 
-from raceway.core.bodies.columns import next_balls, work_rows
+from raceway.core.bodies.columns import accept_balls, next_balls, work_rows
 from raceway.core.bodies.ring import TILT_ARM
 from raceway.core.dense import solve
 from raceway.core.integrators import note_step, outer_force
@@ -49,6 +49,7 @@ def implicit(
     to_a = 1.0 / (beta * dt * dt)
     to_v = gamma / (beta * dt)
     gain = 1.5 / dt
+    next_balls(scalars, dt, ball, ball_before, known, trial)
     for step in range(count):
         number = first + step + 1
         t = number * dt
@@ -57,7 +58,6 @@ def implicit(
         for i in range(5):
             # Start from constant acceleration.
             q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
-        next_balls(scalars, dt, ball, ball_before, known, trial)
         norm_before = np.inf
         found = False
         halvings = 0
@@ -129,11 +129,10 @@ def implicit(
                 return step
         for i in range(5):
             motion[0, i], motion[1, i], motion[2, i], motion[3, i] = q[i], v[i], a[i], r[i]
-        for k in range(z):
-            for c in range(ball.shape[1]):
-                ball_before[k, c], ball[k, c] = ball[k, c], trial[k, c]
-        for i in range(law_state.shape[0]):
-            for j in range(law_state.shape[1]):
-                law_state[i, j] = law_new[i, j]
+        accept_balls(scalars, dt, ball, ball_before, known, trial)
+        if law_state.size > 0:
+            for i in range(law_state.shape[0]):
+                for j in range(law_state.shape[1]):
+                    law_state[i, j] = law_new[i, j]
         note_step(number, rows, probes, stride, time, motion, outer, work, ball, counters)
     return count
