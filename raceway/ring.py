@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, cos, pi, sin, sqrt
+from functools import cache
 from typing import Any
 
 from raceway.scene import Scene
@@ -33,30 +33,9 @@ def _moments(scene: Scene) -> tuple[float, float, float] | None:
         return ring_shape(b, True).moments
     if b.bore is None or b.width is None:
         return None
-    import numpy as np
+    from raceway.ring_section import RingSection
 
-    offset = (b.conformity_inner - 0.5) * b.ball_diameter
-    groove, centre_x = b.conformity_inner * b.ball_diameter, offset * sin(b.contact_angle)
-    centre_r = 0.5 * b.pitch_diameter + offset * cos(b.contact_angle)
-    bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + shoulder_height(scene)
-    half = sqrt(max(groove**2 - (centre_r - land) ** 2, 0.0))
-    # Where the groove meets the land, or a side face before that.
-    ends = [min(max(x, -0.5 * b.width), 0.5 * b.width) for x in (centre_x - half, centre_x + half)]
-    low, high = (asin(max(min((x - centre_x) / groove, 1.0), -1.0)) for x in ends)
-    at, weight = np.polynomial.legendre.leggauss(48)
-    angle = 0.5 * (low + high) + 0.5 * (high - low) * at
-    sections = [
-        (centre_x + groove * np.sin(angle), centre_r - groove * np.cos(angle), 0.5 * (high - low) * groove * np.cos(angle)),
-    ]
-    for left, right in ((-0.5 * b.width, ends[0]), (ends[1], 0.5 * b.width)):
-        x = 0.5 * (left + right) + 0.5 * (right - left) * at
-        sections.append((x, np.full_like(x, land), np.full_like(x, 0.5 * (right - left))))
-    out = np.zeros(3)
-    for x, r, slope in sections:
-        square, fourth = r**2 - bore**2, r**4 - bore**4
-        for k, part in enumerate((square, 0.25 * fourth + x**2 * square, 0.5 * fourth)):
-            out[k] += pi * float(weight @ (part * slope))
-    return float(out[0]), float(out[1]), float(out[2])
+    return RingSection.of(b, shoulder_height(scene)).moments
 
 
 def radial_growth(scene: Scene) -> float:
@@ -64,20 +43,30 @@ def radial_growth(scene: Scene) -> float:
 
     Notes
     -----
-    A free rotating disc from the bore a to the land b grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).
+    Of a free ring of the exact section, at the free contact angle.  Without a width the ring is taken for a plane-stress annulus
+    from the bore a to the land b, which grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).
 
     References
     ----------
     Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
     """
     growth = scene.kinematics.radial_expansion
-    bearing = scene.bearing
-    if scene.kinematics.ring_growth and bearing.bore is not None:
-        steel = bearing.rings
-        a, b = bearing.bore / 2.0, (bearing.pitch_diameter - bearing.ball_diameter) / 2.0 + shoulder_height(scene)
-        size = steel.density * scene.spin_speed**2 * b / (4.0 * steel.young)
-        growth += size * ((1.0 - steel.poisson) * b**2 + (3.0 + steel.poisson) * a**2)
+    b = scene.bearing
+    if scene.kinematics.ring_growth and b.bore is not None and scene.spin_speed != 0.0:
+        growth += b.rings.density * scene.spin_speed**2 * _growth(b, shoulder_height(scene))
     return growth
+
+
+@cache
+def _growth(b: Any, depth: float) -> float:
+    """Centrifugal growth [m] for 1 kg/m3 and 1 rad/s; ``b`` is a scene's [bearing], ``depth`` that of its grooves."""
+    young, poisson = b.rings.young, b.rings.poisson
+    if b.width is not None:
+        from raceway.ring_section import RingSection
+
+        return RingSection.of(b, depth).growth(young, poisson)
+    bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + depth
+    return float(land / (4.0 * young) * ((1.0 - poisson) * land**2 + (3.0 + poisson) * bore**2))
 
 
 def shoulder_height(scene: Scene) -> float:

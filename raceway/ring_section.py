@@ -1,0 +1,112 @@
+"""The exact section of an inner ring without a profile of its own: hollow cylinder less groove; inertia, growth by rotation."""
+
+from __future__ import annotations
+
+from math import asin, cos, pi, sin, sqrt
+from typing import Any
+
+import attrs
+import numpy as np
+
+#: Gauss points along the axis in each of three parts, and along the radius.
+_ALONG, _ACROSS = 48, 12
+#: Of the polynomials of the rotating ring; finite elements differ by 1 % (tests/depth/test_growth.py).
+_DEGREE = 8
+
+
+@attrs.frozen(eq=False)
+class RingSection:
+    """Places and areas to integrate over.
+
+    Attributes
+    ----------
+    x, r : (n,) place along the axis, 0 in the balls' plane, and radius [m];  area : (n,) [m2]
+    contact : x and radius of the groove at the free contact angle [m]
+    """
+
+    x: np.ndarray
+    r: np.ndarray
+    area: np.ndarray
+    contact: tuple[float, float]
+
+    @classmethod
+    def of(cls, bearing: Any, shoulder_height: float) -> RingSection:
+        """From bore, width and groove of a scene's [bearing]."""
+        b = bearing
+        offset, alpha = (b.conformity_inner - 0.5) * b.ball_diameter, b.contact_angle
+        groove = b.conformity_inner * b.ball_diameter
+        centre_x, centre_r = offset * sin(alpha), 0.5 * b.pitch_diameter + offset * cos(alpha)
+        bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + shoulder_height
+        half = sqrt(max(groove**2 - (centre_r - land) ** 2, 0.0))
+        # Where the groove meets the land, or a side face before that.
+        left, right = (min(max(x, -0.5 * b.width), 0.5 * b.width) for x in (centre_x - half, centre_x + half))
+        low, high = (asin(max(min((x - centre_x) / groove, 1.0), -1.0)) for x in (left, right))
+        at, weight = np.polynomial.legendre.leggauss(_ALONG)
+        angle = 0.5 * (low + high) + 0.5 * (high - low) * at
+        tops = [
+            (
+                centre_x + groove * np.sin(angle),
+                centre_r - groove * np.cos(angle),
+                0.5 * (high - low) * groove * np.cos(angle),
+            )
+        ]
+        for first, last in ((-0.5 * b.width, left), (right, 0.5 * b.width)):
+            x = 0.5 * (first + last) + 0.5 * (last - first) * at
+            tops.append((x, np.full_like(x, land), np.full_like(x, 0.5 * (last - first))))
+        x, top, slope = (np.concatenate(parts) for parts in zip(*tops, strict=True))
+        along = slope * np.tile(weight, len(tops))
+        up, share = np.polynomial.legendre.leggauss(_ACROSS)
+        wall = 0.5 * (top - bore)
+        r = bore + wall[:, None] * (1.0 + up)
+        area = along[:, None] * wall[:, None] * share
+        place = centre_x - groove * sin(alpha), centre_r - groove * cos(alpha)
+        return cls(np.repeat(x, _ACROSS), r.ravel(), area.ravel(), place)
+
+    @property
+    def moments(self) -> tuple[float, float, float]:
+        """Volume [m3], transverse inertia about x = 0 and polar inertia over density [m5]."""
+        volume = 2.0 * pi * self.r * self.area
+        return (
+            float(volume.sum()),
+            float(volume @ (0.5 * self.r**2 + self.x**2)),
+            float(volume @ self.r**2),
+        )
+
+    def growth(self, young: float, poisson: float) -> float:
+        """Radial growth of the raceway at the contact when a free ring turns [m], for 1 kg/m3 and 1 rad/s.
+
+        Notes
+        -----
+        Ritz' method on the section: u_r and u_x are polynomials in x and r up to degree 8 that minimise the elastic energy less
+        the work of the centrifugal force.  The groove's shoulders bend with it: an annulus from bore to land grows by 5 % more.
+        """
+        middle, high, wide = 0.5 * (self.r.max() + self.r.min()), 0.5 * np.ptp(self.r), 0.5 * np.ptp(self.x)
+        x, r = _legendre(self.x / wide), _legendre((self.r - middle) / high)
+        at_x, at_r = _legendre(np.array([self.contact[0] / wide])), _legendre(np.array([(self.contact[1] - middle) / high]))
+        powers = [(i, j) for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)]
+        radial, axial = [], []  # strains (4, n): radial, hoop, axial, shear
+        none = np.zeros_like(self.r)
+        for i, j in powers:
+            value, by_r, by_x = r[0][i] * x[0][j], r[1][i] * x[0][j] / high, r[0][i] * x[1][j] / wide
+            radial.append((by_r, value / self.r, none, by_x))
+            if i or j:  # a shift along the axis strains nothing
+                axial.append((none, none, by_x, by_r))
+        strain = np.array(radial + axial)
+        lame, shear = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+        elastic = np.diag([2.0 * shear] * 3 + [shear])
+        elastic[:3, :3] += lame
+        weight = self.r * self.area
+        stress = np.matmul(elastic, strain)
+        stiffness = (strain * weight).reshape(len(strain), -1) @ stress.reshape(len(strain), -1).T
+        work = np.zeros(len(strain))
+        work[: len(powers)] = [(r[0][i] * x[0][j] * self.r) @ weight for i, j in powers]
+        amount = np.linalg.solve(stiffness, work)[: len(powers)]
+        return float(amount @ [at_r[0][i, 0] * at_x[0][j, 0] for i, j in powers])
+
+
+def _legendre(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Legendre's polynomials to ``_DEGREE`` at z (n,), (degree + 1, n), and their derivatives."""
+    one = np.eye(_DEGREE + 1)
+    slopes = np.polynomial.legendre.legder(one, axis=1)
+    value = np.polynomial.legendre.legvander(z, _DEGREE).T
+    return value, slopes @ value[:-1]
