@@ -14,7 +14,7 @@ import click
 
 from raceway import __version__
 from raceway.commands.cache import cache
-from raceway.commands.console import Commands, print_json
+from raceway.commands.console import Commands, print_json, warn
 from raceway.commands.frame import (
     RESULTS,
     attempt,
@@ -104,6 +104,10 @@ def run(
     content = result.as_dict()
     files: list[str] = []
     failed = attempt(lambda: [result.save(folder)], files)
+    if failed is None:
+        from raceway.commands.failure import forget_failure
+
+        forget_failure(folder)
     if pictures and failed is None:
         report = registry.find("report", "pictures").plugin()
         failed = attempt(lambda: report.write(result, folder), files)
@@ -153,12 +157,15 @@ def check(
     Example:
       raceway check examples/b7206.toml --json
     """
+    from raceway.implausible import implausible
     from raceway.plan import make_plan
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     make_plan(loaded)
     tell_faults(registry)
+    for text in implausible(loaded):
+        warn(text)
     if as_json:
         print_json({"errors": []})
     else:

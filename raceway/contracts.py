@@ -131,6 +131,8 @@ class Identifier(Protocol):
     2. ``definition``: one sentence: secant or tangent, of which signals.
     3. ``identify(records, equilibrium, model)``: an ``Identification``; ``model`` offers ``mass_used``,
        ``excitation``, ``scene`` and ``system``.
+    4. An option ``harmonics``, if there is one, is how many multiples of the frequency are fitted with mean and drift: the plan
+       refuses more than the samples of a turn tell.
     """
 
     name: ClassVar[str]

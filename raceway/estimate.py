@@ -63,5 +63,6 @@ def highest_frequency(scene: Scene) -> float:
     alpha = b.contact_angle
     best = b.ball_count * normal * max(sin(alpha) ** 2, 0.5 * cos(alpha) ** 2) / mass
     if scene.supports.tilt != "locked" and inertia > 0.0:
-        best = max(best, 0.5 * b.ball_count * normal * (sin(alpha) * b.pitch_diameter / 2.0) ** 2 / inertia)
+        shaft = scene.supports.tilt if isinstance(scene.supports.tilt, float) else 0.0
+        best = max(best, (0.5 * b.ball_count * normal * (sin(alpha) * b.pitch_diameter / 2.0) ** 2 + shaft) / inertia)
     return sqrt(best) + 1e-6 * pi

@@ -7,6 +7,7 @@ import resource
 import sys
 from typing import Any
 
+import attrs
 import numpy as np
 
 from raceway.contact_error import contact_error
@@ -18,6 +19,7 @@ from raceway.core.lines import Line, lines
 from raceway.core.stepping.energy import drift, friction_lost, largest_share
 from raceway.error_estimate import error_table, no_error
 from raceway.errors import ConvergenceError, PluginError, RacewayError
+from raceway.implausible import implausible
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
 from raceway.plausibility import motion_warnings, refuse_impossible
@@ -116,11 +118,21 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         warnings=tuple(
             dict.fromkeys(
                 # A mesh too coarse for its answer comes first, keys without effect last.
-                [*_bodies_warnings(model, equilibrium), *equilibrium.warnings, *_motion_warnings(motions), *unused(scene)]
+                [
+                    *_unresolved(error),
+                    *_bodies_warnings(model, equilibrium),
+                    *equilibrium.warnings,
+                    *_motion_warnings(motions),
+                    *unused(scene),
+                    *implausible(scene),
+                ]
             )
         ),
     )
-    registry.notify("raceway_run_finished", result=result)
+    try:
+        registry.notify("raceway_run_finished", result=result)
+    except RacewayError as why:  # what is computed is kept
+        return attrs.evolve(result, warnings=(*result.warnings, f"after the run: {why}"))
     return result
 
 
@@ -146,6 +158,14 @@ def _bodies_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
     """What the bodies have to say of the equilibrium."""
     say = getattr(model.bodies, "warnings", None)
     return [] if say is None else say(model, equilibrium)
+
+
+def _unresolved(error: dict[str, Any]) -> list[str]:
+    """The first thing to say of a number that is smaller than its error."""
+    total = error["total"]
+    if total is None or total < 1.0:
+        return []
+    return [f"Z is not resolved: its estimated error is {total:.2g} times its size, so that K and C say nothing"]
 
 
 def _motion_warnings(motions: list[tuple[Model, Simulation]]) -> list[str]:

@@ -102,6 +102,11 @@ class Bearing:
             raise ValueError(
                 f"`outer_diameter` = {self.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = {dm + d:g} m"
             )
+        if self.shoulder_height is not None and self.shoulder_height >= 0.5 * d:
+            raise ValueError(
+                f"`shoulder_height` = {self.shoulder_height:g} m must be below half the ball's diameter, {0.5 * d:g} m: "
+                "no groove is deeper than its ball's centre"
+            )
         self._check_clearance()
         self._check_pair()
         self._check_profiles()

@@ -160,6 +160,12 @@ def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force:
         half = ellipse.semi_axes(load)[0] / (0.5 * d)
         over = np.abs(angle) + half
         reach = np.nanmax(over, initial=0.0)
+        if half.max(initial=0.0) >= 0.5 * np.pi:
+            raise ConvergenceError(
+                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball long, more than half "
+                f"its circumference, under {load[np.argmax(half)]:.3g} N a ball: no such contact exists. Check units and loads "
+                "(bearing.rings.young in Pa, lengths in m)"
+            )
         if reach > edge:
             begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
             assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"

@@ -27,7 +27,7 @@ from raceway.studies.axes import parse_axes, points
 from raceway.studies.points import tables_at
 from raceway.studies.sweep import Design, design_file, grid, open_store, point_list, prepare
 from raceway.studies.sweep import sweep as study
-from raceway.studies.sweep.store import written
+from raceway.studies.sweep.store import facts_digest, written
 from raceway.studies.sweep.variables import values_of
 from raceway.studies.sweep.work import Work
 from tests.command_line import ARTICLE, invoke
@@ -246,6 +246,51 @@ def test_killed_while_it_computes(tmp_path):
     assert json.loads(again.stdout)["rows"] == content["rows"]
 
 
+DAMAGES = {
+    "a digit of a value": ("UPDATE points SET content = replace(content, '1', '2') WHERE number = 1", {1}),
+    "no JSON any more": ("UPDATE points SET content = substr(content, 1, 40) WHERE number = 2", {2}),
+    "another state": ("UPDATE points SET state = 'failed' WHERE number = 0", {0}),
+    "a row of another point": (
+        "UPDATE points SET content = (SELECT content FROM points WHERE number = 0), "
+        "digest = (SELECT digest FROM points WHERE number = 0) WHERE number = 3",
+        {3},
+    ),
+    "no row": ("DELETE FROM points WHERE number = 1", {1}),
+    "another number": ("UPDATE points SET number = 70 WHERE number = 2", {2}),
+}
+
+
+@pytest.mark.parametrize("case", DAMAGES)
+def test_a_damaged_row_is_computed_again(case, tmp_path):
+    statement, damaged = DAMAGES[case]
+    design = grid(["load.axial=500,600,700,800"])
+    whole = swept(tmp_path / "s", design)
+    file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
+    with file:
+        file.execute(statement)
+    file.close()
+    with open_store(tmp_path / "s") as store:
+        read = [row for row in store.rows() if row["status"] == "done"]
+    assert len(read) == 4 - len(damaged), "nothing that is damaged is read as a value"
+    with pytest.warns(UserWarning, match=f"{len(damaged)} rows of the store are damaged"):
+        assert swept(tmp_path / "s", design, resume=True) == whole
+
+
+def test_damaged_facts_are_refused(tmp_path):
+    design = grid(["load.axial=500,600"])
+    swept(tmp_path / "s", design)
+    for statement in (
+        "UPDATE facts SET value = replace(value, '500', '501')",
+        "UPDATE facts SET value = substr(value, 1, 3)",
+    ):
+        file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
+        with file:
+            file.execute(statement)
+        file.close()
+        with pytest.raises(RacewayError, match="is damaged"):
+            open_store(tmp_path / "s")
+
+
 def test_a_full_disk_keeps_what_is_finished(tmp_path):
     """No file of this process can grow beyond 40 kB for a while."""
     design = grid(["excitation.speed_rpm=10980:15000:48"])
@@ -290,6 +335,8 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
         (text,) = file.execute("SELECT value FROM facts WHERE name = 'identity'").fetchone()
         old = {**json.loads(text), "raceway": "0.0.9"}
         file.execute("UPDATE facts SET value = ? WHERE name = 'identity'", (json.dumps(old),))
+        texts = dict(file.execute("SELECT name, value FROM facts").fetchall())
+        file.execute("UPDATE facts SET value = ? WHERE name = 'digest'", (json.dumps(facts_digest(texts)),))
     file.close()
     with pytest.raises(RacewayError, match=r"another version \(raceway 0.1.0 instead of 0.0.9\)"):
         prepare(SCENE, design, tmp_path / "s", resume=True)

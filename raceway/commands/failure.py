@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from raceway.scene import Scene
 
 
 def save_failure(error: ConvergenceError, scene: Scene, folder: Path) -> list[Path]:
-    """Write ``failure.json`` and, where there are arrays, ``last-good-state.npz``.
+    """Write ``failure.json`` and, where there are arrays, ``last-good-state.npz``; an older ``result.json`` is renamed.
 
     Parameters
     ----------
@@ -25,6 +26,7 @@ def save_failure(error: ConvergenceError, scene: Scene, folder: Path) -> list[Pa
     RacewayError
         A folder or disk that cannot be written.
     """
+    _set_aside(folder / "result.json")
     arrays = {name: np.asarray(value) for name, value in error.state.items()}
     content = {
         "title": scene.title,
@@ -38,3 +40,17 @@ def save_failure(error: ConvergenceError, scene: Scene, folder: Path) -> list[Pa
         np.savez(memory, **arrays)  # type: ignore[arg-type]
         paths.append(write_whole(memory.getvalue(), folder / "last-good-state.npz"))
     return paths
+
+
+def forget_failure(folder: Path) -> None:
+    """Remove what an earlier run that failed left beside a new result."""
+    for name in ("failure.json", "last-good-state.npz"):
+        with suppress(OSError):
+            (folder / name).unlink(missing_ok=True)
+
+
+def _set_aside(result: Path) -> None:
+    """The result of another run is not the answer of this one: it stays, under the name ``result-older.json``."""
+    with suppress(OSError):
+        if result.is_file():
+            result.replace(result.with_name("result-older.json"))

@@ -83,6 +83,48 @@ def refuse_bad_cells(mesh: HexMesh, body: str = "") -> Quality:
     )
 
 
+def refuse_doubled(mesh: HexMesh, body: str) -> None:
+    """Refuse what cannot be one body: cells that stand there twice, points that coincide and are not one, parts that do not hang together.
+
+    Raises
+    ------
+    MeshError
+        How many, and where the first is.
+    """
+    nodes = np.sort(mesh.cells, axis=1)
+    _, first, counts = np.unique(nodes, axis=0, return_index=True, return_counts=True)
+    if (counts > 1).any():
+        cell = int(first[counts > 1].min())
+        raise MeshError(
+            f"`{body}`: {int((counts - 1).sum())} cells stand there twice; the first is cell {cell}: remove the copies"
+        )
+    used = np.unique(mesh.cells)
+    points = mesh.points[used]
+    grain = 1e-9 * float(np.ptp(points, axis=0).max())
+    _, first, counts = np.unique(np.round(points / grain), axis=0, return_index=True, return_counts=True)
+    if (counts > 1).any():
+        where = ", ".join(f"{x:.6g}" for x in points[first[counts > 1].min()])
+        raise MeshError(
+            f"`{body}`: {int((counts - 1).sum())} points coincide with others and are not one with them, the first at ({where}) m: "
+            "parts that touch there are not joined. Merge the nodes where they lie on each other"
+        )
+    parts = _parts(mesh.cells)
+    if parts > 1:
+        raise MeshError(f"`{body}`: its cells form {parts} parts that do not hang together: give one body, in one piece")
+
+
+def _parts(cells: np.ndarray) -> int:
+    """Number of sets of cells that share nodes with no other set."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    count = int(cells.max()) + 1
+    rows, columns = np.repeat(np.arange(len(cells)), 8), cells.reshape(-1)
+    owns = coo_matrix((np.ones(rows.size, dtype=np.int8), (rows, columns + len(cells))), shape=(len(cells) + count,) * 2)
+    _, label = connected_components(owns, directed=False)
+    return len(np.unique(label[: len(cells)]))
+
+
 def _unit_determinant(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
     """a . (b x c) of vectors (3, k), divided by their lengths; 0 where one has none."""
     value = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])

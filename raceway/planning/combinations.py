@@ -11,6 +11,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.planning.elastic import elastic_faults, memory_faults
 from raceway.planning.mesh import mesh_faults
 from raceway.planning.patches import patch_faults
+from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.planning.sections import seat_faults, section_faults
 from raceway.ring import ring_inertia
 from raceway.scene import Scene
@@ -101,6 +102,16 @@ def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], Non
     changing = excitation.period_s is None and getattr(excitation, "first_speed_rpm", None) is not None
     why = f"needs one frequency, but excitation '{name}' changes its speed: use 'order_tracking'"
     refuse("period" in needs and changing, "identifier.kind", kind, why)
+    why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
+    fitted = getattr(scene.identifier.method, "harmonics", None)
+    if fitted is not None and "record" in needs:
+        samples = recorded_per_turn(predicted_steps_per_turn(scene), turns_of(scene))
+        least = 2 * fitted + 2
+        why = (
+            f"{fitted} harmonics, mean and drift are {least} unknowns, but {samples} samples a turn are recorded: take at most "
+            f"{max((samples - 2) // 2, 1)} harmonics, or steps_per_turn = {least} or more"
+        )
+        refuse(samples < least, "identifier.harmonics", fitted, why)
     why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
     refuse("phase" in needs and not hasattr(excitation, "phase"), "identifier.kind", kind, why)
     why = f"runs several speeds, but excitation '{name}' has no key `speed_rpm` or changes its speed"

@@ -62,7 +62,7 @@ class File:
         return bodies(self, bearing, self._body)
 
     def _body(self, body: str, path: str) -> HexMesh:
-        from raceway.core.mesh_quality import refuse_bad_cells
+        from raceway.core.mesh_quality import refuse_bad_cells, refuse_doubled
         from raceway.plugins.formats.abaqus import Abaqus
         from raceway.plugins.formats.msh import Msh
         from raceway.plugins.formats.vtu import Vtu
@@ -89,4 +89,5 @@ class File:
                 raise MeshError(f"'{path}': {kind} set '{empty[0]}' is empty")
         mesh = attrs.evolve(mesh, points=self.scale * mesh.points, node_sets=nodes, facet_sets=facets)
         refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
+        refuse_doubled(mesh, f"{body} ({Path(path).name})")
         return with_node_sets(mesh.renumbered())

@@ -29,6 +29,8 @@ COLUMNS["key"] = ("key", 1.0)
 #: Longest interval that is bridged, over the usual one.
 _GAP = 5.0
 _LEAST = 32
+#: Samples that may lie at one end of the range beyond those of a sine of the same resolution, of all.
+_AT_THE_END = 0.02
 
 
 @attrs.frozen(eq=False)
@@ -77,6 +79,8 @@ def read_recording(path: Path) -> Recording:
         raise _wrong(path, f"{len(table)} samples; at least {_LEAST} are needed")
     columns = {name: table[:, place] * factor for place, (name, factor) in enumerate(names)}
     _refuse_gaps(path, columns["time"], numbers)
+    for name in ("y", "z"):
+        _refuse_clipped(path, name, columns[name])
     return Recording(columns["time"], columns["y"], columns["z"], columns.get("key"), columns.get("speed"))
 
 
@@ -161,3 +165,22 @@ def _refuse_gaps(path: Path, time: np.ndarray, numbers: list[int]) -> None:
     for place in np.flatnonzero(steps > _GAP * usual)[:1]:
         text = f"line {numbers[place + 1]}: a gap of {steps[place]:.3g} s where samples are usually {usual:.3g} s apart"
         raise _wrong(path, f"{text}: cut the record there")
+
+
+def _refuse_clipped(path: Path, name: str, signal: np.ndarray) -> None:
+    """A signal that stays at the end of its range was cut off there: its 1x line is that of another motion.
+
+    Notes
+    -----
+    A sine of amplitude A in steps of q stays arccos(1 - q / A) / pi of its time within the last step at each end.
+    """
+    values = np.unique(signal)
+    if len(values) < 3:
+        return
+    amplitude, step = 0.5 * (values[-1] - values[0]), float(np.diff(values).min())
+    usual = math.acos(max(1.0 - step / amplitude, -1.0)) / math.pi
+    for word, end in (("top", values[-1]), ("bottom", values[0])):
+        there = float((signal == end).mean())
+        if there > 2.0 * usual + _AT_THE_END:
+            text = f"{100.0 * there:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} um: the signal is cut off"
+            raise _wrong(path, f"{text} there. Take a larger range of the sensor or of its amplifier, and record again")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -119,6 +120,9 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
     work = Work(prepared.tables, prepared.facts["identity"], prepared.plugins)
     with written(prepared.store, prepared.facts) as store:
         store.wait_again(["running", *(["failed"] if retry_failed else [])])
+        lost = store.repair()
+        if lost:
+            warnings.warn(f"{len(lost)} rows of the store are damaged: their points are computed again", stacklevel=2)
         waiting = store.numbers("waiting")
         done, total = design.size - len(waiting), design.size
         chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []

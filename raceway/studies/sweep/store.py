@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import fcntl
+import hashlib
 import json
 import sqlite3
 import threading
@@ -24,15 +25,20 @@ from raceway.studies.sweep.design import Design
 if TYPE_CHECKING:
     import xarray
 
-SCHEMA = 2
+SCHEMA = 3
 STATES = ("waiting", "running", "done", "failed")
 #: A commit waits for the disk, twice: states of what is running are not worth more than a few of them a second.
 _MOMENT_S = 0.2
 POINTS, LOCK = "points.sqlite", ".lock"
+_CONTENT = "state, reason, key, content, warnings, cost"
+#: What a row that was damaged is read as: the point waits to be computed again.
+_EMPTY: dict[str, Any] = {
+    "status": "waiting", "reason": "its row in the store is damaged", "values": {}, "warnings": [], "key": "", "cost": {},
+}  # fmt: skip
 _TABLES = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
     "CREATE TABLE points (number INTEGER PRIMARY KEY, state TEXT NOT NULL, reason TEXT, key TEXT, content TEXT, "
-    "warnings TEXT, cost TEXT)",
+    "warnings TEXT, cost TEXT, digest TEXT)",
     "CREATE INDEX points_by_state ON points (state)",
 )
 
@@ -53,11 +59,13 @@ class Store:
         self._committed = -_MOMENT_S
         with self._told():
             found = connection.execute("SELECT name, value FROM facts").fetchall()
-        self.facts: dict[str, Any] = {name: json.loads(value) for name, value in found}
+        self.facts: dict[str, Any] = _read_facts(path, dict(found))
         if self.facts.get("schema") != SCHEMA:
             raise RacewayError(
                 f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
             )
+        if found and self.facts.pop("digest", None) != facts_digest(dict(found)):
+            raise _damaged(path)
         self.design = Design.from_dict(self.facts["design"])
 
     def __enter__(self) -> Store:
@@ -91,7 +99,7 @@ class Store:
 
     def rows(self) -> Iterator[dict[str, Any]]:
         """``{point, status, reason, values, warnings, key, cost}`` of every point, in the order of the design."""
-        asked = "SELECT number, state, reason, key, content, warnings, cost FROM points ORDER BY number"
+        asked = f"SELECT number, {_CONTENT}, digest FROM points ORDER BY number"
         with self._told(), self._lock:
             cursor = self._connection.execute(asked)
         while True:
@@ -99,7 +107,12 @@ class Store:
                 some = cursor.fetchmany(256)
             if not some:
                 return
-            for number, state, reason, key, content, warnings, cost in some:
+            for number, state, reason, key, content, warnings, cost, digest in some:
+                if not 0 <= number < self.design.size:
+                    continue
+                if not _sound(number, state, (reason, key, content, warnings, cost), digest):
+                    yield {**_EMPTY, "point": self.design.point(number)}
+                    continue
                 yield {
                     "point": self.design.point(number),
                     "status": state,
@@ -140,15 +153,11 @@ class Store:
         RacewayError
             A disk that takes no more; what was kept before stays readable.
         """
-        lines = [
-            (
-                *(row["state"], row["reason"], row["key"]),
-                *(_text(row[name]) for name in ("values", "warnings", "cost")),
-                row["number"],
-            )
-            for row in rows
-        ]
-        asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, warnings = ?, cost = ? WHERE number = ?"
+        lines = []
+        for row in rows:
+            rest = (row["reason"], row["key"], *(_text(row[name]) for name in ("values", "warnings", "cost")))
+            lines.append((row["state"], *rest, _digest(row["number"], row["state"], rest), row["number"]))
+        asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, warnings = ?, cost = ?, digest = ? WHERE number = ?"
         with self._told(), self._lock:
             try:
                 self._connection.executemany(asked, lines)
@@ -156,6 +165,19 @@ class Store:
             except sqlite3.Error:
                 self._connection.rollback()
                 raise
+
+    def repair(self) -> set[int]:
+        """Let points wait whose rows are missing or are not what was written; their numbers."""
+        with self._told(), self._lock:
+            found = self._connection.execute(f"SELECT number, {_CONTENT}, digest FROM points").fetchall()
+            sound = {number for number, state, *rest, digest in found if _sound(number, state, tuple(rest), digest)}
+            bad = set(range(self.design.size)) - sound
+            if bad or len(found) != self.design.size:
+                self._connection.execute("DELETE FROM points WHERE number < 0 OR number >= ?", (self.design.size,))
+                asked = "INSERT OR REPLACE INTO points (number, state) VALUES (?, 'waiting')"
+                self._connection.executemany(asked, [(number,) for number in sorted(bad)])
+                self._commit()
+        return bad
 
     def wait_again(self, states: Iterable[str]) -> None:
         """Points in these states wait again: those that a killed sweep left running, or failed ones to be tried again."""
@@ -258,17 +280,51 @@ def _make(connection: sqlite3.Connection, facts: Mapping[str, Any]) -> None:
     """All in one transaction: a store is there with all its points, or not at all."""
     size = Design.from_dict(facts["design"]).size
     whole = {**facts, "schema": SCHEMA, "created": datetime.now(UTC).isoformat(timespec="seconds")}
+    texts = {name: _text(value) for name, value in whole.items()}
+    texts["digest"] = _text(facts_digest(texts))
     connection.execute("BEGIN")
     try:
         for table in _TABLES:
             connection.execute(table)
-        connection.executemany("INSERT INTO facts VALUES (?, ?)", [(name, _text(value)) for name, value in whole.items()])
+        connection.executemany("INSERT INTO facts VALUES (?, ?)", list(texts.items()))
         waiting = ((number, "waiting") for number in range(size))
         connection.executemany("INSERT INTO points (number, state) VALUES (?, ?)", waiting)
     except BaseException:
         connection.rollback()
         raise
     connection.commit()
+
+
+def facts_digest(texts: Mapping[str, str]) -> str:
+    """Of the facts of a store, as JSON by name."""
+    told = sorted((name, text) for name, text in texts.items() if name != "digest")
+    return hashlib.blake2b(repr(told).encode(), digest_size=16).hexdigest()
+
+
+def _read_facts(folder: Path, texts: Mapping[str, str]) -> dict[str, Any]:
+    try:
+        return {name: json.loads(text) for name, text in texts.items()}
+    except (ValueError, TypeError):
+        raise _damaged(folder) from None
+
+
+def _damaged(folder: Path) -> RacewayError:
+    return RacewayError(
+        f"`{folder / POINTS}` is damaged: what it says of its scene and design is not what was written. Begin again in another "
+        "folder with --out"
+    )
+
+
+def _digest(number: int, state: str, rest: tuple[Any, ...]) -> str:
+    """Of a finished row as it stands in the file."""
+    return hashlib.blake2b(repr((number, state, *rest)).encode(), digest_size=16).hexdigest()
+
+
+def _sound(number: int, state: Any, rest: tuple[Any, ...], digest: Any) -> bool:
+    """Whether a row says what was written: finished ones have a digest, the others a state alone."""
+    if state in ("waiting", "running"):
+        return True
+    return state in STATES and bool(digest == _digest(number, state, rest))
 
 
 def _text(value: Any) -> str:

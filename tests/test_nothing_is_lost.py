@@ -1,0 +1,165 @@
+"""What a run computed is neither lost nor taken for another's; numbers that mean nothing are told as such."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from raceway import SceneError, build_model, scene_from_dict
+from raceway.core.mesh import HexMesh
+from raceway.errors import ConvergenceError, MeshError
+from raceway.estimate import highest_frequency
+from raceway.plan import make_plan
+from raceway.plugins.formats.vtu import Vtu
+from raceway.plugins.meshers.file import File
+from raceway.run import run
+from raceway.studies.measured.recording import read_recording
+from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
+from tests.conftest import b7206c
+from tests.mesh.cubes import block
+
+HOOK = """
+from raceway import hookimpl
+@hookimpl
+def raceway_run_finished(result): raise RuntimeError("the server is away")
+"""
+
+
+def test_a_hook_that_fails_after_the_run_does_not_lose_it(tmp_path):
+    (tmp_path / "hook.py").write_text(HOOK)
+    found = raceway("run", MINIMAL, "--plugin", tmp_path / "hook.py", "--out", tmp_path / "out", "--json")
+    assert found.returncode == 0, found.stderr
+    content = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert content["identification"]["equivalent_stiffness"] > 0.0
+    assert any("raises RuntimeError: the server is away" in text for text in content["warnings"])
+
+
+def test_a_run_that_fails_leaves_no_result_of_another_one_beside_its_failure(tmp_path):
+    assert invoke("run", MINIMAL, "--out", tmp_path).exit_code == 0
+    first = (tmp_path / "result.json").read_text()
+    assert invoke("run", MINIMAL, "--set", "load.axial=0", "--out", tmp_path).exit_code == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["failure.json", "result-older.json"]
+    assert (tmp_path / "result-older.json").read_text() == first
+    assert invoke("run", MINIMAL, "--out", tmp_path).exit_code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["result-older.json", "result.json"]
+
+
+def test_more_harmonics_than_samples_are_refused_by_the_plan():
+    words = ["--set", "identifier.kind=sine_fit", "--set", "integrator.steps_per_turn=24", "--set"]
+    found = invoke("plan", ARTICLE, *words, "identifier.harmonics=50")
+    assert found.exit_code == 2
+    assert "`identifier.harmonics` = 50: 50 harmonics, mean and drift are 102 unknowns, but 24 samples" in found.stderr
+    assert invoke("plan", ARTICLE, *words, "identifier.harmonics=11").exit_code == 0
+
+
+def test_a_number_below_its_error_is_not_resolved(monkeypatch):
+    table = {"total": 1.3, "how": {}}
+    monkeypatch.setattr("raceway.run.error_table", lambda *_: table)
+    result = run(
+        scene_from_dict(
+            b7206c(rotor={"mass": 2.0}, excitation={"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3e-4})
+        )
+    )
+    assert result.warnings[0].startswith("Z is not resolved: its estimated error is 1.3 times its size")
+
+
+def recorded(folder, y):
+    time = np.arange(len(y)) / 20_000.0
+    z = 1e-5 * np.sin(2.0 * np.pi * 200.0 * time)
+    key = (np.arange(len(y)) % 100 < 5).astype(float)
+    lines = [
+        "time_s,y_um,z_um,key",
+        *(f"{t:.9g},{1e6 * a:.7g},{1e6 * b:.7g},{k:g}" for t, a, b, k in zip(time, y, z, key, strict=True)),
+    ]
+    (folder / "record.csv").write_text("\n".join(lines))
+    return folder / "record.csv"
+
+
+#: Phases that no sampling repeats.
+WAVE = 1e-5 * np.cos(2.0 * np.pi * 200.003 * np.arange(4000) / 20_000.0)
+
+
+@pytest.mark.parametrize(
+    ("signal", "words"),
+    [
+        (np.minimum(WAVE, 0.8e-5), "of all samples of y lie at the top of its range, 8 um: the signal is cut off"),
+        (np.maximum(WAVE, -0.95e-5), "of all samples of y lie at the bottom"),
+    ],
+)
+def test_a_signal_that_is_cut_off_is_refused(tmp_path, signal, words):
+    with pytest.raises(SceneError, match=words):
+        read_recording(recorded(tmp_path, signal))
+
+
+@pytest.mark.parametrize("levels", [5, 20, 1000])
+def test_a_coarse_resolution_is_not_taken_for_a_cut(tmp_path, levels):
+    step = 1e-5 / levels
+    assert len(read_recording(recorded(tmp_path, step * np.round(WAVE / step))).y) == 4000
+
+
+def test_noise_is_not_taken_for_a_cut(tmp_path):
+    noisy = WAVE + 1e-7 * np.random.default_rng(1).standard_normal(len(WAVE))
+    assert len(read_recording(recorded(tmp_path, noisy)).y) == 4000
+
+
+BEARING = scene_from_dict(b7206c()).bearing
+
+
+@pytest.mark.parametrize("fault", ["doubled", "unmerged", "apart"])
+def test_meshes_that_are_not_one_body_are_refused(fault, tmp_path):
+    mesh = block()
+    count = len(mesh.points)
+    if fault == "doubled":
+        bad, words = HexMesh(mesh.points, np.vstack([mesh.cells, mesh.cells[:3]]), {}, {}), "3 cells stand there twice"
+    else:
+        shift = np.ptp(mesh.points[:, 0]) * (1.0 if fault == "unmerged" else 2.0)
+        points = np.vstack([mesh.points, mesh.points + [shift, 0.0, 0.0]])
+        bad = HexMesh(points, np.vstack([mesh.cells, mesh.cells + count]), {}, {})
+        words = "points coincide with others" if fault == "unmerged" else "its cells form 2 parts"
+    Vtu().write(tmp_path / "body.vtu", bad)
+    with pytest.raises(MeshError, match=words):
+        File(inner_ring=str(tmp_path / "body.vtu")).mesh(BEARING)
+
+
+def test_a_groove_is_not_deeper_than_its_balls_centre():
+    with pytest.raises(SceneError, match="must be below half the ball's diameter"):
+        scene_from_dict(b7206c(bearing={"shoulder_height": 0.005}))
+
+
+def test_an_ellipse_around_the_ball_is_refused():
+    """Young's modulus in MPa."""
+    soft = {"young": 212e3}
+    with pytest.raises(ConvergenceError, match="no such contact exists"):
+        run(scene_from_dict(b7206c(bearing={"rings": soft, "balls": soft}, load={"axial": 20_000.0})))
+
+
+def test_units_that_are_unlikely_are_told(tmp_path):
+    found = invoke("check", MINIMAL, "--set", "bearing.rings.young=2.12e5", "--set", "kinematics.radial_expansion=1.2")
+    assert found.exit_code == 0
+    assert "`bearing.rings.young` = 212000 Pa is less than 1 GPa" in found.stderr
+    assert "`kinematics.radial_expansion` = 1.2 m is more than 1 m" in found.stderr
+    assert "warning" not in invoke("check", MINIMAL).stderr
+
+
+def test_the_plan_of_explicit_steps_knows_a_tilt_stiffness():
+    def planned(tilt):
+        scene = scene_from_dict(
+            b7206c(
+                supports={"tilt": tilt},
+                rotor={"mass": 2.0, "transverse_inertia": 1e-4},
+                excitation={"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3e-4},
+                integrator={"kind": "central_difference"},
+            )  # fmt: skip
+        )
+        return scene, make_plan(scene).predicted_steps
+
+    scene, steps = planned(1e9)
+    _, free = planned("free")
+    assert highest_frequency(scene) >= (1e9 / 2e-4) ** 0.5
+    assert steps > 20 * free
+    model = build_model(scene, make_plan(scene))
+    real = model.system.critical_time_step(model.system.evaluate(model.guess).stiffness)
+    # 12 turns of 5 ms in steps of 0.8 of the limit: the plan is to know their number within a factor of two.
+    assert steps == pytest.approx(12 * 5e-3 / (0.8 * real), rel=0.5)
