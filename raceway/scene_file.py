@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import difflib
+import json
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -92,11 +93,10 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
     SceneError
         With every mistake that was found.
     """
-    tables = read_toml(path)
-    for change in changes:
-        key, value = parse_change(change)
+    tables, parsed = read_toml(path), [parse_change(change) for change in changes]
+    for key, value in parsed:
         tables = with_value(tables, key, value)
-    tables.setdefault("title", Path(path).stem)
+    tables = titled(tables, Path(path).stem, parsed)
     registry = registry or default_registry()
     return scene_from_dict(with_paths(tables, Path(path).parent, registry), registry)
 
@@ -116,6 +116,28 @@ def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> d
             if field.metadata.get("path") and isinstance(value, str) and not Path(value).is_absolute():
                 table[field.name] = str(folder / value)
     return result
+
+
+def titled(tables: Mapping[str, Any], name: str, changes: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """The tables with a title that says what was changed, in its second line: the first one tells of the file.
+
+    Parameters
+    ----------
+    name : the title where the file has none;  changes : keys and values, the last of a key holds
+    """
+    title = tables.get("title", name)
+    told = ", ".join(f"{key} = {_told(value)}" for key, value in dict(changes).items() if key != "title")
+    if told and isinstance(title, str) and title.strip():
+        title += (", " if "\n" in title else "\n") + told
+    return {**tables, "title": title}
+
+
+def _told(value: Any) -> str:
+    """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
+    if isinstance(value, str):
+        return value
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 1e15
+    return json.dumps(int(value) if whole else value, default=str)
 
 
 def parse_change(text: str) -> tuple[str, Any]:

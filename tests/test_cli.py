@@ -133,7 +133,7 @@ def test_the_default_folder_is_the_title_made_safe(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = invoke("run", MINIMAL, "--set", "title=../a b/c", "--set", "identifier.kind=tangent")
     assert found.exit_code == 0
-    assert (tmp_path / "raceway-out" / "a-b-c" / "result.json").exists()
+    assert (tmp_path / "raceway-out" / "a-b-c-identifier.kind=tangent" / "result.json").exists()
     assert slug("../..") == "scene"
     assert slug("x" * 300) == "x" * 80
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
 from importlib.util import find_spec
@@ -17,8 +18,19 @@ if TYPE_CHECKING:
 
 
 def slug(title: str) -> str:
-    """A folder's name from a title: letters, digits, dots and dashes, at most 80."""
-    return re.sub(r"[^A-Za-z0-9._]+", "-", title)[:80].strip("-._") or "scene"
+    """A folder's name from a title: letters, digits, dots and dashes, at most 80, then what the second line says was changed.
+
+    Notes
+    -----
+    Other changes make another name: where letters of them are lost, or more than 100, a hash of all stands at the end.
+    """
+    first, _, changes = title.partition("\n")
+    name = re.sub(r"[^A-Za-z0-9._]+", "-", first)[:80].strip("-._") or "scene"
+    plain = changes.replace(" = ", "=").replace(", ", ",")
+    told = re.sub(r"[^A-Za-z0-9._=,+-]+", "-", plain)
+    if told != plain or len(told) > 100:
+        told = f"{told[:100]}-{hashlib.sha256(plain.encode()).hexdigest()[:8]}"
+    return f"{name}-{told}" if told else name
 
 
 def faults(registry: Registry) -> list[str]:
@@ -41,7 +53,7 @@ def tell_faults(registry: Registry) -> None:
 
 def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[dict[str, Any], list[Mistake]]:
     """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
-    from raceway.scene_file import parse_change, read_toml, with_paths, with_value
+    from raceway.scene_file import parse_change, read_toml, titled, with_paths, with_value
 
     if scene.is_dir():
         inside = sorted(str(p) for p in scene.glob("*.toml"))
@@ -49,13 +61,14 @@ def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) ->
         raise SceneError.at(str(scene), None, f"is a folder{hint}")
     tables = read_toml(scene)
     mistakes: list[Mistake] = []
+    made: list[tuple[str, Any]] = []
     for change in changes:
         try:
-            tables = with_value(tables, *parse_change(change))
+            made.append(parse_change(change))
+            tables = with_value(tables, *made[-1])
         except SceneError as error:
             mistakes += [Mistake(f"--set {m.path}", m.value, m.message) for m in error.mistakes]
-    tables.setdefault("title", scene.stem)
-    return with_paths(tables, scene.parent, registry), mistakes
+    return with_paths(titled(tables, scene.stem, made), scene.parent, registry), mistakes
 
 
 def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:

@@ -115,5 +115,5 @@ def _screen(screen: Any, content: dict[str, Any]) -> Any:
             curve["trend"],
         )  # fmt: skip
     words = [Text(text) for text in content["words"]]
-    head = f"{content['title']}: {content['amplitude']}; speeds in r/min"
+    head = f"{content['title']}\n{content['amplitude']}; speeds in r/min"
     return Group(Text(head, style="bold"), table, *words, *screen.written(content["files"]))

@@ -100,4 +100,4 @@ def _draw(meshes: dict[str, Any], content: dict[str, Any], folder: Path) -> Path
     from raceway.plugins.reports.mesh_picture import draw
 
     size = f"{content['elements']} hexahedra, {content['nodes']} nodes, {len(meshes)} bodies"
-    return draw(meshes, f"{content['title']}: {size}", folder / "mesh.png")
+    return draw(meshes, f"{content['title']}\n{size}", folder / "mesh.png")

@@ -123,7 +123,8 @@ def identify(
     own, vector = rig_of(loaded), _vector(run_out)
     if vector is not None and slow_roll is not None:
         raise SceneError.at("--run-out", run_out, "the slow roll tells it already: leave one of them out")
-    folder = writable(out or RESULTS / f"{slug(signals.stem)}-identified")
+    changed = loaded.title.partition("\n")[1:]
+    folder = writable(out or RESULTS / f"{slug(''.join([signals.stem, *changed]))}-identified")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     with show_progress() as progress:

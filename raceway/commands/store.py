@@ -159,7 +159,7 @@ def head(selection: Selection) -> tuple[str, ...]:
     bearing = selection.value("bearing.preset", "")
     fixed = ", ".join(f"{key} = {shown(value)}" for key, value in selection.fixed.items())
     words = (f"Raceway {__version__}: {selection.title}", f"bearing {bearing}" if bearing else "", fixed)
-    return tuple(word.replace("\n", " ") for word in words if word)
+    return tuple(word.replace("\n", "; ") for word in words if word)
 
 
 def plot_words(content: dict[str, Any]) -> list[str]:

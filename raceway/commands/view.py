@@ -62,7 +62,7 @@ def _mesh(scene: Any, folder: Path) -> Path:
     from raceway.meshing import mesh_scene
     from raceway.plugins.reports.mesh_picture import draw
 
-    return draw(mesh_scene(scene), f"{scene.title}: the mesh", folder / "mesh.png")
+    return draw(mesh_scene(scene), f"{scene.title}\nthe mesh", folder / "mesh.png")
 
 
 def _screen(screen: Any, content: dict[str, Any]) -> Any:

@@ -47,11 +47,12 @@ class Page:
 
     Parameters
     ----------
-    title : also of the browser's window;  subtitle : a line below it;  footer : where the page comes from
+    title : also of the browser's window; its second line, what was changed of a scene, goes before the subtitle;  subtitle : a line below it;  footer : where the page comes from
     """
 
     def __init__(self, title: str, subtitle: str = "", footer: str = "") -> None:
-        self.title, self.subtitle, self.footer = title, subtitle, footer
+        self.title, *more = title.splitlines()
+        self.subtitle, self.footer = "\n".join([*more, *subtitle.splitlines()]), footer
         self._blocks: list[str] = []
         self._sections: list[tuple[str, str]] = []
 
@@ -130,7 +131,8 @@ class Page:
         style = files("raceway").joinpath("data/page.css").read_text(encoding="utf-8")
         links = "".join(f'<li><a href="#{anchor}">{_inline(heading)}</a></li>' for anchor, heading in self._sections)
         head = f"<h1>{_inline(self.title)}</h1>"
-        head += f'<p class="subtitle">{_inline(self.subtitle)}</p>' if self.subtitle else ""
+        below = "<br>".join(_inline(line) for line in self.subtitle.splitlines())
+        head += f'<p class="subtitle">{below}</p>' if self.subtitle else ""
         head += f'<nav aria-label="Sections"><ul>{links}</ul></nav>' if len(self._sections) > 1 else ""
         end = f"<footer><p>{_inline(self.footer)}</p></footer>" if self.footer else ""
         # The empty icon keeps browsers from asking a server for one.

@@ -74,14 +74,15 @@ class RowStore:
 
 
 def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | None = None) -> str:
-    """Hash of all that decides the numbers of one scene's run.
+    """Hash of all that decides the numbers of one scene's run; its title does not.
 
     Parameters
     ----------
     program : instead of ``program_key(registry)``
     """
     digest = hashlib.sha256()
-    digest.update(json.dumps([scene.as_dict(), extra], sort_keys=True, default=str).encode())
+    tables = {name: table for name, table in scene.as_dict().items() if name != "title"}
+    digest.update(json.dumps([tables, extra], sort_keys=True, default=str).encode())
     digest.update((program or program_key(registry)).encode())
     for name in files_of(scene):
         path = Path(name)

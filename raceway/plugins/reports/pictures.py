@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -185,7 +186,8 @@ def _turns(count: int) -> str:
 
 
 def _subtitle(result: Any) -> str:
-    return result.title if len(result.title) <= 64 else result.title[:61] + "..."
+    """The title, and what was changed of the scene, in lines that fit."""
+    return "\n".join(part for line in result.title.splitlines() for part in wrap(line, 64))
 
 
 def _finish(axes: Any, title: str, x: str, y: str) -> None:

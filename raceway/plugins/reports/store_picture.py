@@ -82,7 +82,9 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
             handles, labels, loc="outside right center", frameon=False, fontsize=10, title=_axis(data, y), title_fontsize=10
         )
     heading = name if words in ("", name) else f"{name}: {words}"
-    figure.suptitle("\n".join(line for text in (heading, title, remark) for line in wrap(text, 84)), fontsize=11.5)
+    figure.suptitle(
+        "\n".join(line for text in (heading, *title.splitlines(), remark) for line in wrap(text, 84)), fontsize=11.5
+    )
     return figure
 
 

@@ -42,7 +42,7 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     content = study.as_dict()
     worst, rows, own = content["worst"], content["rows"], study.rig
     out = Page(
-        f"{study.title}: what a sensor beside a bearing tells of it", _rig_words(study), f"Raceway {__version__}, study rig"
+        f"What a sensor beside a bearing tells of it: {study.title}", _rig_words(study), f"Raceway {__version__}, study rig"
     )
     out.section("Result")
     out.text(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import attrs
@@ -151,4 +152,4 @@ def _notes(bearing: Bearing) -> list[str]:
 
 
 def _short(title: str) -> str:
-    return title if len(title) <= 70 else title[:67] + "..."
+    return "\n".join(part for line in title.splitlines() for part in wrap(line, 70))

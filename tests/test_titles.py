@@ -1,0 +1,96 @@
+"""What `--set` changes stands in the second line of the title and in the folder's name."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from raceway.commands.inputs import slug
+from raceway.commands.store import head
+from raceway.plugins.reports.pictures import ball_loads
+from raceway.registry import default_registry
+from raceway.run import run
+from raceway.scene_file import load_scene, parse_change, scene_from_dict, titled
+from raceway.studies.page import Page
+from raceway.studies.row_store import row_key
+from raceway.studies.sweep.selection import select
+from tests.command_line import EXAMPLES, invoke
+from tests.conftest import b7206c
+from tests.stores import SPEEDS, made
+
+SCENE = EXAMPLES / "b7206.toml"
+FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"
+
+
+@pytest.mark.parametrize(
+    ("title", "changes", "expected"),
+    [
+        ("T", [], "T"),
+        (None, ["load.axial=400"], "file\nload.axial = 400"),
+        ("T", ["load.axial=400.0", "supports.tilt=free"], "T\nload.axial = 400, supports.tilt = free"),
+        ("T", ["load.axial=1", "load.axial=2"], "T\nload.axial = 2"),
+        ("T", ["kinematics.orbiting=true", "load.radial=[0, 1.5]"], "T\nkinematics.orbiting = true, load.radial = [0, 1.5]"),
+        ("T\nrotor.mass = 1", ["load.axial=2"], "T\nrotor.mass = 1, load.axial = 2"),  # the scene of a result, changed again
+        ("own", ["title=own"], "own"),
+    ],
+)
+def test_the_second_line_says_what_was_changed(title, changes, expected):
+    tables = {} if title is None else {"title": title}
+    assert titled(tables, "file", map(parse_change, changes))["title"] == expected
+
+
+def test_other_changes_make_another_folder():
+    lines = [
+        "",
+        "a = 5",
+        "a = -5",
+        "a = 0.5",
+        "a = [0, 5]",
+        "f = x/y",
+        "f = x y",
+        "f = x-y",
+        "k = " + "1, " * 60,
+        "k = " + "1, " * 61,
+    ]
+    names = [slug(f"T\n{line}") for line in lines]
+    assert names[:3] == ["T", "T-a=5", "T-a=-5"]
+    assert len(set(names)) == len(names)
+    assert max(map(len, names)) < 200 and not any(set(name) & set('/\\ \n:*?"<>|') for name in names)
+
+
+def test_a_changed_run_overwrites_no_other(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    static = ["--set", "identifier.kind=tangent"]
+    loads = {"400": 400.0, "1200": 1200.0, "400.0": 400.0}
+    for load in loads:
+        assert invoke("run", SCENE, *static, "--set", f"load.axial={load}").exit_code == 0
+    found = sorted((tmp_path / "raceway-out").iterdir())
+    assert len(found) == 2  # 400 and 400.0 are one scene
+    for folder in found:
+        result = json.loads((folder / "result.json").read_text())
+        load = result["scene"]["load"]["axial"]
+        assert folder.name.endswith(f"-identifier.kind=tangent,load.axial={load:g}")
+        assert result["title"] == f"{FIRST}\nidentifier.kind = tangent, load.axial = {load:g}"
+    screen = invoke("plan", SCENE, "--set", "load.axial=400").stdout.splitlines()
+    assert screen[screen.index(FIRST) + 1] == "load.axial = 400"
+    assert load_scene(SCENE, ["load.axial=400"]).title == f"{FIRST}\nload.axial = 400"
+
+
+def test_pictures_pages_and_tables_for_rotor_programs_say_it():
+    figure = ball_loads(run(scene_from_dict(b7206c(title="T\nload.axial = 1000"))))
+    assert figure.axes[0].get_title().splitlines()[1:] == ["T", "load.axial = 1000"]
+    page = Page("T\nload.axial = 400", "below")
+    assert page.title == "T" and '<p class="subtitle">load.axial = 400<br>below</p>' in page.html()
+    data = made({"excitation.speed_rpm": SPEEDS})
+    data.attrs["scene"] = json.dumps({**json.loads(data.attrs["scene"]), "title": "T\nload.axial = 400"})
+    assert head(select(data, {}))[0].endswith(": T; load.axial = 400")
+
+
+def test_a_title_decides_no_number():
+    keys = {row_key(scene_from_dict(b7206c(title=title)), default_registry()) for title in ("one", "two\nload.axial = 1000")}
+    assert len(keys) == 1
+
+
+def test_an_empty_title_stays_a_mistake():
+    assert titled({"title": " "}, "file", [("load.axial", 1)])["title"] == " "
