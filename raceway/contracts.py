@@ -77,8 +77,10 @@ class Excitation(Protocol):
     5. ``speed_rpm``, if there is one, is the default of ``kinematics.spin_speed_rpm``; ``ramp_turns``, if there is one,
        is the time over which the core lets the force grow; ``duration_s``, if there is one and it is not None, is the
        time that is integrated, instead of ``integrator.turns``; ``phase(time)``, if there is one, is the angle of the
-       1x line (n,) [rad], which identifiers of changing speeds need; ``steady()``, if there is one, is a periodic
-       excitation whose orbit the motion starts on.
+       1x line (n,) [rad], which identifiers of changing speeds need, and without a period the angle that the spin speed
+       follows; ``steady()``, if there is one, is a periodic excitation whose orbit the motion starts on;
+       ``at_whirl(speed_rpm)``, if there is one, is the same force at another whirl speed, for identifiers of several speeds:
+       else they change ``speed_rpm``.
     """
 
     name: ClassVar[str]

@@ -116,6 +116,8 @@ def _total(parts: dict[str, Part]) -> float | None:
 def _identification(model: Model, found: Identification) -> Part:
     if found.window is None:
         return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
+    if "speeds" in model.scene.identifier.method.needs:
+        return Part(found.window, "misfit of K and C at this whirl speed; the largest where it was not run")
     return Part(found.window, "Fourier line against least squares")
 
 

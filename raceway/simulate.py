@@ -145,10 +145,13 @@ def _stride(steps_per_turn: int, turns: int) -> int:
 
 
 def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[tuple[Model, Simulation]]:
-    """Model and simulation for each of the identifier's ``speeds_rpm``, everything else the same."""
+    """Model and simulation for each of the identifier's ``speeds_rpm`` of the whirl; spin and force stay the same."""
     found = []
+    kinematics = attrs.evolve(model.scene.kinematics, spin_speed_rpm=model.scene.spin_speed * 30.0 / np.pi)
     for rpm in model.scene.identifier.method.speeds_rpm:
-        scene = attrs.evolve(model.scene, excitation=attrs.evolve(model.scene.excitation, speed_rpm=float(rpm)))
+        given = model.scene.excitation
+        excitation = given.at_whirl(float(rpm)) if hasattr(given, "at_whirl") else attrs.evolve(given, speed_rpm=float(rpm))
+        scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
         one = build_model(scene, make_plan(scene))
         found.append((one, simulate(one, settle(one), on_progress)))
     return found

@@ -1,4 +1,4 @@
-"""What the running speed changes: preload of pairs, held displacements, run-ups."""
+"""What the running speed changes: preload of pairs, held displacements, run-ups, fits over whirl speeds."""
 
 from __future__ import annotations
 
@@ -11,17 +11,19 @@ from raceway.run import run
 from raceway.scene_file import load_scene, scene_from_dict
 from tests.reference.mounted import FORCE, approach, axial, row, secant
 
-TITLE = "What the running speed changes: preload, held displacements, run-ups"
+TITLE = "What the running speed changes: preload, held displacements, run-ups, fits over whirl speeds"
 MOUNTED = "python -m pytest tests/depth/test_mounting.py"
 RUN_UP = "python -m pytest tests/depth/test_speeds.py"
 #: K over a run-up against steady runs; damping that a run-up without any may tell [N s/m].
 _STEADY, _NOTHING = 5e-3, 1.0
+#: Fitted K against a steady run, over |Z|: what the amplitude changes is left.
+_FIT = 0.02
 #: Of a stiffness or a force, against a solution by independent code.
 _LIMIT = 1e-3
 
 
 def rows() -> list[Row]:
-    return [*_pairs(), *_grown(), *_held(), *_run_ups(), *_example()]
+    return [*_pairs(), *_grown(), *_held(), *_run_ups(), *_example(), *_fits()]
 
 
 def _scene(**tables: Any) -> Any:
@@ -106,3 +108,22 @@ def _example() -> list[Row]:
     worst = max(abs(z.imag / w) for w, z in found.series)
     note = "largest of the series; m (w' + 2 w A' / A) / w is 12 to 31 N s/m"
     return [below("examples/run_up.toml, no damping: C, N s/m", worst, _NOTHING, "raceway run examples/run_up.toml", note)]
+
+
+def _fits() -> list[Row]:
+    """400 N, 2 kg, tilt locked; turning force at whirl speeds of 11 000 to 15 000 r/min at the spin speed of 15 000."""
+    out, identifier = [], {"kind": "impedance_fit", "speeds_rpm": [11000.0, 13000.0, 15000.0]}
+    for unbalance in (1e-4, 3.2e-4):
+        excitation = {"kind": "bidirectional", "speed_rpm": 15000.0, "unbalance": unbalance}
+        common = {"load": {"axial": 400.0}, "rotor": {"mass": 2.0}, "excitation": excitation}
+        fitted, steady = run(_scene(**common, identifier=identifier)), run(_scene(**common)).identification
+        found, size = fitted.identification, abs(steady.dynamic_stiffness)
+        off = abs(found.equivalent_stiffness - steady.equivalent_stiffness) / size
+        name = f"impedance_fit, {unbalance:g} kg m: error of"
+        note = f"{1e-6 * found.equivalent_stiffness:.2f} against {1e-6 * steady.equivalent_stiffness:.2f} N/um"
+        note += f"; m {found.mass_used:.4g} kg"
+        out.append(below(f"{name} K over |Z|", off, _FIT, RUN_UP, note))
+        told = fitted.error["identification"]
+        note = f"error.identification {told:.2g}, true {off:.2g}"
+        out.append(below(f"{name} K over the stated one", off / told, 2.0, RUN_UP, note))
+    return out

@@ -25,7 +25,8 @@ class Identification:
     forward_amplitude, backward_amplitude, orbit_major, orbit_minor : of the 1x orbit [m]
     residual : rms of what is not 1x (mean and drift removed) over the rms of 1x, in the plane of the force
     spread : largest deviation of a single turn's Z from the whole, relative; None for one turn
-    window : deviation of Z from the other fit (Fourier against least squares), relative; None where there is one only
+    window : deviation of Z from the other fit (Fourier against least squares), relative, or the misfit of a fit over speeds;
+        None where neither is known
     series : (speed [rad/s], Z) of every speed, where several were looked at
     """
 

@@ -7,7 +7,7 @@ same law, any inertial integrator, any 1x line of a record: 0.5 %.  The methods 
 ``quasi_static``: its K against K, 3 % (tilt locked) and 10 % (free or held by a shaft): the contacts carry F0, not
     F0 + m w^2 r (physics.md, section 6).
 ``tangent``: 10 % and 30 %: small signals against some 500 N on 2000 N axial.
-``impedance_fit``: 10 % and 30 %: one K for several speeds, at which the unbalance's force and the balls' inertia differ.
+``impedance_fit``: 10 % and 30 %: one K for several whirl speeds, at which amplitudes and the shape of tilts differ.
 pressures at surface points: 4 % more: with three points along a semi-axis forces ripple by 3 % over a small orbit.
 another law: a factor 1.6 more, up or down: a law calibrated at the load has Hertz's force there, and a slope that is
     4/3 of Hertz's for the penalty's square.

@@ -97,3 +97,8 @@ class Amplitude:
             return self.force
         speed = self.speed_rpm if self.amplitude == "unbalance" else (self.reference_speed_rpm or 0.0)
         return self.load_share * (self.unbalance or 0.0) * (speed * pi / 30.0) ** 2
+
+    def at_whirl(self, speed_rpm: float) -> Any:
+        """The same force at another whirl speed [r/min]."""
+        fixed: dict[str, Any] = {"amplitude": "constant", "force": self.amplitude_n, "load_share": 1.0}
+        return attrs.evolve(self, speed_rpm=speed_rpm, unbalance=None, reference_speed_rpm=None, **fixed)

@@ -1,4 +1,4 @@
-"""K, m and C from the dynamic stiffness at several speeds."""
+"""K and C from the dynamic stiffness at several whirl speeds and one spin speed."""
 
 from __future__ import annotations
 
@@ -11,8 +11,13 @@ from raceway.options import option, worded
 from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from raceway.core.identification import Identification
     from raceway.core.record import Record
+
+#: Relative difference of two speeds that are one.
+_SAME = 1e-9
 
 
 def _speeds(_instance: Any, _attribute: Any, value: tuple[float, ...]) -> None:
@@ -22,15 +27,25 @@ def _speeds(_instance: Any, _attribute: Any, value: tuple[float, ...]) -> None:
 
 @attrs.frozen
 class ImpedanceFit:
-    """Z(w) = K - m w^2 + j w C fitted by least squares to 1x lines at ``speeds_rpm``; nothing is assumed about the mass."""
+    """K and C of Z(w) = K - m w^2 + j w C by least squares over whirl speeds, at the scene's spin speed and force; m is known.
+
+    Notes
+    -----
+    K changes with the spin speed of the balls and with the amplitude: a fitted m would take what K loses over the speeds.  So
+    spin and force are held, as a shaker on a turning rotor does, and m is that of ring and rotor, with free tilts that of the
+    static shape.  The misfit, ``window``, is what Z of the scene's own whirl speed is away from the fit, over |Z|, or the largest
+    such distance where that speed is none of ``speeds_rpm``.
+    """
 
     name: ClassVar[str] = "impedance_fit"
     needs: ClassVar[frozenset[str]] = frozenset({"record", "period", "speeds"})
-    definition: ClassVar[str] = "secant: K, m and C of Z = K - m w^2 + j w C by least squares over several speeds"
+    definition: ClassVar[str] = (
+        "secant: K and C of Z = K - m w^2 + j w C, m known, by least squares over several whirl speeds at one spin speed"
+    )
 
     speeds_rpm: tuple[float, ...] = option(
         unit="r/min",
-        help="speeds that are run, at least two",
+        help="whirl speeds of the force that are run at the scene's spin speed, at least two",
         rule=worded(_speeds, "at least two different speeds greater than 0"),
     )
 
@@ -51,17 +66,30 @@ class ImpedanceFit:
             for r, s in zip(records, w, strict=True)
         ]
         z = np.array([stiffness(force, line) for force, line in lines])
-        # The columns are scaled to like size: K is some 1e8, m w^2 some 1e6.
-        scale = float(np.mean(w**2))
-        (k, m), *_ = np.linalg.lstsq(np.column_stack([np.ones_like(w), -(w**2) / scale]), z.real, rcond=None)
-        mass, damping = float(m / scale), float((w @ z.imag) / (w @ w))
-        fitted = k - mass * w**2 + 1j * w * damping
         own = 2.0 * pi * model.excitation.frequency_hz
         nearest = int(np.argmin(np.abs(w - own)))
+        mass = moving_mass(model, equilibrium, lines[nearest][0])
+        k, damping = float((z.real + mass * w**2).mean()), float((w @ z.imag) / (w @ w))
+        fitted, here = k - mass * w**2 + 1j * w * damping, complex(k - mass * own**2, own * damping)
+        away = np.abs(z - fitted)
         found = identification(self.definition, own / (2.0 * pi), *lines[nearest], mass_used=mass)
         return attrs.evolve(
             found,
-            dynamic_stiffness=complex(k - mass * own**2, own * damping),
-            residual=float(np.sqrt(np.mean(np.abs(z - fitted) ** 2)) / abs(z).mean()),
+            dynamic_stiffness=here,
+            residual=float(np.sqrt(np.mean(away**2)) / abs(z).mean()),
+            window=float((away[nearest] if abs(w[nearest] / own - 1.0) < _SAME else away.max()) / abs(here)),
             series=tuple((float(s), complex(one)) for s, one in zip(w, z, strict=True)),
         )
+
+
+def moving_mass(model: Any, equilibrium: Any, force: np.ndarray) -> float:
+    """Mass [kg] that moves with the static shape x of a force (5,), of the system's own tangent: |F|^2 x^H M x / (F^H x)^2."""
+    import numpy as np
+
+    if model.mass_used == 0.0:
+        return 0.0
+    system = model.system
+    chosen = system.free > 0.0
+    shape = np.zeros(5, dtype=complex)
+    shape[chosen] = np.linalg.solve(system.reduced(equilibrium.stiffness + system.stiffness), force[chosen])
+    return float((np.vdot(force, force) * np.vdot(shape, system.mass @ shape) / np.vdot(force, shape) ** 2).real)
