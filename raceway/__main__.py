@@ -3,11 +3,13 @@
 import sys
 
 from raceway.commands.interrupt import Interrupts, end, farewell
+from raceway.commands.streams import prepare
 
 
 def main() -> None:
     """Load the commands, run them, end."""
     Interrupts().__enter__()
+    prepare()
     code = 1
     try:
         from raceway.cli import main as commands

@@ -157,13 +157,15 @@ def check(
     Example:
       raceway check examples/b7206.toml --json
     """
-    from raceway.implausible import implausible
+    from raceway.implausible import foreseen, implausible
     from raceway.plan import make_plan
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     make_plan(loaded)
     tell_faults(registry)
+    if mistakes := foreseen(loaded):
+        raise SceneError(mistakes)
     for text in implausible(loaded):
         warn(text)
     if as_json:

@@ -1,4 +1,4 @@
-"""Numbers of a scene that are possible and unlikely: as a rule a unit was mistaken."""
+"""What a scene says that is possible and unlikely, as a rule in another unit; and what a run of it would fail at."""
 
 from __future__ import annotations
 
@@ -7,10 +7,15 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import Mistake
+from raceway.estimate import highest_frequency
+from raceway.planning.recording import turns_of
 from raceway.scene import Scene
 
 #: Above this a length [m] and below this a Young's modulus [Pa] is told: bearings of 2 m exist, and cages of soft plastics.
 _LENGTH, _YOUNG = 1.0, 1e9
+#: How far the estimate of the highest frequency may be off.
+_ROUGH = 2.0
 _TABLES = ("bearing", "kinematics", "mesh", "supports")
 
 
@@ -36,3 +41,26 @@ def _numbers(table: Any, path: str) -> Iterator[tuple[str, str, float]]:
             yield from _numbers(value, f"{path}.{field.name}")
         elif isinstance(value, float) and "unit" in field.metadata:
             yield f"{path}.{field.name}", field.metadata["unit"], value
+
+
+def foreseen(scene: Scene) -> list[Mistake]:
+    """What a run would fail at after it has begun, as far as closed formulas tell: for ``raceway check``."""
+    found = []
+    load, free = scene.load, scene.supports.axial != "displacement"
+    moment = any(load.moment) and scene.supports.tilt != "locked"
+    if free and not (load.axial or any(load.radial) or moment or scene.bearing.preload):
+        found.append(Mistake("load.axial", load.axial, "nothing loads the bearing: there is no stiffness to find"))
+    if scene.excitation is None or "record" not in scene.identifier.method.needs:
+        return found
+    window, turns = getattr(scene.identifier.method, "window_turns", None), turns_of(scene)
+    if window is not None and window > turns:
+        why = f"is longer than the record of {turns} turns: shorten it, or integrate more turns"
+        found.append(Mistake("identifier.window_turns", window, why))
+    steps = scene.integrator.steps_per_turn
+    if not scene.integrator.method.implicit and isinstance(steps, int) and scene.bodies.kind != "elastic":
+        period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
+        least = int(0.5 * period * highest_frequency(scene))
+        if steps * _ROUGH < least:
+            why = f"is far above the stable step of an explicit method: some {least} steps a turn are needed, 'auto' takes enough"
+            found.append(Mistake("integrator.steps_per_turn", steps, why))
+    return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import difflib
 import json
+import stat
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -31,6 +32,8 @@ PLUGIN_TABLES = {
 }
 #: Those of them that may be absent, which means something.
 OPTIONAL_TABLES = ("excitation", "mesh")
+#: Bytes of a scene file at most.
+_LONGEST = 2**24
 #: Likeness of two files' names from which one is taken for a slip of the other.
 _NEAR = 0.6
 #: Tables that a study reads beside the scene, which keeps them in ``source``.
@@ -63,7 +66,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """
     path = Path(path)
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = _text(path)
     except FileNotFoundError:
         # By the name itself: what ends in .toml is alike to a third already.
         stems = {one.stem: one.name for one in _tomls_in(path.parent)}
@@ -83,6 +86,20 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as why:
         raise SceneError.at(str(path), None, f"is not valid TOML: {why}") from None
+    except RecursionError:
+        raise SceneError.at(str(path), None, "cannot be read: lists or tables are nested too deep") from None
+    except ValueError:  # Python's limit for the digits of an integer
+        raise SceneError.at(str(path), None, "cannot be read: a number has thousands of digits") from None
+
+
+def _text(path: Path) -> str:
+    """Text of a scene; a byte order mark is left out.  ``OSError``, ``SceneError`` or ``UnicodeDecodeError`` where there is none."""
+    status = path.stat()
+    if not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
+        raise SceneError.at(str(path), None, "is no file: a pipe or a device has no end that can be waited for")
+    if status.st_size > _LONGEST:
+        raise SceneError.at(str(path), None, f"is no scene: it has {status.st_size} bytes, a scene has at most {_LONGEST}")
+    return path.read_bytes().decode("utf-8-sig")
 
 
 def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry | None = None) -> Scene:
@@ -151,7 +168,7 @@ def parse_change(text: str) -> tuple[str, Any]:
 def parse_value(text: str) -> Any:
     try:
         return tomllib.loads(f"v = {text.strip()}")["v"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # no TOML, too deep, or thousands of digits: whatever it is meant for refuses it
         return text.strip()
 
 

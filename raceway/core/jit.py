@@ -22,8 +22,12 @@ import numba
 
 from raceway.cache_folder import current_folder
 from raceway.core.kernel_files import FilesOfKernel, KernelFolder, opened
-from raceway.errors import PluginError
+from raceway.errors import PluginError, RacewayError
 
+if getattr(numba.config, "DISABLE_JIT", 0):
+    raise RacewayError(
+        "NUMBA_DISABLE_JIT is set: loops of hundreds of thousands of steps are compiled here, or take hours. Unset it."
+    )
 #: Seconds spent in compiling (until a run takes them) and in reading the cache, and how many kernels of each.
 clock: dict[str, float] = {"compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0}
 

@@ -296,8 +296,11 @@ class System:
                     {"q": np.array(q, dtype=float), "ball": ball_now},
                 )
         what = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
+        left = f"relative residual {report[1]:.1e}"
+        if not np.isfinite(report[1]):
+            left = "the forces leave what can be computed with: check the units of loads and materials"
         raise ConvergenceError(
-            f"no static equilibrium found after {total} iterations: {what}, relative residual {report[1]:.1e}",
+            f"no static equilibrium found after {total} iterations: {what}, {left}",
             {"q": q_now, "ball": ball_now},
         )
 

@@ -59,6 +59,8 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     tables = []
     for one in (bodies.inner, bodies.outer):
         values = np.interp(knots, one.angles, one.own) + bodies.ball_own
+        if not np.isfinite(values).all():
+            raise FloatingPointError("a body gives way further than its contacts are deep: it is too soft for its load")
         tables += [values, distance * CubicSpline(knots, values, bc_type=((1, 0.0), (1, 0.0)))(knots, 1)]
     head = [bodies.ball_opposite, 0.0 if angles is None else 1.0, count, knots[0], distance, len(knots)]
     parts = [rigid.table.copy()]
