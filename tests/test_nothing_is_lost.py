@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, build_model, scene_from_dict
+from raceway.commands.inputs import slug
 from raceway.core.mesh import HexMesh
 from raceway.errors import ConvergenceError, MeshError
 from raceway.estimate import highest_frequency
@@ -44,6 +45,13 @@ def test_a_run_that_fails_leaves_no_result_of_another_one_beside_its_failure(tmp
     assert (tmp_path / "result-older.json").read_text() == first
     assert invoke("run", MINIMAL, "--out", tmp_path).exit_code == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["result-older.json", "result.json"]
+
+
+def test_titles_in_any_script_have_folders_of_their_own():
+    titles = ["Подшипник 7206", "Шпиндель 7206", "Ρουλεμάν", "Άξονας", "轴承", "主轴"]
+    folders = [slug(title) for title in titles]
+    assert len(set(folders)) == len(titles) and all(folder.isascii() for folder in folders)
+    assert slug("Bearing of the spindle, café") == "Bearing-of-the-spindle-cafe"
 
 
 def test_more_harmonics_than_samples_are_refused_by_the_plan():

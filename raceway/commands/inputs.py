@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import unicodedata
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,10 +23,17 @@ def slug(title: str) -> str:
 
     Notes
     -----
-    Other changes make another name: where letters of them are lost, or more than 100, a hash of all stands at the end.
+    Accents are left out.  A title with letters of another script ends in a hash of it.  Other changes make another name: where
+    letters of them are lost, or more than 100, a hash of all stands at the end.
     """
     first, _, changes = title.partition("\n")
-    name = re.sub(r"[^A-Za-z0-9._]+", "-", first)[:80].strip("-._") or "scene"
+    latin = unicodedata.normalize("NFKD", first)
+    name = (
+        re.sub(r"[^A-Za-z0-9._]+", "-", "".join(s for s in latin if not unicodedata.combining(s)))[:80].strip("-._")
+        or "scene"
+    )
+    if any(sign.isalnum() and not sign.isascii() for sign in latin):  # another script: titles stay apart
+        name += f"-{hashlib.sha256(first.encode()).hexdigest()[:8]}"
     plain = changes.replace(" = ", "=").replace(", ", ",")
     told = re.sub(r"[^A-Za-z0-9._=,+-]+", "-", plain)
     if told != plain or len(told) > 100:
