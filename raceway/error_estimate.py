@@ -26,6 +26,7 @@ from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError
 from raceway.free_vibration import without_free_vibration
 from raceway.model import Model
+from raceway.planning.recording import fits
 from raceway.simulate import Simulation, simulate
 from raceway.statics import Equilibrium, settle
 
@@ -136,6 +137,8 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
     bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
     other = other_steps(steps, bound)
     turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
+    if not fits(turns, other, model.system.ball_count):
+        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit")
     try:
         again = [
             simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, begun=m) for one, m in motions

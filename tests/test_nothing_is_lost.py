@@ -13,6 +13,7 @@ from raceway.core.mesh import HexMesh
 from raceway.errors import ConvergenceError, MeshError
 from raceway.estimate import highest_frequency
 from raceway.plan import make_plan
+from raceway.planning.recording import fits, record_bytes
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.run import run
@@ -171,3 +172,11 @@ def test_the_plan_of_explicit_steps_knows_a_tilt_stiffness():
     real = model.system.critical_time_step(model.system.evaluate(model.guess).stiffness)
     # 12 turns of 5 ms in steps of 0.8 of the limit: the plan is to know their number within a factor of two.
     assert steps == pytest.approx(12 * 5e-3 / (0.8 * real), rel=0.5)
+
+
+def test_records_are_predicted_with_what_is_copied_of_them():
+    """Of 12 balls: 16 numbers of the ring and 8 a ball, eight bytes each, and three copies of all at the peak."""
+    assert record_bytes(10, 360, 12) == 4 * 8 * 10 * 360 * (16 + 8 * 12)
+    # Steps that no number of samples divides are all recorded: a second run with such a number is asked, too.
+    assert record_bytes(1000, 3607, 12) > 20 * record_bytes(1000, 3600, 12)
+    assert fits(1000, 3600, 12) and not fits(10_000, 3607, 12)

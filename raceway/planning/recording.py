@@ -9,7 +9,8 @@ from raceway.scene import Scene
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
-#: Records above this are refused [bytes].
+#: What a record takes at the peak over its own arrays (measured).  Records above the limit are refused [bytes].
+_COPIES = 4
 _MEMORY_LIMIT = 4 * 2**30
 
 
@@ -46,12 +47,19 @@ def samples_per_turn(turns: int) -> int:
     return max(24, min(STEPS_PER_TURN, 72_000 // max(turns, 1)))
 
 
+def record_bytes(turns: int, steps_per_turn: int, count: int) -> int:
+    """Bytes that a run of so many balls takes for its record, with what identification and energy balance copy of it."""
+    return _COPIES * 8 * turns * recorded_per_turn(steps_per_turn, turns) * (16 + 8 * count)
+
+
+def fits(turns: int, steps_per_turn: int, count: int) -> bool:
+    """Whether a record is not refused."""
+    return record_bytes(turns, steps_per_turn, count) <= _MEMORY_LIMIT
+
+
 def refuse_memory(scene: Scene, turns: int, steps_per_turn: int, count: int) -> None:
     """Records that will not fit are refused before anything is computed."""
-    samples = min(steps_per_turn, samples_per_turn(turns))
-    if steps_per_turn % samples:
-        samples = steps_per_turn
-    needed = 8 * turns * samples * (16 + 8 * count)
+    needed = record_bytes(turns, steps_per_turn, count)
     if needed > _MEMORY_LIMIT:
         raise SceneError.at(
             "integrator.turns",
