@@ -89,7 +89,7 @@ def contact_angles(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
     z = model.system.ball_count
-    axial, radial = model.system.centre_vectors(q, t)[0].T
+    axial, radial = model.system.centre_vectors(q, t, ball)[0].T
     if model.plan.balls == "weightless" and model.scene.bodies.kind != "elastic":
         inner = outer = np.arctan2(axial, radial)
     else:

@@ -49,6 +49,7 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     stored += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
     if system.condensed:
         stored += 0.5 * np.einsum("nc,nc->n", record.contact_force, system.structural_approach(record.ball))
+        stored += system.ring_energy(record.ball)
     friction = friction_energy(system, record)
     stored += friction.stored
     kinetic = 0.5 * np.einsum("ni,ij,nj->n", v, system.mass, v)

@@ -65,8 +65,11 @@ def _place(system: System, record: Record) -> np.ndarray:
     turn = side * (tilt_y * s - tilt_z * c)
     axial = scalars[REST_AXIAL] + table[:, SHIFT] + side * x + scalars[TILT_ARM] * turn
     radial = rest + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
-    p = record.ball
+    p, moved = record.ball, system.groove_displacement(record.ball)
     groove = scalars[OFFSET_INNER] + 0.5 * scalars[DIAMETER]
-    inner = scalars[OFFSET_INNER] * np.arctan2(axial - p[:, :, 0], radial - p[:, :, 1]) - groove * turn
+    inner = (
+        scalars[OFFSET_INNER] * np.arctan2(axial + moved[:, :, 0] - p[:, :, 0], radial + moved[:, :, 1] - p[:, :, 1])
+        - groove * turn
+    )
     outer = scalars[OFFSET_OUTER] * np.arctan2(p[:, :, 0], p[:, :, 1])
     return np.stack([inner, outer], axis=2)

@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.bodies.columns import are_condensed, work_rows
+from raceway.core.bodies.columns import BLOCK, ROW, are_condensed, elastic_columns, work_rows
 from raceway.core.bodies.ring import (
     CAGE,
     CENTRIFUGAL,
@@ -43,7 +43,7 @@ class Evaluation:
     force : (5,) internal force of the contacts [N, N m]
     stiffness, damping : (5, 5) its derivatives by displacement and velocity
     gap, contact_force : (2 Z,) inner races first, then outer [m, N]
-    ball : (Z, 2, 4 or 6) positions of the balls in their meridian planes, slips, structural approaches [m]
+    ball : (Z, 2 to 8) positions of the balls in their meridian planes, slips, structural approaches and displacements [m]
     memory : (2 Z, m) what the law would remember
     """
 
@@ -125,21 +125,60 @@ class System:
 
     @property
     def ball_columns(self) -> int:
-        return (2 if self.conservative else 4) + (2 if self.condensed else 0)
+        return (2 if self.conservative else 4) + self._elastic_columns
+
+    @property
+    def _elastic_columns(self) -> int:
+        return int(elastic_columns(self.scalars))
 
     @property
     def condensed(self) -> bool:
-        """Whether rings and balls are elastic: ``ball`` then ends with both contacts' structural approach."""
+        """Whether rings and balls are elastic: ``ball`` then has columns for that behind positions and slips."""
         return bool(are_condensed(self.scalars))
 
     @property
+    def coupled(self) -> bool:
+        """Whether balls act on each other through elastic rings, which move groove centres."""
+        return self._elastic_columns == 4
+
+    @property
     def rated_columns(self) -> list[int]:
-        """Columns of ``ball`` that have rates: positions and structural approaches, not slips."""
-        return [0, 1, *([self.ball_columns - 2, self.ball_columns - 1] if self.condensed else [])]
+        """Columns of ``ball`` that have rates: positions and what elasticity adds, not slips."""
+        return [0, 1, *range(self.ball_columns - self._elastic_columns, self.ball_columns)]
 
     def structural_approach(self, ball: np.ndarray) -> np.ndarray:
         """(..., 2 Z) what the elasticity of the bodies adds to the approach of each contact [m], from ball (..., Z, k)."""
-        return np.concatenate([ball[..., -2], ball[..., -1]], axis=-1)
+        first = self.ball_columns - self._elastic_columns
+        return np.concatenate([ball[..., first], ball[..., first + 1]], axis=-1)
+
+    def groove_displacement(self, ball: np.ndarray) -> np.ndarray:
+        """(..., Z, 2) motion (axial, radial) of the inner groove centres against the outer ones by elastic rings [m]."""
+        return ball[..., -2:] if self.coupled else np.zeros((*ball.shape[:-1], 2))
+
+    def between_balls(self) -> tuple[np.ndarray, np.ndarray]:
+        """M and M_o (2 Z, 2 Z) between groove centres, axial and radial ball by ball [m/N]; see ``raceway.core.bodies.between``.
+
+        Of M_o only the columns of radial forces are known.
+        """
+        row, count = int(self.scalars[ROW]), self.ball_count
+        blocks = self.scalars[-BLOCK * row :].reshape(row, BLOCK)
+        both, outer = np.zeros((count, 2, count, 2)), np.zeros((count, 2, count, 2))
+        for k in range(count):
+            for j in range(k // row * row, k // row * row + row):
+                axial, cross, radial, *by_radial = blocks[(k - j) % row]
+                both[k, :, j] = [[axial, cross], [cross, radial]]
+                outer[k, :, j, 1] = by_radial
+        return both.reshape(2 * count, -1), outer.reshape(2 * count, -1)
+
+    def ring_energy(self, ball: np.ndarray) -> np.ndarray:
+        """(...) energy F.M F / 2 that rings store by balls acting on each other [J], but for a constant, from ball (..., Z, k)."""
+        if not self.coupled:
+            return np.zeros(ball.shape[:-2])
+        both, outer = self.between_balls()
+        push = np.zeros((self.ball_count, 2))
+        push[:, 1] = self.table[:, CENTRIFUGAL]
+        carried = -(self.groove_displacement(ball).reshape(*ball.shape[:-2], -1) + outer @ push.reshape(-1))
+        return 0.5 * np.einsum("...i,ij,...j->...", carried, np.linalg.pinv(both, rcond=1e-12), carried)
 
     def _work(self) -> np.ndarray:
         return np.zeros((work_rows(self.scalars, self.table), 2 * self.ball_count))
@@ -304,17 +343,18 @@ class System:
             {"q": q_now, "ball": ball_now},
         )
 
-    def centre_vectors(self, q: np.ndarray, t: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    def centre_vectors(self, q: np.ndarray, t: float = 0.0, ball: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """(Z, 2) vector (axial, radial) from the outer to the inner groove centre of every ball, and its azimuth's
-        direction (Z, 2) as cosine and sine."""
+        direction (Z, 2) as cosine and sine; ``ball`` (Z, k): with what elastic rings add there."""
         work = np.zeros((3, 2 * self.ball_count))
         place(float(t), np.ascontiguousarray(q, dtype=float), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
         direction, centre, _ = work.reshape(3, 2, -1)
-        return centre.T.copy(), direction.T.copy()
+        moved = 0.0 if ball is None else self.groove_displacement(ball)
+        return centre.T + moved, direction.T.copy()
 
     def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
         """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
-        e, direction = self.centre_vectors(q, t)
+        e, direction = self.centre_vectors(q, t, ball)
         inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
         outer = np.arctan2(ball[:, 0], ball[:, 1])
         turned = self.table[:, SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import attrs
 import numpy as np
 import pytest
 
@@ -10,7 +9,7 @@ from raceway.core.energy import energy_balance
 from raceway.core.orbit import steady_orbit
 from raceway.core.record import Schedule
 from raceway.core.start import from_orbit, static_orbit
-from tests.condensed.bodies import elastic
+from tests.condensed.bodies import BED, INNER, OUTER, elastic
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
 #: What ball and contacts can be, each another kernel or branch.
@@ -79,19 +78,63 @@ def test_tangents_are_the_derivatives(built, name, bed):
         assert np.abs((now.stiffness - now.stiffness.T) * weight).max() < 1e-12 * largest
 
 
-@pytest.mark.parametrize("bed", [False, True])
-def test_approach_is_law_and_structure_in_series(built, bed):
+def test_approach_is_law_and_structure_in_series(built):
     """At equilibrium w = C Q: checked contact by contact against the matrix that the kernels never form."""
     rigid = model(built)
-    soft = elastic(rigid.system, bed=bed)
+    soft = elastic(rigid.system)
     q, ball, _ = soft.settle(rigid.guess)
     force = soft.evaluate(q, ball=ball).contact_force
     z = soft.ball_count
-    own = np.r_[np.full(z, -0.62e-9 - 0.304e-9), np.full(z, -0.64e-9 - 0.304e-9 + (5.6e-9 if bed else 0.0))]
+    own = np.r_[np.full(z, -0.62e-9 - 0.304e-9), np.full(z, -0.64e-9 - 0.304e-9)]
     matrix = np.diag(own) + 0.167e-9 * np.kron([[0.0, 1.0], [1.0, 0.0]], np.eye(z))
-    if bed:
-        matrix[z:, z:] += soft.table[:, -z:]
     assert soft.structural_approach(ball) == pytest.approx(matrix @ force, rel=1e-9)
+
+
+def test_groove_centres_move_as_the_loads_of_all_balls_push_them(built):
+    """On beds d = -M F - M_o F_c with the matrices that the kernels never form, F from angles and contact forces."""
+    rigid = model(built)
+    soft = elastic(rigid.system, bed=True)
+    q, ball, _ = soft.settle(rigid.guess)
+    force, z = soft.evaluate(q, ball=ball).contact_force, soft.ball_count
+    reach = soft.centre_vectors(q, ball=ball)[0] - ball[:, :2]
+    # A contact's own compliance is constant beyond its groove's motion here: no part of the force leans.
+    push = force[:z, None] * reach / np.linalg.norm(reach, axis=1)[:, None]
+    outer = push + np.column_stack([np.zeros(z), soft.table[:, 2]])
+    lag = np.abs(np.arange(z)[:, None] - np.arange(z))
+    block = BED[np.minimum(lag, z - lag)][:, :, [0, 1, 1, 2]].reshape(z, z, 2, 2)
+    # A ring's own compliance that is the same in all directions moves its groove, too.
+    moved = -np.einsum("kjab,jb->ka", block, 1.3 * push + outer) - INNER * push - OUTER * outer
+    assert np.abs(moved).max() > 2e-6
+    assert soft.groove_displacement(ball) == pytest.approx(moved, rel=1e-7, abs=1e-13)
+
+
+@pytest.mark.parametrize("name", ["weightless", "inertial"])
+def test_stored_energy_is_the_work_of_the_force(built, name):
+    """On beds the energy of bodies and contacts between two states is the integral of the force: Gauss' rule, to 1e-9."""
+    from raceway.core.bodies import STORED
+    from raceway.core.bodies.ring import CENTRIFUGAL
+
+    rigid = model(built, **SCENES[name])
+    soft = elastic(rigid.system, slope=1.3e-9, bed=True)
+    q, ball, _ = soft.settle(rigid.guess)
+    ahead = q * np.array([1.02, 1.1, 0.9, 1.05, 0.95])
+
+    def energy(place):
+        work, rest = soft._work(), ball.copy()
+        soft.kernel(
+            0.0, 0.0, place, np.zeros(5), rest, 0.0, np.zeros_like(ball), soft.law, soft.law_params, soft.law_state,
+            soft.law_state.copy(), soft.scalars, soft.table, work, np.empty(5), np.empty((0, 0)), np.empty((0, 0)),
+        )  # fmt: skip
+        factor = np.repeat([rigid.inner.factor, rigid.outer.factor], soft.ball_count)
+        hertz = 0.4 * factor * np.maximum(-work[0], 0.0) ** 2.5
+        return hertz.sum() + work[STORED].sum() - (soft.table[:, CENTRIFUGAL] * rest[:, 1]).sum()
+
+    x, w = np.polynomial.legendre.leggauss(8)
+    work = sum(
+        0.5 * part * soft.evaluate(q + 0.5 * (1.0 + at) * (ahead - q), ball=ball).force @ (ahead - q)
+        for at, part in zip(x, w, strict=True)
+    )
+    assert energy(ahead) - energy(q) == pytest.approx(work, rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", ["newmark", "generalized_alpha", "central_difference", "quasi_static"])
@@ -145,10 +188,13 @@ def test_a_contact_that_bodies_outdo_is_a_failure_and_no_number(built):
 
 
 def test_a_pair_couples_only_balls_of_one_row(built):
-    bearing = {"arrangement": "DB", "preload": 300.0}
-    case = model(built, bearing=bearing)
+    case = model(built, bearing={"arrangement": "DB", "preload": 300.0})
     z = case.geometry.ball_count
-    table = elastic(
-        attrs.evolve(case.system, table=case.system.table[:z], law_params=case.system.law_params[: 2 * z]), bed=True
-    )
-    assert table.table.shape == (z, 8 + 2 * z)
+    soft = elastic(case.system, slope=1.3e-9, bed=True, rows=2)
+    both, outer = soft.between_balls()
+    assert both.shape == outer.shape == (4 * z, 4 * z)
+    assert not both[: 2 * z, 2 * z :].any() and both[: 2 * z, : 2 * z] == pytest.approx(both[2 * z :, 2 * z :])
+    q, ball, _ = soft.settle(case.guess)
+    now, step = soft.evaluate(q, ball=ball), np.array([1.0, -0.6, 0.8, 40.0, 30.0]) * 1e-10
+    ahead, behind = (soft.evaluate(q + sign * step, ball=ball).force for sign in (1.0, -1.0))
+    assert 0.5 * (ahead - behind) == pytest.approx(now.stiffness @ step, rel=1e-6)

@@ -2,25 +2,39 @@
 
 Notes
 -----
-Columns 0 and 1 of a ball are positions; columns 2 and 3 are slips where there is friction; the last two of condensed
-bodies are structural approaches.  Positions and approaches have rates, slips are only committed.
+Columns 0 and 1 of a ball are positions; columns 2 and 3 are slips where there is friction; then come, of condensed bodies,
+two structural approaches and, where balls act on each other through the rings, two displacements of groove centres.  All
+but slips have rates, slips are only committed.
 """
 
 from numba import boolean, float64, int64, void
 
 from raceway.core.bodies import WORK_ROWS
 from raceway.core.bodies.ring import SCALARS
+from raceway.core.bodies.structural_rows import ELASTIC_ROWS
 from raceway.core.jit import jit
 from raceway.core.signatures import MATRIX, VECTOR
 
-#: Rows of ``work`` that condensed bodies need beyond the rigid ones, less their matrix; see ``structural``.
-ELASTIC_ROWS = 48
+#: Entries of ``scalars`` beyond the rigid ones: compliance of a ball by the load on its other race [m/N]; 1 where balls act
+#: on each other through the rings; balls of a row; first angle [rad] and distance of the table's angles, their number n;
+#: then the table: inner compliance (n,), its slopes by angle over that distance (n,), and both again for the outer race.
+#: Where balls act on each other, ``BLOCK`` numbers follow for each distance of two balls, 0 to Z - 1, see ``between``.
+BALL_CROSS, COUPLED, ROW, FIRST, DISTANCE, KNOTS, VALUES = range(SCALARS, SCALARS + 7)
+BLOCK = 5
 
 
 @jit(boolean(VECTOR))
 def are_condensed(scalars):
     """Whether these constants belong to condensed bodies."""
     return scalars.size > SCALARS
+
+
+@jit(int64(VECTOR))
+def elastic_columns(scalars):
+    """Columns of ``ball`` for the elasticity of the bodies, the last ones."""
+    if not are_condensed(scalars):
+        return 0
+    return 4 if scalars[COUPLED] != 0.0 else 2
 
 
 @jit(int64(VECTOR, MATRIX))
@@ -34,7 +48,7 @@ def work_rows(scalars, table):
 @jit(int64(VECTOR, MATRIX))
 def slips_end(scalars, ball):
     """The column after the slips, which begin at 2."""
-    return ball.shape[1] - 2 if are_condensed(scalars) else ball.shape[1]
+    return ball.shape[1] - elastic_columns(scalars)
 
 
 @jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)

@@ -10,18 +10,18 @@ from raceway.core.signatures import SYSTEM
 def condensed_weightless(
     t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C
 ):
-    """See ``raceway.core.bodies``; the last two columns of ball hold the structural approaches [m]."""
+    """See ``raceway.core.bodies``; the last columns of ball belong to the elasticity of the bodies [m]."""
     begin(t, q, v, scalars, table, work)
     for _ in range(ITERATIONS):
-        shift(ball, ball_gain, ball_known, work)
+        shift(scalars, ball, ball_gain, ball_known, work)
         status = rigid_weightless(
             t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C
         )
         if status != 0:
             return status
-        answer = correct(scalars, table, ball, work, f)
+        answer = correct(scalars, table, ball, ball_gain, work, f)
         if answer == SETTLED:
-            tangents(scalars, table, work, f, K, C)
+            tangents(scalars, table, ball_gain, work, f, K, C)
             return 0
         if answer != GOES_ON:
             return 1

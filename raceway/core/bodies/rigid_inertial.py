@@ -18,6 +18,10 @@ from raceway.core.bodies import (
     BY_OWN,
     BY_RADIAL,
     BY_RADIAL_SPEED,
+    FORCE,
+    FORCE_BY_CENTRE,
+    FORCE_BY_SPEED,
+    KERNEL_ROWS,
     RADIAL_BY_SHIFT,
     SHIFT,
     SHIFT_RATE,
@@ -31,6 +35,7 @@ from raceway.core.bodies.ring import (
     OUTER_FACTOR,
     OUTER_SHARE,
     TILT_ARM,
+    move_centres,
     place,
     ring_force,
     ring_tangent,
@@ -60,6 +65,8 @@ def rigid_inertial(
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
     place(t, q, v, scalars, table, work, DIRECTION, CENTRE, VELOCITY)
+    if work.shape[0] > WORK_ROWS:
+        move_centres(work, CENTRE, VELOCITY)
     for k in range(z):
         work[SEARCH, k] = 0.0
         work[DONE, z + k] = 0.0
@@ -166,8 +173,9 @@ def rigid_inertial(
         return 0
     for k in range(z):
         if elastic_bodies:
-            for row in range(WORK_ROWS, WORK_ROWS + 10):
+            for row in range(WORK_ROWS, WORK_ROWS + KERNEL_ROWS):
                 work[row, k], work[row, z + k] = 0.0, 0.0
+            work[FORCE, k], work[FORCE, z + k] = work[CARRIED, k], work[CARRIED, z + k]
         if force[k] == 0.0 and work[13, k] == 0.0:
             work[STIFF, k], work[STIFF, z + k], work[STIFF + 1, k], work[STIFF + 1, z + k] = 0.0, 0.0, 0.0, 0.0
             work[VISCOUS, k], work[VISCOUS, z + k], work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = 0.0, 0.0, 0.0, 0.0
@@ -197,6 +205,13 @@ def rigid_inertial(
         work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr
         if not elastic_bodies:
             continue
+        for row in range(2):
+            work[FORCE_BY_CENTRE + row, k], work[FORCE_BY_CENTRE + row, z + k] = (
+                work[STIFF + row, k],
+                work[STIFF + row, z + k],
+            )
+            work[FORCE_BY_SPEED + row, k] = work[VISCOUS + row, k]
+            work[FORCE_BY_SPEED + row, z + k] = work[VISCOUS + row, z + k]
         # dp = -H^-1 (ki ni dw_i - ko no dw_o) + H^-1 E de;  rows g of dQ = g (...): ki ni^T H^-1 and -ko no^T H^-1.
         oa, orr = work[OUTER, k], work[OUTER, z + k]
         gia, gir = ki * (na * hrr - nr * har) * inverse, ki * (nr * haa - na * har) * inverse

@@ -36,7 +36,13 @@ from raceway.core.bodies import (
     BY_RADIAL,
     BY_RADIAL_SPEED,
     BY_TURN,
+    COUPLE_BY_CENTRE,
     COUPLE_BY_SHIFT,
+    FORCE,
+    FORCE_BY_CENTRE,
+    FORCE_BY_SPEED,
+    FORCE_BY_TURN,
+    KERNEL_ROWS,
     RADIAL_BY_SHIFT,
     SHIFT,
     SHIFT_RATE,
@@ -59,6 +65,7 @@ from raceway.core.bodies.ring import (
     SIDE,
     STICK,
     TILT_ARM,
+    move_centres,
     place,
 )
 from raceway.core.bodies.section import add_ball, add_couple
@@ -125,6 +132,8 @@ def rigid_tangential(
                 K[i, j] = 0.0
                 C[i, j] = 0.0
     place(t, q, v, scalars, table, work, 16, 5, 6)
+    if elastic_bodies:
+        move_centres(work, 5, 6)
     remaining = z
     for k in range(z):
         slope[k], merit[k], done[k], da[k], dr[k] = 0.0, np.inf, 0.0, 0.0, 0.0
@@ -291,7 +300,7 @@ def rigid_tangential(
         return 1
     for k in range(z):
         if elastic_bodies:
-            for row in range(WORK_ROWS, WORK_ROWS + 10):
+            for row in range(WORK_ROWS, WORK_ROWS + KERNEL_ROWS):
                 work[row, k], work[row, z + k] = 0.0, 0.0
         if done[k] == 2.0:
             force[k], force[z + k] = 0.0, 0.0
@@ -354,6 +363,15 @@ def rigid_tangential(
             work[RADIAL_BY_SHIFT, z + k] = -tra * woa - trr * wor
             work[COUPLE_BY_SHIFT, k] = couple_w[k] - ua * wia - ur * wir
             work[COUPLE_BY_SHIFT, z + k] = -ua * woa - ur * wor
+            work[FORCE_BY_CENTRE, k], work[FORCE_BY_CENTRE, z + k] = eaa - taa * xaa - tar * xra, ear - taa * xar - tar * xrr
+            work[FORCE_BY_CENTRE + 1, k] = era - tra * xaa - trr * xra
+            work[FORCE_BY_CENTRE + 1, z + k] = err - tra * xar - trr * xrr
+            work[FORCE_BY_SPEED, k], work[FORCE_BY_SPEED, z + k] = maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr
+            work[FORCE_BY_SPEED + 1, k] = mar - tra * maa - trr * mar
+            work[FORCE_BY_SPEED + 1, z + k] = mrr - tra * mar - trr * mrr
+            work[FORCE_BY_TURN, k], work[FORCE_BY_TURN, z + k] = ha - taa * ha - tar * hr, hr - tra * ha - trr * hr
+            work[COUPLE_BY_CENTRE, k], work[COUPLE_BY_CENTRE, z + k] = ca - ua * xaa - ur * xra, cr - ua * xar - ur * xrr
+            work[FORCE, k], work[FORCE, z + k] = fi * ni_a[k] + h[k] * ti_a, fi * ni_r[k] + h[k] * ti_r
         add_ball(
             cosine[k], sine[k], arm, table[k, SIDE], table[k, LEVER],
             fi * ni_a[k] + h[k] * ti_a, fi * ni_r[k] + h[k] * ti_r,

@@ -17,6 +17,9 @@ from raceway.core.bodies import (
     BY_OWN,
     BY_RADIAL,
     BY_RADIAL_SPEED,
+    FORCE,
+    FORCE_BY_CENTRE,
+    FORCE_BY_SPEED,
     RADIAL_BY_SHIFT,
     SHIFT,
     SHIFT_RATE,
@@ -28,6 +31,7 @@ from raceway.core.bodies.ring import (
     OFFSET_OUTER,
     OUTER_SHARE,
     TILT_ARM,
+    move_centres,
     place,
     ring_force,
     ring_tangent,
@@ -53,6 +57,8 @@ def rigid_weightless(
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
     place(t, q, v, scalars, table, work, DIRECTION, NORMAL, VELOCITY)
+    if work.shape[0] > WORK_ROWS:
+        move_centres(work, NORMAL, VELOCITY)
     for k in range(z):
         a, r = work[NORMAL, k], work[NORMAL, z + k]
         length = np.sqrt(a * a + r * r)
@@ -118,6 +124,13 @@ def rigid_weightless(
                 work[BY_AXIAL_SPEED, c], work[BY_RADIAL_SPEED, c] = -d_rate[k] * share * na, -d_rate[k] * share * nr
                 work[BY_OWN, c] = work[BY_OTHER, c] = -ki * share
                 work[AXIAL_BY_SHIFT, c], work[RADIAL_BY_SHIFT, c] = -ki * share * na, -ki * share * nr
+                work[FORCE, c] = work[CARRIED, c]
+            across = closed * force[k] / max(work[LENGTH, k], 1e-300)
+            along, dashpot = -d_gap[k] * share - across, -d_rate[k] * share
+            work[FORCE_BY_CENTRE, k], work[FORCE_BY_CENTRE, z + k] = along * na * na + across, along * na * nr
+            work[FORCE_BY_CENTRE + 1, k], work[FORCE_BY_CENTRE + 1, z + k] = along * na * nr, along * nr * nr + across
+            work[FORCE_BY_SPEED, k], work[FORCE_BY_SPEED, z + k] = dashpot * na * na, dashpot * na * nr
+            work[FORCE_BY_SPEED + 1, k], work[FORCE_BY_SPEED + 1, z + k] = dashpot * na * nr, dashpot * nr * nr
     if K.size > 0:
         for k in range(z):
             stiff = -d_gap[k] - d_gap[z + k] - ball_gain * (d_rate[k] + d_rate[z + k])

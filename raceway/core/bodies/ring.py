@@ -11,6 +11,7 @@ e = (e_rest + shift + side (x + R u), e_rest + rho - X u).
 import numpy as np
 from numba import float64, int64, void
 
+from raceway.core.bodies import MOVED, MOVED_RATE
 from raceway.core.jit import jit
 from raceway.core.signatures import MATRIX, VECTOR
 
@@ -56,6 +57,14 @@ def place(t, q, v, scalars, table, work, direction, centre, velocity):
         work[centre, k], work[centre, n + k] = rest_a + shift + side * (x + arm * u), rest_r + y * c + z * s - lever * u
         work[velocity, k] = side * (vx + arm * u_rate)
         work[velocity, n + k] = vy * c + vz * s - lever * u_rate
+
+
+@jit(void(MATRIX, int64, int64))
+def move_centres(work, centre, velocity):
+    """Add to e and its velocity what the rings' elasticity moves the groove centres of condensed bodies by."""
+    for c in range(work.shape[1]):
+        work[centre, c] += work[MOVED, c]
+        work[velocity, c] += work[MOVED_RATE, c]
 
 
 @jit(void(float64, VECTOR, MATRIX))

@@ -1,7 +1,8 @@
 """One ball's contribution to the ring, added to arrays: for kernels whose balls need more than a 2x2 tangent."""
 
-from numba import float64, void
+from numba import float64, int64, void
 
+from raceway.core.bodies.ring import LEVER, SIDE
 from raceway.core.jit import jit
 from raceway.core.signatures import MATRIX, VECTOR
 
@@ -29,6 +30,16 @@ def add_ball(c, s, arm, side, lever, fa, fr, kaa, kar, kra, krr, caa, car, cra, 
             ga, gr = caa * ja[j] + car * jr[j], cra * ja[j] + crr * jr[j]
             for i in range(5):
                 C[i, j] += ja[i] * ga + jr[i] * gr
+
+
+@jit(void(float64, float64, MATRIX, MATRIX, int64, float64, float64, float64, float64, int64, int64))
+def to_ring(c, s, table, work, k, arm, axial, radial, turn, row, column):
+    """J^T (axial, radial) and the turn of ball k's section, into a column of the five rows of ``work`` from ``row`` on."""
+    axial *= table[k, SIDE]
+    couple = arm * axial - table[k, LEVER] * radial + table[k, SIDE] * turn
+    work[row, column] = axial
+    work[row + 1, column], work[row + 2, column] = radial * c, radial * s
+    work[row + 3, column], work[row + 4, column] = couple * s, -couple * c
 
 
 @jit(void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, VECTOR, MATRIX))  # fmt: skip

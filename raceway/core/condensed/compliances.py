@@ -7,6 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.core.condensed.grooves import groove_compliance
 from raceway.core.condensed.patch import Ball, Patch, Race, Spacing, race_divisions
 from raceway.core.meshing.ring import RingShape
 from raceway.core.revolution.ball import FreeBall, free_ball
@@ -74,13 +75,12 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     near = _projected(full[:columns], normal)
     along = np.array([-normal[1], normal[0]])
     shear = None if ball.shear is None else _projected(full[:columns], along)
-    chosen = [rows // 2, rows + rows // 2]
-    between = full[columns:][:, chosen][:, :, chosen][:, ::-1, ::-1]  # (axial, radial)
+    between = np.moveaxis(_projected(full[columns:], normal), 0, 2)
     low, high = shape.edges
     edges = (low, high) if sense > 0.0 else (-high, -low)
     crossing = np.zeros((balls, 2, 2))
-    for k, block in enumerate(between, start=1):
-        crossing[k] = crossing[-k] = block
+    for k, block in enumerate(groove_compliance(section.angles, between, np.ones(rows)), start=1):
+        crossing[k] = crossing[-k] = block[[0, 1, 1, 2]].reshape(2, 2)
     race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, edges, crossing, shear)
     return Patch(ball, race, spacing.area)
 

@@ -8,8 +8,12 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.core.condensed.grooves import along_normal, groove_compliance, own_compliance
 from raceway.core.condensed.structural import RingCompliance
 from raceway.core.system import System
+
+#: Least standard deviation of the contact angles that compliances between groove centres are fitted for [rad].
+_WIDTH = 0.2
 
 
 @attrs.frozen(eq=False)
@@ -35,7 +39,8 @@ class ElasticBodies:
     @property
     def largest_across(self) -> float:
         """Largest compliance between two balls through a ring [m/N]."""
-        return float(max(np.abs(one.across[:, 1:]).max(initial=0.0) for one in (self.inner, self.outer)))
+        between = (np.diagonal(one.across[:, :, 1:]) for one in (self.inner, self.outer))
+        return float(max(np.abs(one).max(initial=0.0) for one in between))
 
 
 def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | None = None) -> System:
@@ -44,59 +49,59 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     Parameters
     ----------
     rigid : with kernels of rigid bodies
-    angles : (Z,) contact angles [rad] for the compliances between balls; None leaves those out
+    angles : (Z,) contact angles [rad] about which balls act on each other through the rings; None leaves that out
 
     Notes
     -----
-    Tables over the angle become cubic splines without slope at their ends.  The compliance between two balls is taken at the
-    mean of their angles and does not change with the motion, so that forces keep a potential.
+    Tables over the angle become cubic splines without slope at their ends.  Where balls act on each other the table holds what
+    a contact's own compliance has beyond n.M n of its groove centre's motion.
     """
     from scipy.interpolate import CubicSpline
 
-    count = bodies.inner.across.shape[1]
+    count = bodies.inner.across.shape[2]
     knots = bodies.inner.angles
     distance = knots[1] - knots[0]
-    tables = []
+    tables, rings = [], []
     for one in (bodies.inner, bodies.outer):
         values = np.interp(knots, one.angles, one.own) + bodies.ball_own
         if not np.isfinite(values).all():
             raise FloatingPointError("a body gives way further than its contacts are deep: it is too soft for its load")
+        if angles is not None:
+            rings.append(between_grooves(one, angles))
+            values -= along_normal(knots, rings[-1][0])
         tables += [values, distance * CubicSpline(knots, values, bc_type=((1, 0.0), (1, 0.0)))(knots, 1)]
     head = [bodies.ball_opposite, 0.0 if angles is None else 1.0, count, knots[0], distance, len(knots)]
-    parts = [rigid.table.copy()]
     if angles is not None:
-        parts += [between_balls(one, angles) for one in (bodies.inner, bodies.outer)]
+        tables.append(np.column_stack([rings[0] + rings[1], rings[1][:, 1:]]).ravel())
     return attrs.evolve(
         rigid,
         kernel=_elastic(rigid.kernel),
         base_kernel=_elastic(rigid.base_kernel),
         scalars=np.concatenate([rigid.scalars, head, *tables]),
-        table=np.ascontiguousarray(np.hstack(parts)),
     )
 
 
-def between_balls(one: RingCompliance, angles: np.ndarray) -> np.ndarray:
-    """(rows Z, Z) symmetric compliance of one ring between the balls of each row [m/N], with zeros on the diagonal.
+def between_grooves(one: RingCompliance, angles: np.ndarray) -> np.ndarray:
+    """Compliance of one ring between groove centres, from loads and displacements along the normals of contacts.
 
     Parameters
     ----------
-    angles : (rows Z,) contact angles [rad], row after row
+    angles : (n,) contact angles of the balls [rad], about which the compliance is to hold
+
+    Returns
+    -------
+    compliance : (Z, 3) axial by axial, axial by radial, radial by radial force of a ball so many balls further round [m/N]
+
+    Notes
+    -----
+    Angles of the table have the weight of a normal distribution about those of the balls.
     """
-    count = one.across.shape[1]
-    ball = np.arange(count)
-    # A ball's neighbour on the left is as far as the one on the right.
-    lag = (ball[:, None] - ball[None, :]) % count
-    lag = np.minimum(lag, count - lag)
-    out = []
-    for row in angles.reshape(-1, count):
-        mean = 0.5 * (row[:, None] + row[None, :])
-        matrix = np.empty((count, count))
-        for k in range(count // 2 + 1):
-            here = lag == k
-            matrix[here] = np.interp(mean[here], one.angles, one.across[:, k])
-        np.fill_diagonal(matrix, 0.0)
-        out.append(0.5 * (matrix + matrix.T))
-    return np.concatenate(out)
+    middle, width = float(angles.mean()), float(np.hypot(_WIDTH, angles.std()))
+    weight = np.exp(-0.5 * ((one.angles - middle) / width) ** 2)
+    out = np.empty((one.across.shape[2], 3))
+    out[0] = own_compliance(one.angles, one.own, weight)
+    out[1:] = groove_compliance(one.angles, one.across[:, :, 1:], weight)
+    return out
 
 
 def _elastic(kernel: Any) -> Any:

@@ -77,7 +77,7 @@ class Race:
         normal [m/N]
     across : distance of neighbouring columns [m]
     edges : (2,) contact angles of the groove's edges [rad], ascending
-    crossing : (Z, 2, 2) displacement (axial, radial) at the middle row by a force (axial, radial) at the same row under
+    crossing : (Z, 2, 2) displacement (axial, radial) of the groove's centre by a force (axial, radial) on the groove under
         the k-th next ball [m/N]; row 0, the ball itself, is zero
     shear : like ``compliance``, both along the groove; None without friction
     """

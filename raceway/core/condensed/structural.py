@@ -41,7 +41,8 @@ class RingCompliance:
     Attributes
     ----------
     angles : (n,) float, contact angles [rad], equidistant;  own : (n,) float, a contact on itself [m/N]
-    across : (n, Z) float, on the contact k balls further round, on the same column of depths; entry 0 is not used [m/N]
+    across : (n, n, Z) float, displacement along the normal at one angle by a force along that at another, k balls further
+        round; entry 0 is not used [m/N]
     elements : hexahedra that the ring stands for;  depths : (COUNT,) float [m]
     surface : distance of the nodes along the groove [m]
     """
@@ -100,15 +101,14 @@ def ring_compliance(
     def make() -> dict[str, np.ndarray]:
         body = Revolution(profile, divisions, young, poisson, 1.0, seat=seat)
         raw = _columns(body, shape, table, half, depths, divisions // balls * np.arange(balls))
-        raw[:, 0] -= half_space(depths, half, young, poisson).mean()
-        return {"compliance": raw}
+        return {"compliance": raw, "half_space": half_space(depths, half, young, poisson).mean(keepdims=True)}
 
     name = "inner" if shape.inner else "outer"
-    found = kept("structural", f"{name} ring, {divisions} x {len(profile.quads)} elements", inputs, SOURCES, make)[
-        "compliance"
-    ]
+    found = kept("structural", f"{name} ring, {divisions} x {len(profile.quads)} elements", inputs, SOURCES, make)
+    across = found["compliance"]
+    own = np.diagonal(across[:, :, 0]) - found["half_space"]
     along = shape.groove * float(profile.angles[1] - profile.angles[0])
-    return RingCompliance(table, found[:, 0].copy(), found, len(profile.quads) * divisions, depths, along)
+    return RingCompliance(table, own, across, len(profile.quads) * divisions, depths, along)
 
 
 def ring_section(shape: RingShape, ball_diameter: float, bulk: float | None = None, surface: float | None = None) -> Profile:
@@ -120,7 +120,7 @@ def ring_section(shape: RingShape, ball_diameter: float, bulk: float | None = No
 def _columns(
     body: Revolution, shape: RingShape, table: np.ndarray, half: float, depths: np.ndarray, offsets: np.ndarray
 ) -> np.ndarray:
-    """(angles, offsets) mean normal displacement over the depths below each angle, under a unit line load there [m/N]."""
+    """(angles, angles, offsets) mean normal displacement over the depths below each angle, under a unit line load at another [m/N]."""
     from scipy.sparse.linalg import splu
 
     profile, sign = body.profile, shape.sign
@@ -139,13 +139,13 @@ def _columns(
     loads, seen = loads[unknowns], seen[unknowns]
     solved = solved_harmonics(body.divisions, "sampled")
     even, _ = offset_weights(body.divisions, solved, offsets)
-    harmonic = np.empty((len(solved), len(table)))
+    harmonic = np.empty((len(solved), len(table), len(table)))
     for i, n in enumerate(solved):
         factor = splu(
             body.harmonic(int(n)), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
         )
-        harmonic[i] = np.einsum("ia,ia->a", seen, factor.solve(loads))
-    return np.asarray((even @ harmonic).T)
+        harmonic[i] = seen.T @ factor.solve(loads)
+    return np.ascontiguousarray(np.moveaxis(np.tensordot(even, harmonic, axes=1), 0, 2))
 
 
 def interpolation(profile: Profile, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
