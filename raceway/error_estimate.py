@@ -5,7 +5,10 @@ Notes
 A method of order p leaves an error c dt^p.  A second run with n' instead of n steps a turn gives c, so that the error of
 the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
 
-What a transient leaves is in ``free_vibration``.  Step errors are taken from values without it: leakage has no order.
+A series of equilibria has no order: see ``finer_series``.
+
+What a transient leaves is the distance from the steady motion (``steady_motion``) where that can be solved for and the
+motion did not start on it, and else what ``free_vibration`` sees.  Step errors are taken from values without it: leakage has no order.
 
 References
 ----------
@@ -24,11 +27,14 @@ from raceway.contact_error import contact_error
 from raceway.core.identification import Identification
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError
+from raceway.finer_series import finer_value, more_equilibria
 from raceway.free_vibration import without_free_vibration
 from raceway.model import Model
+from raceway.planning.modules import compares_with_steady_motion
 from raceway.planning.recording import fits
 from raceway.simulate import Simulation, simulate
 from raceway.statics import Equilibrium, settle
+from raceway.steady_motion import settled_value
 
 #: Least steps a turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
 _LEAST_STEPS = 8
@@ -78,9 +84,10 @@ def error_table(
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
     else:
+        step = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
         parts = {
-            "time_step": _time_step(model, equilibrium, motions, found.dynamic_stiffness),
-            "transient": _transient(model, equilibrium, motions[-1][1], found),
+            "time_step": step,
+            "transient": _transient(model, equilibrium, motions, found, step),
             "identification": _identification(model, found),
         }
     parts["mesh"] = Part(mesh, how["mesh"])
@@ -92,6 +99,10 @@ def error_table(
         return table
     if motions and _wanders(motions[-1][1], found):
         how["total"] = "not estimated: no steady motion was found, and the turns that are used do not repeat"
+        return table
+    unknown = [name for name in ("time_step", "transient") if motions and parts[name].size is None]
+    if unknown:
+        how["total"] = f"not estimated: that of the {' and the '.join(unknown).replace('_', ' ')} is not known"
         return table
     table["total"] = _total(parts)
     return table
@@ -127,10 +138,10 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
     method, first = model.scene.integrator.method, motions[-1][1]
     if getattr(method, "steady", False):
         return Part(first.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude")
-    if not method.inertial:
-        return Part(getattr(method, "tolerance", None), "no time step; residual that each equilibrium is solved to")
     if model.scene.bodies.kind == "elastic":
         return Part(None, "not estimated: a second run of all nodes would cost as much as the first")
+    if not method.inertial:
+        return _sampling(motions, equilibrium, model, value)
     steps = first.whole.schedule.steps_per_turn
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
@@ -159,6 +170,22 @@ def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model
     return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift)
 
 
+def _sampling(motions: list[tuple[Model, Simulation]], equilibrium: Equilibrium, model: Model, value: complex) -> Part:
+    """Of a series of equilibria, by a second one with more of them."""
+    tolerance = getattr(model.scene.integrator.method, "tolerance", 0.0)
+    steps = motions[-1][1].whole.schedule.steps_per_turn
+    count = more_equilibria(steps)
+    if not fits(model.plan.turns, count, model.system.ball_count, inertial=False):
+        return Part(None, f"not estimated: the record of a second series with {count} equilibria a turn would not fit")
+    try:
+        shift = (value - finer_value(model, equilibrium, motions, value, count)) / abs(value)
+    except ConvergenceError as why:
+        return Part(None, f"the series of {count} equilibria a turn failed: {why}")
+    if abs(shift) <= tolerance:
+        return Part(tolerance, "residual that each equilibrium is solved to; more of them change less")
+    return Part(float(abs(shift)), f"series of {count} instead of {steps} equilibria a turn: harmonics beyond them", shift)
+
+
 def _at(one: Model, model: Model, equilibrium: Equilibrium) -> Equilibrium:
     """The equilibrium that belongs to the model of one speed."""
 
@@ -182,16 +209,21 @@ def other_steps(steps: int, least: float = 0.0) -> int:
     return ceil(1.5 * steps)
 
 
-def _transient(model: Model, equilibrium: Equilibrium, simulation: Simulation, found: Identification) -> Part:
-    method, value = model.scene.integrator.method, found.dynamic_stiffness
+def _transient(
+    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], found: Identification, step: Part
+) -> Part:
+    method, value, simulation = model.scene.integrator.method, found.dynamic_stiffness, motions[-1][1]
     if getattr(method, "steady", False):
         return Part(0.0, "one turn of the steady motion: nothing dies out")
-    if not method.inertial and model.plan.turns == 1:
-        return Part(0.0, "one turn of equilibria: nothing dies out")
+    memory = not model.system.conservative or model.scene.contact.law.state_size > 0
+    if not method.inertial and (model.plan.turns == 1 or not memory):
+        return Part(0.0, "a series of equilibria: nothing dies out")
+    if compares_with_steady_motion(model.scene):
+        settled = settled_value(model, equilibrium, motions, found)
+        if settled is not None:
+            return _from_steady(settled, value, step)
     if "speeds" in model.scene.identifier.method.needs:
-        return Part(
-            found.spread, f"what identifier '{model.scene.identifier.kind}' says of it: its spread over turns, if any"
-        )
+        return Part(None, "a steady motion of each speed could not be solved for")
     clean = without_free_vibration(model, equilibrium, simulation)
     by_turns = Part(found.spread, "largest deviation of a single turn from all turns that are used")
     if clean is None:
@@ -201,3 +233,9 @@ def _transient(model: Model, equilibrium: Equilibrium, simulation: Simulation, f
         # What began on no stable orbit may be on its way from one motion to another.
         return by_turns
     return Part(float(abs(shift)), clean.how, shift)
+
+
+def _from_steady(settled: complex, value: complex, step: Part) -> Part:
+    """Distance from Z of the steady motion, less the part of the time step; relative to the smaller of both."""
+    shift = (value - settled) / min(abs(value), abs(settled)) - (step.shift or 0.0)
+    return Part(float(abs(shift)), "distance from the steady motion, less the part of the time step", shift)

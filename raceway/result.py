@@ -87,6 +87,7 @@ class Result:
             "force_amplitude_n": found.force_amplitude,
             "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
             "equivalent_stiffness": found.equivalent_stiffness,
+            "equivalent_stiffness_error": None if self.error["total"] is None else self.error["total"] * abs(z),
             "equivalent_damping": found.equivalent_damping,
             "equivalent_damping_error": None if wrong is None else wrong * abs(z) / found.speed,
             "mass_used_kg": found.mass_used,

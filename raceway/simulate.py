@@ -88,7 +88,7 @@ def simulate(
         dt,
         steps_per_turn,
         model.plan.turns,
-        _stride(steps_per_turn, model.plan.turns),
+        _stride(steps_per_turn, model.plan.turns, method.inertial),
         ramp_turns * period,
     )
     motion = _motion(model, equilibrium, start, orbit, dt)
@@ -139,9 +139,9 @@ def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
     return STEPS_PER_TURN * max(1, ceil(needed / STEPS_PER_TURN))
 
 
-def _stride(steps_per_turn: int, turns: int) -> int:
+def _stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
     """Every how many steps are recorded: a divisor that leaves the plan's samples a turn, or all when there is none."""
-    return steps_per_turn // recorded_per_turn(steps_per_turn, turns)
+    return steps_per_turn // recorded_per_turn(steps_per_turn, turns, inertial)
 
 
 def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[tuple[Model, Simulation]]:

@@ -155,7 +155,7 @@ def decide_output(scene: Scene, parts: Decisions, motion: Motion) -> None:
     """Which bodies stand for their likes, and what of the answer is not made."""
     decide_likes(scene, parts)
     every = motion.steps_per_turn
-    samples = recorded_per_turn(every, motion.turns) if motion.recorded else 0
+    samples = recorded_per_turn(every, motion.turns, scene.integrator.method.inertial) if motion.recorded else 0
     why_not = f"{samples} of {every} steps a turn are recorded: lines up to some tens of 1x need no more"
     part, why = "history of every step", f"the {every} steps of a turn are the samples of the answer"
     parts.decide(0 < every <= samples, part, why, why_not if every else "nothing moves")

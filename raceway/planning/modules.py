@@ -98,7 +98,7 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
         for loop in dict.fromkeys(_METHODS.values()):
             needed = integrates and _METHODS.get(method) == loop
             decide(needed, f"{_LOOPS}.{loop}", f"takes the steps of {method}", unused)
-    searched = method == "periodic" or searches_orbits(scene)
+    searched = method == "periodic" or searches_orbits(scene) or compares_with_steady_motion(scene)
     unused = unused if not integrates else f"{unused}, no steady orbit is searched for"
     decide(integrates and searched, "raceway.core.periodic", "steady orbits and their multipliers", unused)
     mesher = getattr(scene.mesh, "name", None) if kind != "rigid" else None
@@ -118,6 +118,26 @@ def searches_orbits(scene: Scene) -> bool:
     repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
     compiled = scene.bodies.kind != "elastic" and contact.discretisation != "nodal"
     return on_orbit and repeats and compiled and contact.law.state_size == 0
+
+
+def compares_with_steady_motion(scene: Scene) -> bool:
+    """Whether the error of a transient is its distance from the steady motion.
+
+    Notes
+    -----
+    A motion that starts on its orbit is near it already.  Bodies that are stepped from Python, friction and laws with memory
+    have no steady motion that can be solved for by itself.
+    """
+    method, excitation = scene.integrator.method, scene.excitation
+    if excitation is None or not method.inertial or getattr(method, "steady", False):
+        return False
+    steps_in_python = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
+    if steps_in_python or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
+        return False
+    if excitation.period_s is None:
+        return getattr(excitation, "steady", None) is not None
+    ramped = getattr(excitation, "ramp_turns", 0.0) > 0.0
+    return ramped or scene.integrator.start != "orbit" or "speeds" in scene.identifier.method.needs
 
 
 def _not(kind: str, wanted: str, else_why: str) -> str:

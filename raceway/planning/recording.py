@@ -9,6 +9,8 @@ from raceway.scene import Scene
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
+#: Samples of a long run's record.
+_SAMPLES = 72_000
 #: What a record takes at the peak over its own arrays (measured).  Records above the limit are refused [bytes].
 _COPIES = 4
 _MEMORY_LIMIT = 4 * 2**30
@@ -35,31 +37,38 @@ def predicted_steps_per_turn(scene: Scene) -> int:
     return max(STEPS_PER_TURN, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)
 
 
-def recorded_per_turn(steps_per_turn: int, turns: int) -> int:
+def recorded_per_turn(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
     """Samples a turn that are really recorded: a divisor of the steps near ``samples_per_turn``, or all steps."""
-    wanted = samples_per_turn(turns)
+    wanted = samples_per_turn(turns, inertial)
     fitting = (s for s in range(wanted, min(2 * wanted, steps_per_turn) + 1) if steps_per_turn % s == 0)
     return next(fitting, steps_per_turn)
 
 
-def samples_per_turn(turns: int) -> int:
-    """Samples a turn that are recorded: 360, fewer in runs of more than 200 turns, never below 24."""
-    return max(24, min(STEPS_PER_TURN, 72_000 // max(turns, 1)))
+def samples_per_turn(turns: int, inertial: bool = True) -> int:
+    """Samples a turn that are recorded: 360, fewer in runs of more than 200 turns, never below 24.
+
+    Parameters
+    ----------
+    inertial : False for a series of equilibria, of which up to 72 000 are recorded in all: no inertia keeps the harmonics
+        of the contacts small, and those beyond the samples would show as 1x
+    """
+    most = _SAMPLES // max(turns, 1)
+    return max(24, min(STEPS_PER_TURN, most) if inertial else most)
 
 
-def record_bytes(turns: int, steps_per_turn: int, count: int) -> int:
+def record_bytes(turns: int, steps_per_turn: int, count: int, inertial: bool = True) -> int:
     """Bytes that a run of so many balls takes for its record, with what identification and energy balance copy of it."""
-    return _COPIES * 8 * turns * recorded_per_turn(steps_per_turn, turns) * (16 + 8 * count)
+    return _COPIES * 8 * turns * recorded_per_turn(steps_per_turn, turns, inertial) * (16 + 8 * count)
 
 
-def fits(turns: int, steps_per_turn: int, count: int) -> bool:
+def fits(turns: int, steps_per_turn: int, count: int, inertial: bool = True) -> bool:
     """Whether a record is not refused."""
-    return record_bytes(turns, steps_per_turn, count) <= _MEMORY_LIMIT
+    return record_bytes(turns, steps_per_turn, count, inertial) <= _MEMORY_LIMIT
 
 
 def refuse_memory(scene: Scene, turns: int, steps_per_turn: int, count: int) -> None:
     """Records that will not fit are refused before anything is computed."""
-    needed = record_bytes(turns, steps_per_turn, count)
+    needed = record_bytes(turns, steps_per_turn, count, scene.integrator.method.inertial)
     if needed > _MEMORY_LIMIT:
         raise SceneError.at(
             "integrator.turns",

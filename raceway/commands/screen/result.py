@@ -9,7 +9,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from raceway.commands.screen.text import Row, number, sections, tilt_words, written
+from raceway.commands.screen.text import Row, number, number_within, sections, tilt_words, written
 
 _LEFT_OUT_SHOWN = 3
 
@@ -136,7 +136,7 @@ def _identification(result: Mapping[str, Any]) -> list[Row]:
         ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
         _resolved("Z imaginary", 1e-6 * z["imag"], _times(found, z), "N/µm", "w C"),
         ("|Z|", number(1e-6 * z["abs"], "N/µm"), ""),
-        ("equivalent stiffness K", number(1e-6 * found["equivalent_stiffness"], "N/µm"), f"Re Z + m w^2, m = {mass:.4g} kg"),
+        _stiffness(found, f"Re Z + m w^2, m = {mass:.4g} kg"),
         _resolved(
             "equivalent damping C", found["equivalent_damping"], found["equivalent_damping_error"], "N s/m", "Im Z / w"
         ),
@@ -145,6 +145,17 @@ def _identification(result: Mapping[str, Any]) -> list[Row]:
         ),
         ("orbit, semi-axes", f"{1e6 * orbit['major_m']:.4g} x {1e6 * orbit['minor_m']:.4g} µm", "of the 1x line"),
     ]
+
+
+def _stiffness(found: Mapping[str, Any], remark: str) -> Row:
+    """K with the absolute error of Z, which is larger than the same share of K where m w^2 cancels K."""
+    name, value, error = "equivalent stiffness K", found["equivalent_stiffness"], found["equivalent_stiffness_error"]
+    if error is None:
+        return name, number(1e-6 * value, "N/µm"), remark
+    told = f"{number(1e-6 * error, 'N/µm', 2)}; {remark}"
+    if abs(value) < error:
+        return name, "not resolved", f"below its error of {told}"
+    return name, number_within(1e-6 * value, 1e-6 * error, "N/µm"), f"+- {told}"
 
 
 def _times(found: Mapping[str, Any], z: Mapping[str, float]) -> float | None:

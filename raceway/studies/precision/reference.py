@@ -180,9 +180,10 @@ def _equilibria(first: Setting, steps: int, runner: Runner, extra: dict[str, Any
     if rows[0] is None or rows[1] is None:
         return Reference({}, {}, "the series of equilibria at finer steps could not be run")
     values, change = rows[1]["quantities"], minus(rows[1]["quantities"], rows[0]["quantities"])
-    floor = _all(values, FLOOR)
+    floor = _all(values, max(FLOOR, rows[1]["own_error"] or 0.0))
     bounds = {name: max(abs(change[name]), floor[name]) for name in values}
-    return Reference(values, bounds, f"series of {FINER * steps} equilibria a turn; bound by its change from {2 * steps}")
+    how = f"series of {FINER * steps} equilibria a turn; bound by its own estimate and its change from {2 * steps}"
+    return Reference(values, bounds, how)
 
 
 def _direct(first: Setting, extra: dict[str, Any], runner: Runner) -> Reference | None:

@@ -1,0 +1,94 @@
+"""The motion that a transient would settle on, where it can be solved for: its Z has no transient and no time step in it."""
+
+from __future__ import annotations
+
+from math import pi
+
+import attrs
+import numpy as np
+
+from raceway.core.identification import Identification, fourier_line, stiffness
+from raceway.core.record import Motion, Record, Schedule
+from raceway.errors import RacewayError
+from raceway.model import Model, build_model
+from raceway.simulate import Simulation
+from raceway.statics import Equilibrium, settle
+
+#: Samples of the steady turn, and the error of its displacement over its amplitude.
+_SAMPLES, _TOLERANCE = 360, 1e-8
+#: Two turns that differ by less than this share of their distance from the steady motion repeat each other.
+_REPEATS = 0.01
+
+
+def settled_value(
+    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], found: Identification
+) -> complex | None:
+    """Z [N/m] that the scene's identifier finds in steady motions instead of the recorded ones.
+
+    Parameters
+    ----------
+    motions : model and motion of each speed
+    found : what was identified in them; of a speed that changes, the steady motion at the speed of its Z counts
+
+    Returns
+    -------
+    complex or None
+        None where a steady motion cannot be solved for (friction, laws with memory, bodies that are stepped from Python), is
+        not found, or is another one than the transient settles on.
+    """
+    changing = None if model.excitation.period_s is not None else _at_speed(model, found.speed)
+    records = []
+    for one, motion in [(changing, None)] if changing is not None else motions:
+        settled = steady_record(one, equilibrium if one is model else settle(one))
+        if settled is None or (motion is not None and settles_elsewhere(one, motion, settled)):
+            return None
+        records.append(settled)
+    if changing is None:
+        return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
+    frequency = changing.excitation.frequency_hz
+    record = records[0]
+    return stiffness(*(fourier_line(record.time, part, frequency) for part in (record.force, record.displacement)))
+
+
+def _at_speed(model: Model, speed: float) -> Model | None:
+    """The same scene at one speed [rad/s], of an excitation that tells what it is there."""
+    begun = getattr(model.excitation, "steady", None)
+    if begun is None:
+        return None
+    scene = attrs.evolve(model.scene, excitation=attrs.evolve(begun(), speed_rpm=speed * 30.0 / pi))
+    return build_model(scene, model.plan)
+
+
+def steady_record(model: Model, equilibrium: Equilibrium) -> Record | None:
+    """One turn of the steady motion; None where there is none that can be solved for, or none is found."""
+    from raceway.core.periodic.steady import steady
+
+    if model.excitation.period_s is None:
+        return None
+    start = Motion(equilibrium.displacement, np.zeros(5), np.zeros(5), equilibrium.ball, equilibrium.ball.copy())
+    try:
+        return steady(model.system, start, Schedule(model.excitation.period_s / _SAMPLES, _SAMPLES, 1), _TOLERANCE)
+    except RacewayError:
+        return None
+
+
+def settles_elsewhere(model: Model, simulation: Simulation, settled: Record) -> bool:
+    """Whether a motion repeats itself turn by turn on another orbit than the steady motion: several exist.
+
+    Notes
+    -----
+    What is left of a free vibration near this orbit changes from turn to turn by as much as it is far from the orbit, unless
+    its frequency is a multiple of the force's to some thousandths.
+    """
+    whole, frequency = simulation.whole, model.excitation.frequency_hz
+    per_turn = whole.schedule.steps_per_turn // whole.schedule.stride
+    if len(whole.time) < 2 * per_turn:
+        return False
+    last, before = whole.displacement[-per_turn:, :3], whole.displacement[-2 * per_turn : -per_turn, :3]
+    lines = [
+        fourier_line(one.time[-n:], one.displacement[-n:, :3], frequency)
+        for one, n in ((whole, per_turn), (settled, _SAMPLES))
+    ]
+    apart = float(np.linalg.norm(lines[0] - lines[1]))
+    change = float(np.sqrt(2.0 * ((last - before) ** 2).sum(axis=1).mean()))
+    return change < _REPEATS * apart

@@ -1,0 +1,125 @@
+"""The error that a result states: series of equilibria, sudden starts, several speeds, and the digits of K."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from benchmarks.evidence import error_starts as evidence
+from benchmarks.evidence._scenes import rotating
+from benchmarks.evidence.error_estimate import right
+from raceway import scene_from_dict
+from raceway.commands.screen.text import number_within
+from raceway.finer_series import more_equilibria
+from raceway.planning.recording import recorded_per_turn, samples_per_turn
+from raceway.run import run
+from raceway.steady_motion import settles_elsewhere
+
+
+# 45 and 90 samples of a motion with a mirror axis hold the same harmonics: half the samples tell nothing of them.
+@pytest.mark.parametrize("steps", [8, 13, 24, 45, 90, 360])
+def test_series_of_equilibria_states_what_harmonics_beyond_its_samples_add(steps):
+    estimate, true = evidence.series_errors(0, steps)
+    assert true > 1e-7 and right(estimate, true), (estimate, true)
+
+
+def test_a_series_that_cannot_be_told_from_a_finer_one_states_its_residual():
+    error = run(scene_from_dict(evidence.series(*evidence.SERIES[2], 360))).error
+    assert error["total"] == pytest.approx(1e-11, rel=0.1) and "residual" in error["how"]["time_step"]
+
+
+def test_a_finer_series_has_other_harmonics():
+    assert all(more_equilibria(n) > 2 * n and more_equilibria(n) % n for n in range(8, 3000))
+
+
+def test_of_equilibria_every_step_is_recorded_up_to_the_limit_of_long_runs():
+    found = run(scene_from_dict(evidence.series(*evidence.SERIES[2], 2880)))
+    assert len(found.simulation.record.time) == 2880
+    assert recorded_per_turn(2880, 12) == 360 and recorded_per_turn(2880, 12, inertial=False) == 2880
+    assert samples_per_turn(1000, inertial=False) == samples_per_turn(1000) == 72
+
+
+def _near_resonance(**integrator):
+    """A carried mass that puts the radial natural frequency 5 % above the speed, no damping but the contacts' 0.001 N s/m."""
+    tables = rotating(1000.0, "locked", 12000.0, False, "newmark")
+    tables["excitation"] = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 20.0}
+    return {**tables, "rotor": {"mass": 134.0}, "integrator": {"kind": "newmark", "steps_per_turn": 180, **integrator}}
+
+
+@pytest.mark.parametrize(("start", "turns"), [("static", 3), ("static", 6), ("ramp", 3), ("ramp", 12)])
+def test_a_start_near_resonance_states_at_least_a_third_of_its_error(start, turns):
+    tables = _near_resonance(start=start, turns=turns)
+    found = run(scene_from_dict(tables))
+    wanted = run(scene_from_dict({**tables, "integrator": {"kind": "periodic"}})).identification.dynamic_stiffness
+    true = abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
+    assert true > 0.01 and right(found.error["total"], true), (found.error["total"], true)
+
+
+def test_the_drawn_starts_hold():
+    rows = evidence.start_rows(12, evidence.SEED)
+    assert all(row.ok for row in rows), [(row.quantity, row.value) for row in rows]
+
+
+def _turns(*lines):
+    """A motion of one frequency whose turns have given 1x lines [m] along y, as a simulation and as a record."""
+    time = np.arange(1, 361) / 360.0
+    wave = [np.outer((line * np.exp(2j * np.pi * time)).real, [0.0, 1.0, 0.0, 0.0, 0.0]) for line in lines]
+    schedule = SimpleNamespace(steps_per_turn=360, stride=1)
+    whole = SimpleNamespace(time=np.arange(1, 360 * len(lines) + 1) / 360.0, displacement=np.vstack(wave), schedule=schedule)
+    return SimpleNamespace(whole=whole)
+
+
+def test_turns_that_repeat_far_from_the_steady_motion_are_another_motion():
+    model = SimpleNamespace(excitation=SimpleNamespace(frequency_hz=1.0))
+    settled = _turns(1.0).whole
+    assert settles_elsewhere(model, _turns(0.0, 3.0, 3.0), settled)
+    assert not settles_elsewhere(model, _turns(0.0, 3.0, 2.9), settled), "a transient that is on its way"
+    assert not settles_elsewhere(model, _turns(0.0, 1.001, 1.0005), settled), "nearly there"
+    assert not settles_elsewhere(model, _turns(3.0), settled), "a single turn repeats nothing"
+
+
+def test_fits_over_speeds_and_run_ups_have_a_part_for_the_transient():
+    tables = rotating(1000.0, "locked", 12000.0, False, "newmark")
+    tables["integrator"] |= {"turns": 4, "steps_per_turn": 60, "start": "static"}
+    tables["identifier"] = {"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0, 15000.0]}
+    sudden = run(scene_from_dict(tables)).error
+    assert sudden["total"] >= 0.3 * sudden["transient"] > 1e-4 and "steady motion" in sudden["how"]["transient"]
+    tables["contact"] |= {"friction": 0.03}
+    rubbing = run(scene_from_dict(tables)).error
+    assert rubbing["transient"] is None and rubbing["total"] is None
+    assert rubbing["how"]["total"] == "not estimated: that of the transient is not known"
+
+
+def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed():
+    tables = rotating(1000.0, "locked", 12000.0, False, "newmark")
+    tables["excitation"] = {
+        "kind": "run_up", "first_speed_rpm": 9000.0, "speed_rpm": 12000.0, "duration_s": 0.2, "unbalance": 3.2e-4,
+    }  # fmt: skip
+    tables["integrator"] |= {"steps_per_turn": 90}
+    tables["identifier"] = {"kind": "order_tracking"}
+    found = run(scene_from_dict(tables))
+    rpm = found.identification.frequency_hz * 60.0
+    steady = {**tables, "integrator": {"kind": "periodic"}, "identifier": {"kind": "fft_1x"}}
+    steady["excitation"] = {"kind": "bidirectional", "speed_rpm": rpm, "unbalance": 3.2e-4}
+    wanted = run(scene_from_dict(steady)).identification.dynamic_stiffness
+    true = abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
+    assert true > 1e-6 and right(found.error["total"], true), (found.error["total"], true)
+
+
+def test_k_shows_the_digits_that_its_error_leaves():
+    assert number_within(233.8912, 1.6e-4, "N/µm") == "233.89 N/µm"
+    assert number_within(233.8912, 0.3, "N/µm") == "233.9 N/µm"
+    assert number_within(233.8912, 4.0, "N/µm") == "234 N/µm"
+    assert number_within(233.8912, 40.0, "N/µm") == "230 N/µm"
+    assert number_within(0.0, 1.0, "N/µm") == "0 N/µm"
+
+
+def test_the_error_of_k_is_that_of_z_where_the_inertia_cancels_it():
+    tables = _near_resonance(start="static", turns=6)
+    tables["rotor"] = {"mass": 1000.0}  # |Z| is six times K
+    found = run(scene_from_dict(tables)).as_dict()
+    k, z = found["identification"], found["identification"]["dynamic_stiffness"]
+    assert k["equivalent_stiffness_error"] == pytest.approx(found["error"]["total"] * z["abs"])
+    assert k["equivalent_stiffness_error"] > 5.0 * found["error"]["total"] * k["equivalent_stiffness"]
