@@ -130,10 +130,10 @@ def start_rows(count: int, seed: int) -> list[Row]:
     words = f"{drawn - count} more had no steady motion; true errors from {errors.min():.1g} to {errors.max():.1g}"
     return [
         Row(f"sudden and ramped starts whose estimate is at least a third of the true error, of {count}", int(least.sum()),
-            f"at least {SHARE:.0%}", least.mean() >= SHARE, COMMAND, words),
-        Row("of those: estimate within a third of and three times the true error", sum(both), "reported", True, COMMAND),
+            f"at least {SHARE:.0%}", bool(least.mean() >= SHARE), COMMAND, words),
+        Row("of those: estimate within a third of and three times the true error", int(sum(both)), "reported", True, COMMAND),
         Row("starts whose K is off by at most three times its stated error", int((k_errors <= FACTOR).sum()),
-            f"at least {SHARE:.0%}", (k_errors <= FACTOR).mean() >= SHARE, COMMAND),
+            f"at least {SHARE:.0%}", bool((k_errors <= FACTOR).mean() >= SHARE), COMMAND),
         Row("steady motions that Fourier collocation finds, too: equal to a thousandth of the error", f"{confirmed} of {asked}",
             "all", confirmed == asked, COMMAND, "every tenth is asked"),
     ]  # fmt: skip
