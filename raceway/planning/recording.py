@@ -11,7 +11,7 @@ from raceway.scene import Scene
 STEPS_PER_TURN = 360
 #: Samples of a long run's record.
 _SAMPLES = 72_000
-#: What a record takes at the peak over its own arrays (measured).  Records above the limit are refused [bytes].
+#: What a record takes at the peak over its own arrays: 3.7 times measured with 12 balls and 400 turns.  Records above the limit are refused [bytes].
 _COPIES = 4
 _MEMORY_LIMIT = 4 * 2**30
 
