@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 
+import attrs
 import pytest
 
 from benchmarks import leave_out
@@ -44,6 +45,8 @@ SCENES = {
     "inertial balls, Newmark": (),
     "weightless balls, explicit": ("kinematics.spin_speed_rpm=0", "integrator.kind=central_difference"),
     "friction": ("contact.friction=0.1", "integrator.turns=2"),
+    "equilibria with friction": ("contact.friction=0.1", "integrator.kind=quasi_static", "integrator.turns=1"),
+    "equilibria, penalty": ("contact.kind=penalty", "integrator.kind=quasi_static"),
     "steady orbit": ("integrator.kind=periodic",),
     "equilibrium only": ("identifier.kind=tangent",),
     "condensed bodies": ("bodies.kind=condensed", "kinematics.spin_speed_rpm=0", "integrator.turns=1"),
@@ -69,6 +72,11 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     # One compiled version of each kernel serves every scene.
     assert set(found["kernels"].values()) == {1}
     _check_shapes(found["shapes"], scene, plan)
+    names = {kernel.partition(":")[2] for kernel in found["kernels"]}
+    if plan.balls != "tangential":
+        assert not names & {"find_root", "quasi_static_tangential", "rigid_tangential", "gyroscopic_moment"}
+    assert ("square_or_linear" in names) == (scene.contact.kind == "penalty")
+    assert ("three_halves_or_linear" in names) == (scene.contact.kind == "hertz")
 
 
 #: Coarse rings and balls with a force a contact, for one turn of 8 steps.
@@ -155,7 +163,9 @@ def test_a_part_that_is_forced_in_is_kept_and_says_so():
     assert "friction" in {part.part for part in plan.left_out}
 
 
-@pytest.mark.parametrize("rule", ["tangential", "ball_inertia", "orbiting", "turns", "integration", "pitch", "mirror"])
+@pytest.mark.parametrize(
+    "rule", ["tangential", "ball_inertia", "orbiting", "turns", "integration", "pitch", "mirror", "stresses"]
+)
 def test_answers_are_equal_with_a_part_and_without(rule, monkeypatch):
     monkeypatch.setattr(leave_out, "_REPEATS", 1)  # times are the benchmark's
     found = leave_out.RULES[rule]()
@@ -196,3 +206,26 @@ def test_a_saving_counts_above_the_noise_only():
     assert rule(cpu=0.020, size=2**20, size_forced=2**21).saves
     # Dearer than with the part: the rule is no good.
     assert not rule(cpu=0.030).holds
+
+
+def test_a_rule_whose_answers_can_hardly_differ_holds_with_a_saving_only():
+    rule = leave_out.Rule("r", "", 0.0, 1e-10, "", 0.010, 0.020, 10, 10, must_save=True)
+    assert rule.holds
+    assert not attrs.evolve(rule, cpu_s=0.020).holds and not attrs.evolve(rule, difference=1.0).holds
+
+
+def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
+    assert leave_out.RULES["integration"]().holds
+    monkeypatch.setattr("raceway.planning.decisions.uses_record", lambda scene: True)
+    assert not leave_out.RULES["integration"]().holds
+
+
+def test_compliances_that_are_kept_are_made_anew_by_the_rule_that_measures_them(monkeypatch):
+    from raceway.bodies import condensed
+
+    made = []
+    whole = condensed._elastic_bodies
+    monkeypatch.setattr(condensed, "_elastic_bodies", lambda *words: made.append(1) or whole(*words))
+    monkeypatch.setattr(leave_out, "compared", lambda rule, scene, planned, forced, **more: (planned(), forced()))
+    once, each = leave_out.compliances()
+    assert len(made) == 1 + len(each) and (once == each).all()

@@ -28,7 +28,8 @@ def rows() -> list[Row]:
             f"difference {rule.difference:.1e}; {1e3 * rule.cpu_s:.3g} ms instead of {1e3 * rule.cpu_forced_s:.3g}, "
             f"{rule.bytes / 2**20:.3g} MiB instead of {rule.bytes_forced / 2**20:.3g}"
         )
-        limit = f"difference at most {rule.bound:g} ({rule.why}), no dearer than the noise"
+        cost = "it must save" if rule.must_save else "no dearer than the noise"
+        limit = f"difference at most {rule.bound:g} ({rule.why}), {cost}"
         counted = "" if rule.saves else "not counted as a saving: within the margin, the spread of the times, or 0.1 ms"
         out.append(
             Row(

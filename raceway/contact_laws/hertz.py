@@ -37,6 +37,6 @@ class Hertz:
         return pairs.hertz_factor[:, np.newaxis]
 
     def kernel(self) -> Any:
-        from raceway.core.contact_laws.point_or_pair import three_halves_or_linear
+        from raceway.core.contact_laws.hertz import three_halves_or_linear
 
         return three_halves_or_linear

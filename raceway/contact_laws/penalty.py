@@ -66,6 +66,6 @@ class Penalty:
         return np.asarray(factor)[:, np.newaxis]
 
     def kernel(self) -> Any:
-        from raceway.core.contact_laws.point_or_pair import square_or_linear
+        from raceway.core.contact_laws.penalty import square_or_linear
 
         return square_or_linear

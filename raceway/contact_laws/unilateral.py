@@ -38,6 +38,6 @@ class Unilateral:
         return np.column_stack([np.zeros_like(stiffness), stiffness])
 
     def kernel(self) -> Any:
-        from raceway.core.contact_laws.point_or_pair import square_or_linear
+        from raceway.core.contact_laws.penalty import square_or_linear
 
         return square_or_linear

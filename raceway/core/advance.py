@@ -119,6 +119,10 @@ def _step(
         (central_difference, explicit_loop.central_difference),
         (quasi_static, static_loop.quasi_static),
     ]
+    if not system.conservative:
+        from raceway.core.integrators.quasi_static_tangential import quasi_static_tangential
+
+        known.append((quasi_static_tangential, static_loop.quasi_static))
     for compiled, stepped in known:
         if loop is compiled:
             stepper: SteppedSystem = system.stepped() if isinstance(system, System) else system

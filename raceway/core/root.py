@@ -7,7 +7,7 @@ It starts near the solution: from the equilibrium without those forces, or from 
 
 import numpy as np
 
-from raceway.core.bodies.columns import keep_slips
+from raceway.core.bodies.columns import slips_end
 from raceway.core.bodies.ring import CAGE, TILT_ARM, stop
 from raceway.core.dense import solve
 from raceway.core.jit import jit
@@ -26,8 +26,9 @@ def find_root(
         scalars, table = scalars.copy(), table.copy()
         stop(t, scalars, table)
     arm = scalars[TILT_ARM]
-    rest, zeros = np.zeros(5), np.zeros_like(ball)
-    keep_slips(scalars, ball, zeros)
+    # No rates; the columns of slips hold the committed ones.
+    rest, known = np.zeros(5), np.zeros_like(ball)
+    known[:, 2 : slips_end(scalars, ball)] = ball[:, 2 : slips_end(scalars, ball)]
     law_new = law_state.copy()
     C, J, r, step = np.empty((5, 5)), np.empty((5, 5)), np.empty(5), np.zeros(5)
     weight = np.ones(5)
@@ -36,7 +37,7 @@ def find_root(
     before, cuts = np.inf, 0
     for iteration in range(_LIMIT):
         status = system(
-            t, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C
+            t, 0.0, q, rest, ball, 0.0, known, law, law_params, law_state, law_new, scalars, table, work, f, K, C
         )
         norm, scale = 0.0, 0.0
         if status == 0:

@@ -26,7 +26,6 @@ from raceway.core.bodies.ring import (
 from raceway.core.changing_speed import ChangingSpeed
 from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.core.record import Record
-from raceway.core.root import find_root
 from raceway.errors import ConvergenceError
 
 #: Relative residual that an equilibrium is solved to.
@@ -289,6 +288,8 @@ class System:
         q_now, ball_now, total = base._by_parts(settle, q, start, tolerance, base.load, (1, 4, 16))
         if self.conservative:
             return q_now, ball_now, total
+        from raceway.core.root import find_root
+
         whole = self.without(FRICTION, CAGE)
         guess = np.zeros((self.ball_count, self.ball_columns))
         if self.scalars[GYROSCOPIC] != 0.0:

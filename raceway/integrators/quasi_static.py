@@ -30,8 +30,9 @@ class QuasiStatic:
         import numpy as np
 
         from raceway.core.advance import advance
-        from raceway.core.integrators.quasi_static import quasi_static
 
-        return advance(
-            quasi_static, system, start, schedule, np.array([self.tolerance, 0.0 if system.conservative else 1.0]), on_chunk
-        )
+        if system.conservative:
+            from raceway.core.integrators.quasi_static import quasi_static as loop
+        else:
+            from raceway.core.integrators.quasi_static_tangential import quasi_static_tangential as loop
+        return advance(loop, system, start, schedule, np.array([self.tolerance]), on_chunk)

@@ -133,9 +133,9 @@ def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -
     rotor = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
     part, why = "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts"
     parts.decide(rotor, part, why, "no polar inertia on free tilts")
-    recorded = uses_record(scene)
     unused = "the scene is static" if not dynamic else f"identifier '{identifier.kind}' needs the equilibrium only"
-    parts.decide(recorded, f"time integration ({integrator.kind})", "the identifier needs recorded motion", unused)
+    part, why = f"time integration ({integrator.kind})", "the identifier needs recorded motion"
+    recorded = parts.decide(uses_record(scene), part, why, unused)
     if not recorded:
         return Motion(False, 0, 0)
     turns = turns_of(scene)

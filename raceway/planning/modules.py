@@ -26,6 +26,8 @@ _METHODS = {
     "central_difference": "central_difference",
     "quasi_static": "quasi_static",
 }
+#: Kernels of the built-in contact laws and the laws that they serve.
+_LAWS = {"hertz": ("hertz",), "penalty": ("penalty", "unilateral")}
 #: Kernels of the built-in excitations; without one, the force that is none.
 _EXCITATIONS = {
     "unidirectional": "harmonic",
@@ -76,6 +78,11 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
             what,
             _not(kind, "condensed", f"the balls are {balls}"),
         )
+    no_potential = "forces on the balls have no potential"
+    decide(balls == "tangential", "raceway.core.root", no_potential, f"the balls are {balls}")
+    for law, kinds in _LAWS.items():
+        why = f"contact.kind is {scene.contact.kind}"
+        decide(scene.contact.kind in kinds, f"raceway.core.contact_laws.{law}", why, why)
     for part in ("condensed", "revolution"):
         decide(kind == "condensed", f"raceway.core.{part}", "elastic rings and balls, reduced", f"bodies.kind is {kind}")
     decide(kind == "elastic", "raceway.core.elastic", "every node moves", f"bodies.kind is {kind}")
@@ -98,6 +105,8 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
         for loop in dict.fromkeys(_METHODS.values()):
             needed = integrates and _METHODS.get(method) == loop
             decide(needed, f"{_LOOPS}.{loop}", f"takes the steps of {method}", unused)
+        rubs = integrates and method == "quasi_static" and balls == "tangential"
+        decide(rubs, f"{_LOOPS}.quasi_static_tangential", no_potential, f"{unused}, the balls are {balls}")
     searched = method == "periodic" or searches_orbits(scene) or compares_with_steady_motion(scene)
     unused = unused if not integrates else f"{unused}, no steady orbit is searched for"
     decide(integrates and searched, "raceway.core.periodic", "steady orbits and their multipliers", unused)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.contact_laws.point_or_pair import three_halves_or_linear
+from raceway.core.contact_laws.hertz import three_halves_or_linear
 from raceway.core.elastic.contacts.footprint import Footprint
 from raceway.core.elastic.contacts.gap import groove, plane
 from raceway.core.elastic.contacts.resultant import ResultantContact, Touch

@@ -10,7 +10,7 @@ from raceway.core.condensed.contact import BeyondPatch, Contact
 from raceway.core.condensed.factor import Factor
 from raceway.core.condensed.field import pressure_field
 from raceway.core.condensed.nodal_law import PointLaw
-from raceway.core.contact_laws.point_or_pair import three_halves_or_linear
+from raceway.core.contact_laws.hertz import three_halves_or_linear
 from raceway.core.jit import jit
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError

@@ -79,12 +79,3 @@ def accept_balls(scalars, dt, ball, before, known, trial):
             before[k, c], ball[k, c] = last, now
             known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
             trial[k, c] = now if committed else 2.0 * now - last
-
-
-@jit(void(VECTOR, MATRIX, MATRIX))
-def keep_slips(scalars, ball, known):
-    """The committed slips of balls at rest: ``known`` of a state without rates."""
-    end = slips_end(scalars, ball)
-    for k in range(ball.shape[0]):
-        for c in range(ball.shape[1]):
-            known[k, c] = ball[k, c] if 2 <= c < end else 0.0
