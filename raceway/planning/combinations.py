@@ -56,13 +56,13 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
     refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
-    large = scene.bodies.kind == "elastic" or contact.discretisation == "nodal"
-    what = "bodies.kind is elastic" if scene.bodies.kind == "elastic" else "contact.discretisation is nodal"
+    elastic = scene.bodies.kind == "elastic"
+    where, what = ("bodies.kind", "elastic") if elastic else ("contact.discretisation", "nodal")
     why = (
-        f"{what}: terms that follow a changing speed are those of contact resultants on rigid or condensed bodies; use those, "
-        "or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
+        f"has no terms that follow the changing speed of '{getattr(scene.excitation, 'name', None)}', which contact resultants on "
+        "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
     )
-    refuse(scene.spin_changes and large, "excitation.kind", getattr(scene.excitation, "name", None), why)
+    refuse(scene.spin_changes and (elastic or contact.discretisation == "nodal"), where, what, why)
     for seat in ("outer_seat", "inner_seat"):
         value = getattr(scene.supports, seat)
         stiff = rigid and value != "rigid"

@@ -21,9 +21,10 @@ class OrderTracking:
 
     Notes
     -----
-    Samples have Hann's weights.  Within a window the complex amplitude A may change as a parabola in time; the line is taken at its middle.  While speed
-    and amplitude change, M q'' of q = Re A e^{j phase} is M (-w^2 A + 2 j w A' + j w' A + A''), and of a known damping C that is
-    C (j w A + A'): what is beyond the steady terms would be told as damping m (w' + 2 w A' / A) / w and is subtracted.
+    Samples have Hann's weights.  Within a window the complex amplitude A may change linearly in time; the line is taken at its
+    middle.  While speed and amplitude change, M q'' of q = Re A e^{j phase} is M (-w^2 A + 2 j w A' + j w' A), and of a known
+    damping C that is C (j w A + A'): what is beyond the steady terms would be told as damping m (w' + 2 w A' / A) / w and is
+    subtracted.  A curvature of A would let more noise in than it takes error out.
     """
 
     name: ClassVar[str] = "order_tracking"
@@ -80,20 +81,18 @@ def _window(
     t = time - time.mean()
     u = t / (t[-1] - t[0])
     c, s = np.cos(phase), np.sin(phase)
-    basis = np.column_stack(
-        [c, s, u * c, u * s, u * u * c, u * u * s, np.ones_like(u), u, u * u, np.cos(2 * phase), np.sin(2 * phase)]
-    )
+    basis = np.column_stack([c, s, u * c, u * s, np.ones_like(u), u, u * u, np.cos(2 * phase), np.sin(2 * phase)])
     # Hann's weights: a free vibration leaks less into the line by orders of magnitude.
     weight = np.sqrt(1.0 - np.cos(2.0 * np.pi * (np.arange(len(t)) + 0.5) / len(t)))[:, None]
     solution, *_ = np.linalg.lstsq(weight * basis, weight * signals, rcond=None)
-    line, rate, bend = (solution[k] - 1j * solution[k + 1] for k in (0, 2, 4))
-    rate, bend = rate / (t[-1] - t[0]), 2.0 * bend / (t[-1] - t[0]) ** 2
+    line, rate = (solution[k] - 1j * solution[k + 1] for k in (0, 2))
+    rate = rate / (t[-1] - t[0])
     # Of the phase: w at the middle, and its rate.
     half_rate, w, _ = np.polyfit(t, phase, 2)
     inertia = np.zeros(5, dtype=complex)
     if model.mass_used > 0.0:
         moved, system = line[5:], model.system.at_speed(time.mean())
-        inertia = system.mass @ (2j * w * rate[5:] + 2j * half_rate * moved + bend[5:]) + system.damping @ rate[5:]
+        inertia = system.mass @ (2j * w * rate[5:] + 2j * half_rate * moved) + system.damping @ rate[5:]
     rest = (signals - basis @ solution)[:, 6:8]
     size = np.linalg.norm(line[6:8]) * np.sqrt(0.5 * len(t))
     residual = float(np.linalg.norm(rest) / size) if size > 0.0 else None
