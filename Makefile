@@ -2,6 +2,7 @@
 # make test     everything installed, the quick tests
 # make lint     ruff, import-linter, mypy
 # make evidence every number that README and docs show, computed again
+# make mutants  deliberate faults of one line, and whether the tests catch them
 
 PYTHON ?= python3
 VENV   ?= .venv
@@ -13,7 +14,7 @@ SCENE  ?= examples/b7206.toml
 APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
-.PHONY: demo test lint evidence system-libraries apt-line clean
+.PHONY: demo test lint evidence mutants system-libraries apt-line clean
 
 demo: $(VENV)/.base
 	$(BIN)/raceway run $(SCENE)
@@ -29,6 +30,9 @@ lint: $(VENV)/.all
 
 evidence: $(VENV)/.all
 	$(BIN)/python -m benchmarks.evidence
+
+mutants: $(VENV)/.all
+	$(BIN)/python -m benchmarks.mutants
 
 # The package is installed in place, so only a change of pyproject.toml installs anything again.
 $(VENV)/.python:

@@ -1,0 +1,49 @@
+"""The table of faults."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import attrs
+
+ROOT = Path(__file__).resolve().parents[2]
+TABLE = Path(__file__).with_name("faults.toml")
+
+
+@attrs.frozen
+class Fault:
+    """One line made wrong.
+
+    Attributes
+    ----------
+    file : path from the root of the sources
+    was, becomes : text, which occurs once in the file, and what replaces it
+    tests : files or nodes of pytest that must catch it
+    does : what the fault does to a user's numbers
+    """
+
+    file: str
+    was: str
+    becomes: str
+    tests: tuple[str, ...]
+    does: str
+
+    def put(self, source: str) -> str:
+        """The file's text with the fault in it.
+
+        Raises
+        ------
+        ValueError
+            The text to replace does not occur, or more than once.
+        """
+        if source.count(self.was) != 1:
+            raise ValueError(f"{self.file}: `{self.was}` occurs {source.count(self.was)} times, must be once")
+        return source.replace(self.was, self.becomes)
+
+
+def read_faults(path: Path = TABLE) -> list[Fault]:
+    """All faults, in the order of the table."""
+    with path.open("rb") as file:
+        rows = tomllib.load(file)["fault"]
+    return [Fault(**{**row, "tests": tuple(row["tests"])}) for row in rows]
