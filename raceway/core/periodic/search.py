@@ -33,8 +33,9 @@ _DETOURS = (1.15, 1.3, 1.6, 0.85, 0.7)
 #: First and least step of a growing force.
 _FIRST_SHARE, _LEAST_SHARE = 0.25, 0.02
 #: Share of the force up to which the branch from rest is followed for its folds: a Duffing oscillator whose motion differs
-#: by a tenth from its linear response (``neighbour.MOST_NONLINEAR``) folds at 1.35 times the force.
-_BEYOND = 1.5
+#: by a tenth from its linear response (``neighbour.MOST_NONLINEAR``) folds at 1.35 times the force, the internal resonances
+#: of the article's scene with tilt free at 1.6 and 1.8 times.
+_BEYOND = 2.0
 #: A branch that stays below this share of the force for so many points has become a free vibration: it is left there.
 _SMALL_SHARE, _SMALL_POINTS = 0.2, 10
 #: Distance of two motions over their size below which they are one.
