@@ -57,7 +57,7 @@ def test_a_law_that_fails_as_deep_as_the_scene_presses():
 
 
 def test_a_law_that_reads_beyond_its_columns():
-    with pytest.raises(PluginError, match="contact law 'broken'.*one contact alone.*reads beyond the 2 columns"):
+    with pytest.raises(PluginError, match="contact law 'broken'.*one contact alone.*reads beyond the 1 columns"):
         run(with_law(beyond_its_columns, 1000.0))
 
 
