@@ -8,7 +8,7 @@ import numpy as np
 from raceway.core.record import Record
 from raceway.errors import ConvergenceError
 from raceway.model import Model
-from raceway.statics import Equilibrium, beyond_the_groove, contact_angles
+from raceway.statics import Equilibrium, beyond_the_groove, contact_angles, refuse_impossible_ellipses
 
 #: Samples of the last turn that are looked at.
 _SAMPLES = 60
@@ -48,6 +48,7 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
         now = attrs.evolve(model, system=model.system.at_speed(record.time[k]))
         inner, outer = contact_angles(now, record.displacement[k], record.ball[k], force, record.time[k])
         least = min(least, float(np.nanmin(inner, initial=np.inf)))
+        refuse_impossible_ellipses(now, force)
         for text in beyond_the_groove(model, inner, outer, force):
             beyond.setdefault(text.split(" reaches ")[0], text)
     if model.geometry.contact_angle > 0.0 and least <= 0.0:

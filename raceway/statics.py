@@ -65,6 +65,7 @@ def settle(
     stiffness = still.stiffness_at(q, now)
     _refuse_free_motion(model, stiffness, q)
     inner, outer = contact_angles(model, q, now.ball, now.contact_force)
+    refuse_impossible_ellipses(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
     return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
@@ -160,12 +161,6 @@ def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force:
         half = ellipse.semi_axes(load)[0] / (0.5 * d)
         over = np.abs(angle) + half
         reach = np.nanmax(over, initial=0.0)
-        if half.max(initial=0.0) >= 0.5 * np.pi:
-            raise ConvergenceError(
-                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball long, more than half "
-                f"its circumference, under {load[np.argmax(half)]:.3g} N a ball: no such contact exists. Check units and loads "
-                "(bearing.rings.young in Pa, lengths in m)"
-            )
         if reach > edge:
             begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
             assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
@@ -175,3 +170,23 @@ def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force:
                 f"contact angle from {begins:.3g} N a ball"
             )
     return found
+
+
+def refuse_impossible_ellipses(model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
+    """Loads (2 Z,) [N] that no ball can carry: a contact ellipse longer than half its circumference.
+
+    Raises
+    ------
+    ConvergenceError
+        With ``state``, the solution that says so.
+    """
+    z, radius = model.system.ball_count, 0.5 * model.geometry.ball_diameter
+    for race, ellipse, load in (("inner", model.inner, force[:z]), ("outer", model.outer, force[z:])):
+        half = ellipse.semi_axes(load)[0] / radius
+        if half.max(initial=0.0) >= 0.5 * np.pi:
+            raise ConvergenceError(
+                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball long, more than half "
+                f"its circumference, under {load[np.argmax(half)]:.3g} N a ball: no such contact exists. Check units and loads "
+                "(bearing.rings.young in Pa, lengths in m)",
+                state,
+            )

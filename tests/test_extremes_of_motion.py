@@ -35,14 +35,19 @@ def test_the_stable_limit_is_that_of_the_orbit_where_it_is_stiffer_than_the_equi
     equilibrium = settle(model)
     at_rest = model.system.critical_time_step(equilibrium.stiffness)
     found = simulate(model, equilibrium)
-    assert found.orbit is not None
-    on_orbit = min(model.system.critical_time_step(tangent) for tangent in found.orbit.stiffness)
+    assert found.start.orbit is not None
+    on_orbit = min(model.system.critical_time_step(tangent) for tangent in found.start.orbit.stiffness)
     # The loaded side has several times the stiffness of the equilibrium: Hertz's grows with the cube root of the load.
     assert on_orbit < 0.8 * at_rest
     assert found.critical_time_step == pytest.approx(on_orbit, rel=1e-12)
     between = int(np.ceil(model.excitation.period_s / np.sqrt(on_orbit * at_rest)))
     with pytest.raises(StabilityError, match="above the stable limit"):
-        simulate(model, equilibrium, steps_per_turn=between, orbit=found.orbit)
+        simulate(model, equilibrium, steps_per_turn=between, begun=found)
+    # "auto" stays below 0.8 of the limit and is silent; what stands above it is told.
+    assert not any("of the stable limit" in text for text in found.warnings)
+    just_below = int(np.ceil(model.excitation.period_s / (0.95 * on_orbit)))
+    told = simulate(model, equilibrium, steps_per_turn=just_below, begun=found).warnings
+    assert any("0.9" in text and "of the stable limit" in text for text in told)
 
 
 def test_a_sudden_start_uses_its_last_third(built):

@@ -132,8 +132,9 @@ def test_explicit_steps_hold_up_to_the_predicted_limit(name):
 def test_the_safe_limit_holds_on_large_orbits():
     rows = rows_named("orbit at the safe limit", integrator="central_difference")
     assert any(row.setting["contacts open"] for row in rows)
-    # Errors of 25 steps a turn are percents; an unstable motion would be off by many times the orbit.
-    assert all(row.observed < 0.2 for row in rows)
+    # Half the orbit's size, the catalogue's bound: errors of 30 steps a turn are percents, near parametric resonances of opening
+    # contacts a quarter (docs/stability.md); an unstable motion is off by many times the orbit.
+    assert all(row.verdict == AS_EXPECTED for row in rows)
 
 
 @pytest.mark.parametrize("integrator", ["central_difference", "newmark"])

@@ -17,6 +17,7 @@ from raceway.errors import ConvergenceError
 from raceway.model import build_model
 from raceway.plan import make_plan
 from raceway.registry import Registry
+from raceway.simulate import SAFETY
 from raceway.statics import settle
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Expectation, Measured, Near, Row, judged
 from raceway.studies.stability.systems import UNDAMPED, scene_at, still
@@ -30,8 +31,7 @@ _BOUNDED = AtMost(
     20.0, "at 0.98 of the limit a bounded motion swings to 1 / sqrt(1 - 0.98^2) = 5 times its start, and modes add up"
 )
 _GROWING = AtLeast(1e3, "1.49 a step at 1.02 of the limit; a nonlinear contact stops the growth where it opens")
-#: Part of the limit at the orbit's largest tangent that is safe, and turns.
-SAFE, _TURNS = 0.9, 50
+_TURNS = 50
 
 
 def linear(case: Case, registry: Registry) -> list[Row]:
@@ -94,7 +94,7 @@ def _limit(growth: Callable[[float], float]) -> float:
 
 
 def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
-    """A large orbit at 0.9 of the limit at its largest tangent: it must be followed for 50 turns."""
+    """A large orbit with the steps that a run takes by itself, at most ``SAFETY`` of its limit, is followed for 50 turns."""
     a = case.arguments
     scene = scene_at(a["tables"], {**UNDAMPED, **a["changes"], "integrator.kind": a["integrator"]}, registry)
     if scene.excitation is None or scene.excitation.period_s is None:
@@ -105,7 +105,7 @@ def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
     rest = settle(model)
     orbit = steady_orbit(model.system, period, rest.displacement, samples=129)
     limit = min(model.system.critical_time_step(k) for k in orbit.stiffness)
-    steps = ceil(period / (SAFE * limit))
+    steps = ceil(period / (SAFETY * limit))
     opens = bool((_open_share(model.system, orbit)) > 0.0)
 
     def follow() -> Measured:
