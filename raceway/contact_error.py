@@ -4,7 +4,8 @@ Notes
 -----
 At surface points the bodies deform and a law may leave some overlap: its share of the approach is how much too soft the
 contact is.  A law of whole contacts on rigid bodies is held against exact Hertz at the same load, in its approach and in its stiffness.  Both say what the model
-is off by, not the numbers: the entry is no part of ``total``.
+is off by, not the numbers: the entry is no part of ``total``.  Hertz's law on condensed bodies is calibrated on contacts at
+surface points; what is left of their own error is a number's, and part of ``total``.
 """
 
 from __future__ import annotations
@@ -19,6 +20,13 @@ from raceway.statics import Equilibrium
 _ROUNDING = 1e-8
 
 
+def is_calibrated(model: Model) -> bool:
+    """Whether contact resultants are calibrated on contacts at surface points: what that leaves is part of the total."""
+    scene = model.scene
+    kinds = scene.bodies.kind, scene.contact.discretisation, scene.contact.kind
+    return kinds == ("condensed", "resultant", "hertz")
+
+
 def contact_error(model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
     """Relative error of approaches and stiffnesses at the equilibrium, the largest of all loaded contacts, or None; and how."""
     loaded = equilibrium.contact_force > 0.0
@@ -27,6 +35,8 @@ def contact_error(model: Model, equilibrium: Equilibrium) -> tuple[float | None,
     if model.scene.contact.discretisation == "nodal":
         return _penetration(model, equilibrium, loaded)
     kind = model.scene.contact.kind
+    if is_calibrated(model):
+        return model.bodies.calibration_error(model, equilibrium)
     if model.bodies is not None:
         return None, (
             f"law '{kind}' is calibrated to Hertz on elastic bodies, and nothing in a run tells how well: compare with "

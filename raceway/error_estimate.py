@@ -23,7 +23,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.contact_error import contact_error
+from raceway.contact_error import contact_error, is_calibrated
 from raceway.core.identification import Identification
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError
@@ -61,7 +61,7 @@ class Part:
 
 def no_error(how: str) -> dict[str, Any]:
     """The table without numbers, and one reason."""
-    return {**dict.fromkeys(_NAMES), "how": dict.fromkeys(_NAMES, how)}
+    return {**dict.fromkeys(_NAMES), "bodies": None, "how": dict.fromkeys(_NAMES, how)}
 
 
 def error_table(
@@ -91,9 +91,15 @@ def error_table(
             "identification": _identification(model, found),
         }
     parts["mesh"] = Part(mesh, how["mesh"])
+    if is_calibrated(model):
+        parts["contact"] = Part(table["contact"], how["contact"])
+    # The same for all runs on these bodies, and of the size of Z alone.
+    table["bodies"] = sum(parts[name].size or 0.0 for name in ("mesh", "contact") if name in parts)
     for name, part in parts.items():
         table[name], how[name] = part.size, part.how
-    how["total"] = "time step and transient with their phases, at least half the larger; plus identification and mesh"
+    how["total"] = (
+        "time step and transient with their phases, at least half the larger; plus identification, mesh and calibration"
+    )
     if model.scene.bodies.kind == "elastic":
         how["total"] = "not estimated: that of the mesh is not known, and is the largest"
         return table

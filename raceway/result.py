@@ -116,9 +116,9 @@ class Result:
         }
 
     def _across(self) -> float | None:
-        """Error of Z across its own direction, over |Z|: a mesh changes the size of a stiffness and turns no phase."""
-        total, mesh = self.error["total"], self.error.get("mesh") or 0.0
-        return None if total is None else max(total - mesh, 0.0) + mesh * self._turned()
+        """Error of Z across its own direction, over |Z|: mesh and calibration change the size of a stiffness and turn no phase."""
+        total, bodies = self.error["total"], self.error.get("bodies") or 0.0
+        return None if total is None else max(total - bodies, 0.0) + bodies * self._turned()
 
     def _turned(self) -> float:
         """The smaller part of Z over |Z|."""

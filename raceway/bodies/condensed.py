@@ -12,6 +12,8 @@ from raceway.bodies.basis import Basis, Built, seat_of
 from raceway.bodies.inertia import inertia_table
 from raceway.bodies.mounting import place_ring
 from raceway.core.bodies import ring
+from raceway.core.condensed.calibration import calibrated
+from raceway.core.condensed.compliances import RingBody, Solid
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
 from raceway.core.condensed.structural import SURFACE, reach, ring_compliance, ring_section
 from raceway.core.meshing.ring_shape import ring_shape
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
 #: Peak pressure [Pa] of the contact whose length the line loads on the rings have: independent of the scene's load, so that
 #: one table serves all of them; the compliance changes by less than 0.01 nm/N with it.
 _PRESSURE = 1.5e9
+#: Size of elements far from a contact that is calibrated at its surface points, over ``reach``.
+_CALIBRATED_BULK = 0.4
 #: How much coarser the mesh is that error.mesh is estimated with.
 _COARSER = 2.0
 #: Entries of the stiffness below this part of sqrt(K_ii K_jj) are coupling that cancels out: no relative difference.
@@ -71,7 +75,7 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
 def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies:
     b = scene.bearing
     typical = _typical_load(basis)
-    rings = []
+    rings, calibrations = [], []
     for inner in (True, False):
         shape = ring_shape(b, inner)
         half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
@@ -90,9 +94,16 @@ def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies
                 coarser * min(2.0 * fine, bulk),
             )  # fmt: skip
         )
+        size = _CALIBRATED_BULK * reach(shape, b.ball_diameter)
+        steel, balls = (Solid(one.young, one.poisson, bulk=size) for one in (b.rings, b.balls))
+        body = RingBody(shape, steel, seat_of(scene, inner), (0.0, 0.0))
+        both = basis.inner, basis.outer
+        calibrations.append(
+            calibrated(body, balls, both, typical, 0.5 * b.ball_diameter, b.ball_count, abs(b.contact_angle))
+        )
     a, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
-    return ElasticBodies(rings[0], rings[1], own, opposite)
+    return ElasticBodies(rings[0], rings[1], own, opposite, (calibrations[0], calibrations[1]))
 
 
 def _typical_load(basis: Basis) -> float:
@@ -172,6 +183,27 @@ class Condensed:
         fine = np.diag(equilibrium.stiffness)[chosen]
         other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
         return float(np.abs(other / fine - 1.0).max()), "largest change of a diagonal stiffness from a mesh twice as coarse"
+
+    def calibration_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+        """Relative error of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
+        at_inner, at_outer = self.compliances.calibrations
+        if at_inner is None or at_outer is None:
+            return (
+                None,
+                "compliances are matched at depth: no contact at surface points was found to calibrate them on",
+            )
+        z = model.system.ball_count
+        force = equilibrium.contact_force
+        loaded = (force[:z] > 0.0) & (force[z:] > 0.0)
+        if not loaded.any():
+            return None, "no ball carries anything"
+        inner, outer = force[:z][loaded], force[z:][loaded]
+        give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
+        give += sum(self.compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * self.compliances.ball_opposite
+        return float(((at_inner.error(inner) + at_outer.error(outer)) / give).max()), (
+            "calibrated on contacts at surface points: their own error and the change of compliance with the load, over a ball's "
+            "compliance"
+        )
 
     def ring_section(self, model: Model, inner: bool) -> Profile:
         """The mesh of a ring's section that its compliance was computed on, for pictures."""

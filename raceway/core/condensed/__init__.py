@@ -5,6 +5,7 @@ Contacts as resultants:
 line_load    a Hertz line load on a groove, and the half-space's displacement under it
 structural   structural compliances of rings by depth matching: what the elements give beyond a half-space
 grooves      compliances between groove centres, from what contacts feel
+calibration  structural compliance of one contact at its surface points, which the others are shifted to
 elastic_bodies  both of a bearing, and the compiled system with them in the place of rigid rings
 modes        first natural frequencies of the rings
 

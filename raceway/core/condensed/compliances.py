@@ -81,6 +81,11 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     crossing = np.zeros((balls, 2, 2))
     for k, block in enumerate(groove_compliance(section.angles, between, np.ones(rows)), start=1):
         crossing[k] = crossing[-k] = block[[0, 1, 1, 2]].reshape(2, 2)
+    # What the ball itself moves its groove by is as exact as a vector, too, and not along each point's normal: any part of it
+    # that leaves the points' own compliance positive will do.
+    crossing[0] = crossing[1]
+    along_axis = normal[::-1]
+    near = np.ascontiguousarray(near - along_axis.T @ crossing[0] @ along_axis)
     race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, edges, crossing, shear)
     return Patch(ball, race, spacing.area)
 

@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.core.condensed.calibration import Calibration
 from raceway.core.condensed.grooves import along_normal, groove_compliance, own_compliance
 from raceway.core.condensed.structural import RingCompliance
 from raceway.core.system import System
@@ -24,17 +25,36 @@ class ElasticBodies:
     ----------
     inner, outer : of the rings, at the same angles
     ball_own, ball_opposite : of a ball, by its load on the same and on the other race [m/N]
+    calibrations : of contacts on the inner and the outer race at their surface points, where those are known
     """
 
     inner: RingCompliance
     outer: RingCompliance
     ball_own: float
     ball_opposite: float
+    calibrations: tuple[Calibration | None, Calibration | None] = (None, None)
+
+    def own(self, race: int, angles: np.ndarray) -> np.ndarray:
+        """Compliance of ring and ball together at contact angles [rad], in m/N; race: 0 inner, 1 outer.
+
+        Notes
+        -----
+        The rings' tables tell how it changes over the groove, calibrations how large it is.
+        """
+        from scipy.interpolate import CubicSpline
+
+        one, calibration = (self.inner, self.outer)[race], self.calibrations[race]
+        table = CubicSpline(one.angles, one.own)
+        values = table(np.clip(angles, one.angles[0], one.angles[-1])) + self.ball_own
+        if calibration is None:
+            return np.asarray(values)
+        known = calibration.compliance - table(calibration.angles) - self.ball_own
+        return np.asarray(values + np.interp(np.abs(angles), calibration.angles, known))
 
     def at(self, angle: float) -> tuple[float, float]:
         """Compliances (inner, outer) of ring and ball together at a contact angle [rad], in m/N."""
-        inner, outer = (float(np.interp(angle, one.angles, one.own)) for one in (self.inner, self.outer))
-        return inner + self.ball_own, outer + self.ball_own
+        inner, outer = (float(self.own(race, np.array([angle]))[0]) for race in (0, 1))
+        return inner, outer
 
     @property
     def largest_across(self) -> float:
@@ -62,10 +82,10 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     knots = bodies.inner.angles
     distance = knots[1] - knots[0]
     tables, rings = [], []
-    for one in (bodies.inner, bodies.outer):
-        values = np.interp(knots, one.angles, one.own) + bodies.ball_own
-        if not np.isfinite(values).all():
+    for race, one in enumerate((bodies.inner, bodies.outer)):
+        if not np.isfinite(one.own).all() or not np.isfinite(bodies.ball_own):
             raise FloatingPointError("a body gives way further than its contacts are deep: it is too soft for its load")
+        values = bodies.own(race, knots)
         if angles is not None:
             rings.append(between_grooves(one, angles))
             values -= along_normal(knots, rings[-1][0])

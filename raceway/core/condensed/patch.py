@@ -74,11 +74,11 @@ class Race:
     groove, centre_radius : radius of the groove, and of the circle of its centres [m]
     angle : (m,) contact angles of the rows [rad], increasing
     compliance : (columns, m, m) displacement of a row by a force on another one, so many columns apart, both along the
-        normal [m/N]
+        normal, less n.M n' of ``crossing`` [m/N]
     across : distance of neighbouring columns [m]
     edges : (2,) contact angles of the groove's edges [rad], ascending
     crossing : (Z, 2, 2) displacement (axial, radial) of the groove's centre by a force (axial, radial) on the groove under
-        the k-th next ball [m/N]; row 0, the ball itself, is zero
+        the k-th next ball [m/N]; row 0: the part of what the ball itself moves it by that is not in ``compliance``
     shear : like ``compliance``, both along the groove; None without friction
     """
 

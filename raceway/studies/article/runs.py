@@ -69,7 +69,7 @@ def _row(tables: dict[str, Any], registry: Registry) -> Row:
         "k": found.equivalent_stiffness,
         "abs_z": abs(found.dynamic_stiffness),
         "force_n": found.force_amplitude,
-        "error": None if error["total"] is None else max(error["total"] - (error["mesh"] or 0.0), 0.0),
+        "error": None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0),
         "mesh_error": error["mesh"],
     }
 

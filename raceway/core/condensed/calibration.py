@@ -1,0 +1,143 @@
+"""Structural compliance of one contact from pressures at its surface points: what calibrates those of rings and balls.
+
+Notes
+-----
+Depth matching (``structural``) compares fields on the normal through the middle of a contact.  A contact that is not short
+against the wall below it feels their mean over its length, which is less; nor is a groove a paraboloid.  One ball on one race,
+solved at its surface points, has all that: (approach - Hertz's) / load, and how that changes with the load.  Its error falls with the square of the distance of
+points, so that two distances tell the limit; a mean over loads takes away the ripple of points that come and go.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.array_cache import kept
+from raceway.core.condensed.compliances import RingBody, Solid, make_ball, make_patch
+from raceway.core.condensed.contact import BeyondPatch, Contact
+from raceway.core.condensed.patch import Patch, Spacing
+from raceway.core.condensed.structural import SOURCES
+from raceway.core.hertz import Ellipse
+from raceway.core.revolution.ring_profile import coarse_profile
+from raceway.errors import ConvergenceError, MeshError
+
+#: Points along a semi-axis of the coarser and the finer patch.
+POINTS = (3, 6)
+#: Loads over the typical one.
+LOADS = np.linspace(0.4, 1.6, 25)
+#: How much further than the typical ellipse points reach: 1.17 at the largest load, the rest for patches' ends.
+_ROOM = 1.4
+#: Distance of the finer patch from the limit, over Hertz's approach, above which points tell nothing.  They are apart by 0.4 %;
+#: rings 1e6 times as stiff as steel on a soft bed lose more to rounding.
+_TELLS = 0.01
+#: How far up the groove the second contact is [rad].
+_FURTHER = 0.15
+_ITERATIONS = 30
+
+
+@attrs.frozen(eq=False)
+class Calibration:
+    """Of contacts on one race.
+
+    Attributes
+    ----------
+    angles : (n,) contact angles [rad], ascending
+    compliance : (n,) of ring and ball together, beyond Hertz: tangent, d(approach - Hertz's) / dQ [m/N]
+    left : how well it is known: what was still to come beyond the finer patch, and the scatter of its mean [m/N]
+    trend : change of (approach - Hertz's) / Q with the logarithm of the load, which is left out [m/N]
+    load : where the compliance holds [N]
+    """
+
+    angles: np.ndarray
+    compliance: np.ndarray
+    left: float
+    trend: float
+    load: float
+
+    def error(self, load: np.ndarray) -> np.ndarray:
+        """(...) error of the secant or the tangent compliance at other loads [N], the larger one [m/N]."""
+        away = np.log(load / self.load)
+        return self.left + self.trend * np.maximum(np.abs(1.0 - away), np.abs(away))
+
+
+def calibrated(
+    body: RingBody, ball: Solid, ellipses: tuple[Ellipse, Ellipse], load: float, radius: float, balls: int, angle: float
+) -> Calibration | None:
+    """Of contacts on a ring, at the free contact angle and some way up the groove; None where points tell nothing.
+
+    Parameters
+    ----------
+    body : the ring, its window is not used;  ellipses : Hertz's contacts of both races, whose points have the same distances
+    load : typical one [N];  radius : of the ball [m];  balls : in a row;  angle : free contact angle [rad]
+    """
+    profile = coarse_profile(body.shape, body.solid.bulk, body.solid.bulk)
+    inputs: dict[str, Any] = {
+        "points": profile.points, "seat_nodes": profile.seat, "inner": body.shape.inner, "groove": body.shape.groove,
+        "centre": [body.shape.centre_r, body.shape.centre_x], "seat": body.seat, "load": load, "radius": radius,
+        "balls": balls, "angle": angle, "solids": [*attrs.astuple(body.solid), *attrs.astuple(ball)],
+        "ellipses": [[*(float(axis) for axis in one.semi_axes(1.0)), float(one.factor)] for one in ellipses],
+    }  # fmt: skip
+
+    def make() -> dict[str, np.ndarray]:
+        found = []
+        for place in (angle, angle + _FURTHER):
+            try:
+                found.append([_compliances(body, ball, ellipses, load, radius, balls, place, n) for n in POINTS])
+            except (BeyondPatch, ConvergenceError, MeshError):
+                break
+        return {"compliance": np.array(found)}
+
+    word = "inner" if body.shape.inner else "outer"
+    values = kept("contact", f"one ball on the {word} ring, {POINTS[1]} points", inputs, SOURCES, make)["compliance"]
+    if not values.size:
+        return None
+    found = _limit(values, angle, load)
+    ellipse = ellipses[0 if body.shape.inner else 1]
+    return found if found.left <= _TELLS * float(ellipse.approach(load)) / load else None
+
+
+def _limit(values: np.ndarray, angle: float, load: float) -> Calibration:
+    """Of values (angles, 2, loads) of the coarser and the finer patch."""
+    ratio, logs = (POINTS[1] / POINTS[0]) ** 2, np.log(LOADS)
+    limit = (ratio * values[:, 1] - values[:, 0]) / (ratio - 1.0)
+    trends, secant = np.polyfit(logs, limit.T, 1)
+    trend = float(trends.mean())
+    scatter = (limit - secant[:, None] - trend * logs).std(axis=1) / np.sqrt(len(LOADS))
+    left = np.abs(limit - values[:, 1]).mean(axis=1) + scatter
+    angles = np.array([angle, angle + _FURTHER])[: len(limit)]
+    return Calibration(angles, secant + trend, float(left.max()), abs(trend), load)
+
+
+def _compliances(
+    body: RingBody, solid: Solid, ellipses: tuple[Ellipse, Ellipse], load: float, radius: float, balls: int, angle: float,
+    nodes: int,
+) -> np.ndarray:  # fmt: skip
+    """(loads,) with so many points along a semi-axis of the inner contact [m/N]."""
+    axes = np.array([ellipse.semi_axes(load) for ellipse in ellipses], dtype=float)
+    widest = _ROOM * axes.max(axis=0)
+    spacing = Spacing.of((float(axes[0, 0]), float(axes[0, 1])), nodes, radius, float(widest[1]))
+    half = float(widest[0]) / radius + 1.5 * spacing.along / radius
+    ring = attrs.evolve(body, window=(angle - half, angle + half))
+    ball = make_ball(radius, solid, spacing, int(2.0 * half * radius / spacing.along) + 3)
+    patch, ellipse = make_patch(ring, ball, spacing, balls), ellipses[0 if body.shape.inner else 1]
+    contact = Contact(patch, None)
+    return np.array([_compliance(contact, patch, ellipse, float(part * load), angle) for part in LOADS])
+
+
+def _compliance(contact: Contact, patch: Patch, ellipse: Ellipse, load: float, angle: float) -> float:
+    """(approach - Hertz's) / load under a load along the normal, by Newton from Hertz's approach [m/N]."""
+    normal = patch.race.sense * np.array([np.sin(angle), np.cos(angle)])
+    rest, hertz = patch.race.groove - patch.ball.radius, float(ellipse.approach(load))
+    place = (rest + hertz) * normal
+    for _ in range(_ITERATIONS):
+        pressed = contact.press(place, np.zeros(2))
+        change = np.linalg.solve(pressed.stiffness, load * normal + pressed.force)
+        place = place + change
+        if np.abs(change).max() < 1e-9 * hertz:
+            if pressed.truncated:
+                raise ConvergenceError("the groove's edge cuts the contact off", {})
+            return (float(normal @ place) - rest - hertz) / load + float(normal @ patch.race.crossing[0] @ normal)
+    raise ConvergenceError("no approach found for a single contact", {"place": place})
