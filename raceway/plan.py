@@ -15,12 +15,13 @@ import attrs
 from raceway.planning.combinations import refuse_what_cannot_run
 from raceway.planning.decisions import decide_balls, decide_bodies, decide_motion, decide_output, decide_tilts
 from raceway.planning.elastic import elastic_cost
+from raceway.planning.machine import slowness
 from raceway.planning.mesh import predicted_mesh
 from raceway.planning.modules import Module, as_dicts, optional_modules
 from raceway.planning.parts import Decisions, Part
 from raceway.planning.patches import patch_cost
 from raceway.planning.recording import refuse_memory
-from raceway.planning.wall_time import predicted_wall
+from raceway.planning.wall_time import predicted_work
 from raceway.scene import Scene
 
 
@@ -36,7 +37,8 @@ class Plan:
     free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
     turns : turns that are integrated
     dofs : unknowns of the ring and of the balls
-    time_step_s, predicted_wall_s : None in a static scene; predictions
+    time_step_s : None in a static scene;  predicted_wall_s : of a whole run on this machine
+    predicted_work_s : the same on the machine whose times the plan knows: no machine's speed changes it
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
     modules : optional modules, and whether a run imports them
     """
@@ -53,6 +55,7 @@ class Plan:
     time_step_s: float | None
     predicted_steps: int
     predicted_wall_s: float
+    predicted_work_s: float
     mesh: dict[str, Any] | None = None
     modules: tuple[Module, ...] = ()
 
@@ -94,6 +97,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     count = scene.bearing.ball_count * len(scene.bearing.rows)
     if motion.recorded:
         refuse_memory(scene, motion.turns, motion.steps_per_turn, count)
+    work = predicted_work(scene, balls, motion, coupled, elastic, patches)
     free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return Plan(
@@ -108,7 +112,8 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         dofs=unknowns if elastic is None else elastic.unknowns,
         time_step_s=_period(scene) / motion.steps_per_turn if motion.recorded else None,
         predicted_steps=motion.turns * motion.steps_per_turn,
-        predicted_wall_s=predicted_wall(scene, balls, motion, coupled, elastic, patches),
+        predicted_wall_s=work if elastic is not None else work * slowness(),
+        predicted_work_s=work,
         mesh=predicted_mesh(scene),
         modules=optional_modules(scene, balls.kind, balls.centrifugal, motion.recorded),
     )

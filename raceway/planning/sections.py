@@ -12,7 +12,7 @@ from raceway.scene import Scene
 #: Bytes and seconds of processor time for both rings, by nodes of a section, measured on one core of a small server: the
 #: factor of a harmonic, and some seventy of those; balls and a coarser mesh for the error included.
 _BYTES_PER_NODE = 25_000
-_SECONDS, _NODES, _POWER = 11.0, 4000.0, 1.3
+_BASE_S, _SECONDS, _NODES, _POWER = 0.4, 4.8, 4000.0, 1.3
 _BYTES_LIMIT = 2 * 2**30
 #: A seat that gives way by more than this part of a ball's diameter under the scene's loads holds no bearing.
 _GIVES = 0.02
@@ -43,7 +43,7 @@ def section_cost(scene: Scene) -> SectionCost:
     columns = width / size + 0.7 * b.ball_diameter / along
     rows = wall / size + log(size / along) / log(1.25)
     nodes = ceil(columns * max(rows, 3.0))
-    return SectionCost(nodes, nodes * _BYTES_PER_NODE, _SECONDS * (nodes / _NODES) ** _POWER)
+    return SectionCost(nodes, nodes * _BYTES_PER_NODE, _BASE_S + _SECONDS * (nodes / _NODES) ** _POWER)
 
 
 def section_faults(scene: Scene) -> list[Mistake]:

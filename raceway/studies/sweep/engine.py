@@ -92,7 +92,7 @@ def _chain_length(found: Survey, design: Design) -> int:
     """From the design and the predicted time of a point alone, so that a sweep that is resumed computes the same chains."""
     scene = found.scene
     try:
-        seconds = make_plan(scene).predicted_wall_s - START_S
+        seconds = make_plan(scene).predicted_work_s - START_S
     except RacewayError:
         return 1
     if scene.bodies.kind == "condensed" and scene.contact.discretisation == "resultant":
