@@ -46,7 +46,7 @@ SCENES: dict[str, tuple[str, ...]] = {
 _PROGRAM = """
 import contextlib, io, json, sys, tempfile, time
 from raceway.planning.machine import timed
-slowness = [timed()]
+slowness = [timed(60)]
 before = time.process_time()
 from raceway import load_scene
 from raceway.cli import main
@@ -54,7 +54,7 @@ with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.Stri
     with contextlib.suppress(SystemExit):
         main(["run", sys.argv[1], "--out", folder, *(word for change in sys.argv[2:] for word in ("--set", change))])
 seconds = time.process_time() - before
-slowness.append(timed())
+slowness.append(timed(60))
 from raceway.plan import make_plan
 work = make_plan(load_scene(sys.argv[1], sys.argv[2:])).predicted_work_s
 print(json.dumps([work * sum(slowness) / 2.0, seconds]))

@@ -1,53 +1,46 @@
-"""The plan's predicted time: of whole runs within a factor of 2, and of this machine by its own speed."""
+"""The plan's predicted time: the work of whole runs within a factor of two of what was measured, and the machine's own speed."""
 
 from __future__ import annotations
 
-import warnings
-
 import pytest
 
-from benchmarks.plan_time import LEAST, MOST, SCENES, compare
+from benchmarks.plan_time import LEAST, MOST, SCENE, SCENES
 from raceway import load_scene
 from raceway.plan import make_plan
 from raceway.planning import machine
 from tests.command_line import ARTICLE
 
+#: Processor times [s] of whole runs on the reference machine, as `python -m benchmarks.plan_time` measured them: what a test can
+#: hold a prediction against without a clock.  All but start-up, 1.2 s, is what the predictions tell apart.
+MEASURED_S = {
+    "rigid, friction, 60 turns": 2.04,
+    "rigid, 300 turns": 3.0,
+    "rigid, 300 turns of 2880 steps": 5.45,
+    "rigid, central_difference, 300 turns": 3.28,
+    "rigid, periodic, internal resonance": 4.59,
+    "rigid, run-up": 2.98,
+    "condensed": 2.96,
+    "condensed, 100 turns": 2.90,
+    "condensed, pressures at points": 5.37,
+}
 
-@pytest.mark.parametrize(
-    "name", ["rigid", "rigid, 300 turns", "rigid, periodic, internal resonance", "rigid, run-up", "condensed, soft seat"]
-)
-def test_the_predicted_time_is_within_a_factor_of_two_of_the_measured_one(name):
-    # Processor time in units of the machine's own speed at that moment: other programs stretch both.
-    found = compare(SCENES[name])
-    assert LEAST <= found.ratio <= MOST, found
+
+@pytest.mark.parametrize("name", MEASURED_S)
+def test_the_predicted_work_is_within_a_factor_of_two_of_the_measured_one(name):
+    work = make_plan(load_scene(SCENE, SCENES[name])).predicted_work_s
+    assert LEAST <= work / MEASURED_S[name] <= MOST
 
 
-@pytest.fixture
-def fresh():
+def test_every_step_costs():
+    """300 turns of 2880 steps instead of 360: 2.45 s more for 756 000 steps of 3.2 us; the records are the same."""
+    few, many = (make_plan(load_scene(SCENE, SCENES[f"rigid, 300 turns{steps}"])) for steps in ("", " of 2880 steps"))
+    each = (many.predicted_work_s - few.predicted_work_s) / (many.predicted_steps - few.predicted_steps)
+    assert 1.6e-6 < each < 6.5e-6
+
+
+def test_the_time_is_the_work_at_the_machine_s_own_speed(monkeypatch):
     machine.slowness.cache_clear()
-    yield
-    machine.slowness.cache_clear()
-
-
-def test_the_machine_is_timed_once_and_kept(monkeypatch, tmp_path, fresh):
-    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path / "cache"))
     monkeypatch.setattr(machine, "_seconds", lambda: 3.0 * machine._REFERENCE_S)
-    scene = load_scene(ARTICLE)
-    plan = make_plan(scene)
+    plan = make_plan(load_scene(ARTICLE))
+    machine.slowness.cache_clear()
     assert plan.predicted_wall_s == pytest.approx(3.0 * plan.predicted_work_s)
-    machine.slowness.cache_clear()  # another process
-    monkeypatch.setattr(machine, "_seconds", lambda: 7.0 * machine._REFERENCE_S)
-    assert make_plan(scene) == plan
-
-
-def test_a_folder_that_cannot_be_written_costs_no_plan(monkeypatch, tmp_path, fresh):
-    (tmp_path / "file").write_text("")
-    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path / "file" / "cache"))
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert make_plan(load_scene(ARTICLE)).predicted_wall_s > 0.0
-
-
-def test_the_speed_is_not_noise():
-    found = [machine.timed() for _ in range(5)]
-    assert max(found) < 2.0 * min(found)
