@@ -64,7 +64,10 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     plan = make_plan(scene)
     compute(scene)  # compiles what is not in the cache yet: a process of its own has a time limit
     found = run(*changes)
-    assert found["plan"] == json.loads(json.dumps(plan.as_dict()))
+    expected = json.loads(json.dumps(plan.as_dict()))
+    for one in (found["plan"], expected):
+        one.pop("predicted_wall_s")  # each process times the machine
+    assert found["plan"] == expected
     for module in plan.modules:
         assert (module.module in found["loaded"]) == module.needed, module
         compiled = [kernel for kernel in found["kernels"] if kernel.startswith(module.module)]
