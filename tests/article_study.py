@@ -19,22 +19,21 @@ def row(speed: float, load: float, k: float | None, status: str = "completed", r
     return found if k is None else {**found, **numbers}
 
 
-def curves(k: Any, bodies: tuple[str, ...] = ("rigid",)) -> Curves:
+def curves(k: Any, bodies: tuple[str, ...] = ("rigid",), friction: float | None = None) -> Curves:
     """Curves of ``k(setting, load, w*)`` [N/m]; None fails the run, a tuple (k,) makes its motion unstable."""
-    made = design(article_tables(), SPEEDS, LOADS, None, bodies)
+    made = design(article_tables(), SPEEDS, LOADS, None, bodies, friction)
     rows: dict[Any, list[dict[str, Any]]] = {}
-    for setting in made.settings():
-        for load in made.loads:
-            rows[setting, load] = []
-            for speed, w in zip(made.speeds, made.relative_speeds, strict=True):
-                value = k(setting, load, w)
-                if value is None:
-                    one = row(speed, load, None, "failed", "no motion was found")
-                elif isinstance(value, tuple):
-                    one = row(speed, load, value[0], "unstable", "the steady motion is unstable")
-                else:
-                    one = row(speed, load, value)
-                rows[setting, load].append(one)
+    for setting, load in made.tasks():
+        rows[setting, load] = []
+        for speed, w in zip(made.speeds_of(setting), made.relative_speeds_of(setting), strict=True):
+            value = k(setting, load, w)
+            if value is None:
+                one = row(speed, load, None, "failed", "no motion was found")
+            elif isinstance(value, tuple):
+                one = row(speed, load, value[0], "unstable", "the steady motion is unstable")
+            else:
+                one = row(speed, load, value)
+            rows[setting, load].append(one)
     return Curves(made, rows)
 
 

@@ -17,17 +17,35 @@ from typing import Any
 import attrs
 
 from benchmarks.evidence import Row, below
+from raceway.registry import default_registry
+from raceway.run import run
+from raceway.scene_file import scene_from_dict
+from raceway.studies.article.curves import ROTATING
+from raceway.studies.article.design import (
+    FRICTION_ERROR,
+    FRICTION_STEPS,
+    FRICTION_TURNS,
+    FRICTION_WORDS,
+    FRICTIONS,
+    Setting,
+    article_tables,
+    design,
+)
 
 TITLE = "The article's claims, computed again"
 COMMAND = "raceway study article"
 PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "article"
-_KEPT = ("figure-9", "figure-10", "figure-11", "figure-12", "tilt-stiffness")
-_LIMITS = {"rigid": 120.0, "both": 300.0}
-#: What is typed for each of them: the second goes on in the first one's folder, which costs nothing twice.
-_TYPED = {
-    "rigid": f"{COMMAND} --bodies rigid --out DIR",
-    "both": f"{COMMAND} --bodies rigid --out DIR; {COMMAND} --out DIR",
-}
+_KEPT = ("figure-9", "figure-10", "figure-11", "figure-12", "tilt-stiffness", "friction")
+#: What is typed one after the other: each goes on in the folder of those before, which costs nothing twice.
+_WORDS = {"rigid": ("--bodies", "rigid", "--friction", "0"), "friction": ("--bodies", "rigid"), "both": ()}
+_TYPED = {name: f"{COMMAND} {' '.join(words)} --out DIR".replace("  ", " ") for name, words in _WORDS.items()}
+#: Of the first alone, of what friction adds, and of all three [s].
+_LIMITS = {"rigid": 120.0, "friction": 120.0, "both": 300.0}
+#: Tilt, axial load [N], speed [r/min] of the runs with friction that are repeated with twice the turns of twice the steps.
+_REPEATED = (
+    ("free", 2000.0, 10980.0), ("free", 2000.0, 15000.0), ("locked", 2000.0, 15000.0), ("free", 400.0, 12990.0),
+    ("shaft", 1200.0, 12990.0),
+)  # fmt: skip
 _FETCHES = re.compile(r"https?://|url\(|@import|<script|srcset")
 
 
@@ -48,22 +66,24 @@ class _Cold:
 
 def rows() -> list[Row]:
     with tempfile.TemporaryDirectory() as place:
-        rigid = _study("rigid", Path(place))
-        both = _study("both", Path(place))
-        both = attrs.evolve(both, wall=rigid.wall + both.wall, path=rigid.path + both.path)
+        rigid, friction, both = (_study(name, Path(place)) for name in _WORDS)
+        before = (rigid, friction)
+        both = attrs.evolve(
+            both, wall=both.wall + sum(one.wall for one in before), path=both.path + sum(one.path for one in before)
+        )
         PICTURES.mkdir(parents=True, exist_ok=True)
         for name in _KEPT:
             shutil.copy(Path(place) / "study" / f"{name}.png", PICTURES)
     return [
-        *_cost({"rigid": rigid, "both": both}), *_page(both), *_trends(both.content), *_static(both.content),
+        *_cost({"rigid": rigid, "friction": friction, "both": both}), *_friction(both.content), *_page(both), *_trends(both.content), *_static(both.content),
         *_verdicts(both.content), *_causes(both.content), *_rig(both.content),
     ]  # fmt: skip
 
 
-def _study(bodies: str, place: Path) -> _Cold:
+def _study(name: str, place: Path) -> _Cold:
     """Run the command in a folder with kernels and rows of its own."""
     folder = place / "study"
-    words = [sys.executable, "-m", "raceway", "study", "article", "--bodies", bodies, "--out", str(folder), "--json"]
+    words = [sys.executable, "-m", "raceway", "study", "article", *_WORDS[name], "--out", str(folder), "--json"]
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     environment = {**os.environ, "RACEWAY_CACHE_DIR": str(place / "cache")}
     done = subprocess.run(words, capture_output=True, text=True, env=environment, check=True)
@@ -77,18 +97,45 @@ def _study(bodies: str, place: Path) -> _Cold:
 
 def _cost(runs: dict[str, _Cold]) -> list[Row]:
     out = []
-    for bodies, run in runs.items():
-        note = f"{run.content['runs']} steady orbits, compiling included; wall time {run.wall:.0f} s beside what else the cores did"
-        if bodies == "both":
-            note += "; rigid first, whose page is written besides, then the condensed bodies"
-        words = (
-            f"processor time from cold to the written page, {bodies}: of the first process and of half the two others [s]"
+    names = {
+        "rigid": "from cold to the written page, rigid bodies without friction",
+        "friction": "that friction adds, with another page",
+        "both": "from cold to the written page, with friction and condensed bodies: the two above, and the rest",
+    }
+    for name, cold in runs.items():
+        note = f"{cold.content['runs']} motions; wall time {cold.wall:.0f} s beside what else the cores did"
+        words = f"processor time {names[name]}: of the first process and of half the two others [s]"
+        out.append(below(words, cold.path, _LIMITS[name], _TYPED[name], note))
+        failed = cold.content["failed"]
+        out.append(Row(f"runs that failed, {name}", failed, "reported", True, _TYPED[name]))
+        unstable = sum(row["status"] == "unstable" for row in cold.content["rows"])
+        out.append(Row(f"steady orbits that are unstable, {name}", unstable, "reported", True, _TYPED[name]))
+    return out
+
+
+def _friction(content: dict[str, Any]) -> list[Row]:
+    """What the runs with friction are known to, and what friction does to the trend."""
+    registry, made = default_registry(), design(article_tables())
+    changes = []
+    for friction in FRICTIONS[1:]:
+        for tilt, load, speed in _REPEATED:
+            setting = Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid", friction=friction)
+            tables = made.point(setting, load, speed, registry)
+            twice = {"turns": 2 * FRICTION_TURNS, "steps_per_turn": 2 * FRICTION_STEPS}
+            finer = {**tables, "integrator": {**tables["integrator"], **twice}}
+            k = [
+                run(scene_from_dict(one, registry), registry).identification.equivalent_stiffness for one in (tables, finer)
+            ]
+            changes.append(abs(k[1] / k[0] - 1.0))
+    words = f"largest change of K with friction by twice the turns of twice the steps, {len(changes)} points"
+    out = [below(words, max(changes), FRICTION_ERROR, COMMAND, "what the verdicts take for the error of K with friction")]
+    for one in content["friction_trends"]:
+        name = f"change of K from 10 980 to 15 000 r/min, rotating force m e w², tilt {one['tilt']}, {one['axial_n']:g} N"
+        value = ", ".join(
+            f"{FRICTION_WORDS[kind]} {one[kind] if isinstance(one[kind], str) else f'{100.0 * one[kind]:+.2f} %'}"
+            for kind in FRICTIONS
         )
-        out.append(below(words, run.path, _LIMITS[bodies], _TYPED[bodies], note))
-        failed = run.content["failed"]
-        out.append(Row(f"runs that failed, {bodies}", failed, "reported", True, _TYPED[bodies]))
-        unstable = sum(row["status"] == "unstable" for row in run.content["rows"])
-        out.append(Row(f"steady orbits that are unstable, {bodies}", unstable, "reported", True, _TYPED[bodies]))
+        out.append(Row(name, value, "reported", True, COMMAND))
     return out
 
 
@@ -98,8 +145,8 @@ def _page(run: _Cold) -> list[Row]:
     return [
         below("size of the page [MB]", len(run.page.encode()) / 1e6, 5.0, COMMAND),
         Row("what the page fetches or runs", ", ".join(found) or "nothing", "nothing", not found, COMMAND),
-        Row("pictures in the page, each with words for those who do not see it", len(images), "67, none without words",
-            len(images) == 67 and all(images), COMMAND),
+        Row("pictures in the page, each with words for those who do not see it", len(images), "70, none without words",
+            len(images) == 70 and all(images), COMMAND),
     ]  # fmt: skip
 
 

@@ -41,6 +41,12 @@ from raceway.errors import ConvergenceError, SceneError
 )
 @click.option("--axial", default="400:2000:9", show_default=True, metavar="LIST", help="Axial loads in N.")
 @click.option("--shaft", type=float, metavar="N·M/RAD", help="Tilt stiffness of the shaft [the scene's, or the rig's].")
+@click.option(
+    "--friction",
+    type=float,
+    metavar="MU",
+    help="Coulomb coefficient of the runs with friction [the scene's, or 0.03]; 0: none.",
+)
 @processes_at_a_time
 @set_keys
 @out_option(f"{RESULTS}/article")
@@ -53,6 +59,7 @@ def article(
     speeds: str,
     axial: str,
     shaft: float | None,
+    friction: float | None,
     processes: int,
     changes: tuple[str, ...],
     out: Path | None,
@@ -62,13 +69,13 @@ def article(
 ) -> int:
     """Compute the article's figures 9 to 12 and say which of its claims hold, and where.
 
-    SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies and
-    integrator are set by the study. Writes article.html, which opens from a file without a network, its figures as PNG,
+    SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
+    friction and integrator are set by the study. Writes article.html, which opens from a file without a network, its figures as PNG,
     article.json and CSV tables. Finished curves are kept in DIR/article-rows.jsonl and reused.
 
     \b
     Example:
-      raceway study article --bodies rigid
+      raceway study article --bodies rigid --friction 0
       raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000
     """  # fmt: skip
     registry = registry_with(plugins)
@@ -90,7 +97,7 @@ def article(
 
         kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
         try:
-            found = study(tables, speeds, axial, shaft, kinds, processes, kept, registry, plugins, progress)
+            found = study(tables, speeds, axial, shaft, kinds, friction, processes, kept, registry, plugins, progress)
         except KeyboardInterrupt:
             warn(f"finished curves are kept in {kept}; the same command goes on from there", label="")
             raise

@@ -5,9 +5,11 @@ runs         one curve over speed, and all curves in processes of their own, fin
 curves       the numbers by setting: K and |Z| over speed and axial load, with what failed or is in doubt
 rules        what a claim asks of a curve or a surface, as plain functions of numbers
 regions      where a rule holds, in words
-claims       the six claims, each with its rule, what was computed and the verdict
+power_law    what "quadratic" asks: an exponent with its interval
+verdict      a verdict and how it follows from a rule's outcomes
+claims       the claims, each with its rule, what was computed and the verdict; 4 and 6 in claims_rotating, 5 in claims_axial
 expected     the quasi-static trends of an independent solver and the same numbers computed here
-causes       direction, amplitude law, ball inertia and bodies swapped one at a time
+causes       direction, amplitude law, ball inertia, bodies and friction swapped one at a time
 figures      figures 9 to 12
 report       the page
 study        all of it: ``article()``

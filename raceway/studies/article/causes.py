@@ -21,6 +21,8 @@ SWAPS: dict[str, dict[str, Any]] = {
     "both swapped: unidirectional force, constant": {"direction": DIRECTIONS[0], "amplitude": AMPLITUDES[0]},
     "weightless balls": {"inertia": False},
     "condensed bodies": {"bodies": "condensed"},
+    "friction, balls that stand": {"friction": "standing"},
+    "friction, balls that orbit": {"friction": "orbiting"},
 }
 #: Tilt stiffness of the shaft [N m/rad], from next to free to next to locked.
 STIFFNESSES = tuple(float(f"{10.0 ** (2.0 + 0.25 * k):.4g}") for k in range(17))
@@ -40,12 +42,29 @@ def one_at_a_time(curves: Curves, load: float, measure: str = "K") -> list[tuple
         if change.get("bodies", curves.design.bodies[0]) not in curves.design.bodies:
             continue
         row: dict[str, float | str] = {}
+        if (swapped(TILTS[0], change, curves.design.bodies), load) not in curves.rows:
+            continue  # with friction every other axial load is run
         for tilt in TILTS:
-            setting = swapped(tilt, change, curves.design.bodies)
-            found = curves.normalised(setting, load, measure)[-1] - 1.0
-            fates = [curves.rows[setting, load][end]["status"] for end in (0, -1)]
-            row[tilt] = float(found) if np.isfinite(found) else next(fate for fate in fates if fate != "completed")
+            row[tilt] = _change(curves, swapped(tilt, change, curves.design.bodies), load, measure)
         out.append((name, row))
+    return out
+
+
+def _change(curves: Curves, setting: Setting, load: float, measure: str = "K") -> float | str:
+    """k*(1) - 1, or why there is no number."""
+    found = curves.normalised(setting, load, measure)[-1] - 1.0
+    fates = [curves.rows[setting, load][end]["status"] for end in (0, -1)]
+    return float(found) if np.isfinite(found) else str(next(fate for fate in fates if fate != "completed"))
+
+
+def friction_trends(curves: Curves) -> list[dict[str, Any]]:
+    """k*(1) - 1 under the rotating force m e w^2 for each kind of friction: ``tilt``, ``axial_n``, ``none`` and so on."""
+    made, out = curves.design, []
+    for tilt in TILTS if len(made.frictions) > 1 else ():
+        settings = {one: attrs.evolve(swapped(tilt, {}, ("rigid",)), friction=one) for one in made.frictions}
+        for load in made.loads_of(settings[made.frictions[-1]]):
+            changes = {one: _change(curves, setting, load) for one, setting in settings.items()}
+            out.append({"tilt": tilt, "axial_n": load, **changes})
     return out
 
 

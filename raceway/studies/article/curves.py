@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.studies.article.design import BODIES, CLAIMED, TILTS, Design, Setting
+from raceway.studies.article.design import CLAIMED, FRICTION_ERROR, Design, Setting
 
 #: What may be called k: name -> key of a row.
 MEASURES = {"K": "k", "|Z|": "abs_z"}
@@ -33,8 +33,12 @@ class Curves:
         return np.array([row[key] if row["status"] == "completed" else np.nan for row in self.rows[setting, load]])
 
     def errors(self, setting: Setting, load: float) -> np.ndarray:
-        """(speeds,) each run's own relative error, its mesh's apart: that is the same at all speeds."""
-        return np.array([row.get("error") or 0.0 for row in self.rows[setting, load]])
+        """(speeds,) each run's own relative error, its mesh's apart: that is the same at all speeds.
+
+        With friction at least ``FRICTION_ERROR``: where contacts stick depends on how the motion began.
+        """
+        least = 0.0 if setting.friction == "none" else FRICTION_ERROR
+        return np.array([max(row.get("error") or 0.0, least) for row in self.rows[setting, load]])
 
     def unstable(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
         """(speeds,) [N/m] of unstable motions, nan elsewhere."""
@@ -47,7 +51,7 @@ class Curves:
 
     def surface(self, setting: Setting, measure: str = "K") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Values [N/m], errors, and where runs failed; (loads, speeds) each."""
-        loads = self.design.loads
+        loads = self.design.loads_of(setting)
         values = np.array([self.values(setting, load, measure) for load in loads])
         errors = np.array([self.errors(setting, load) for load in loads])
         return values, errors, np.array([self.failed(setting, load) for load in loads])
@@ -78,14 +82,6 @@ def told(rows: list[dict[str, Any]]) -> str:
         speeds = ", ".join(dict.fromkeys(f"{row['speed_rpm']:g}" for row in bad if row["status"] == status))
         parts.append(f"{count} {status} ({speeds} r/min: {reason})")
     return "; ".join(parts)
-
-
-def modelled(bodies: tuple[str, ...]) -> Iterator[dict[str, Any]]:
-    """Every way to model the bearing, apart from its excitation, in the order of the tables."""
-    for tilt in TILTS:
-        for inertia in (True, False):
-            for kind in [one for one in BODIES if one in bodies]:
-                yield {"tilt": tilt, "inertia": inertia, "bodies": kind}
 
 
 _PAIRS: list[dict[str, Any]] = [{"direction": direction, "amplitude": amplitude} for direction, amplitude in CLAIMED]

@@ -22,6 +22,13 @@ AMPLITUDES = ("constant", "unbalance")
 CLAIMED = (("unidirectional", "constant"), ("bidirectional", "unbalance"))
 TILTS = ("locked", "shaft", "free")
 BODIES = ("rigid", "condensed")
+#: The article's coefficient, section 3.1; what a contact that sticks means depends on whether the balls orbit.
+FRICTION = 0.03
+FRICTIONS = ("none", "standing", "orbiting")
+#: How runs with friction are integrated: the force grows over two thirds of the turns, the last third counts.
+FRICTION_TURNS, FRICTION_STEPS = 12, 360
+#: Least relative error of K with friction: what twice the turns of twice the steps change (``benchmarks.evidence article``).
+FRICTION_ERROR = 0.005
 ARTICLE = Path(__file__).resolve().parents[2] / "data" / "article.toml"
 #: The article's ranges: section 4 (speeds) and 3.3 (axial loads); how finely is ours.
 SPEEDS = "10980:15000:9"
@@ -39,13 +46,20 @@ class Setting:
     tilt: str
     inertia: bool
     bodies: str
+    friction: str = "none"
 
     @property
     def name(self) -> str:
         balls = "ball inertia" if self.inertia else "weightless balls"
-        return f"{self.direction}, {self.amplitude} amplitude, {TILT_WORDS[self.tilt]}, {balls}, {self.bodies}"
+        rubbing = "" if self.friction == "none" else f", {FRICTION_WORDS[self.friction]}"
+        return f"{self.direction}, {self.amplitude} amplitude, {TILT_WORDS[self.tilt]}, {balls}, {self.bodies}{rubbing}"
 
 
+FRICTION_WORDS = {
+    "none": "without friction",
+    "standing": "friction on balls that stand",
+    "orbiting": "friction on balls that orbit",
+}
 TILT_WORDS = {"locked": "tilt locked", "shaft": "tilt against the shaft", "free": "tilt free"}
 
 
@@ -57,6 +71,7 @@ class Design:
     ----------
     tables : the scene's tables;  speeds [r/min], loads [N] : ascending
     shaft : tilt stiffness of the setting "shaft" [N m/rad];  bodies : the kinds that are run
+    friction : Coulomb coefficient of the settings with friction, which are run with rigid bodies; 0 leaves them out
     """
 
     tables: Mapping[str, Any]
@@ -64,20 +79,61 @@ class Design:
     loads: tuple[float, ...]
     shaft: float
     bodies: tuple[str, ...]
+    friction: float = 0.0
 
     @property
     def relative_speeds(self) -> list[float]:
         """w* = (w - w_min) / (w_max - w_min)."""
+        return self._relative(self.speeds)
+
+    @property
+    def frictions(self) -> tuple[str, ...]:
+        """Of ``FRICTIONS`` those that are run."""
+        return FRICTIONS if self.friction > 0.0 and "rigid" in self.bodies else FRICTIONS[:1]
+
+    def speeds_of(self, setting: Setting) -> tuple[float, ...]:
+        """All of them, with friction every other one: those runs go through time."""
+        return self.speeds if setting.friction == "none" else _thinned(self.speeds)
+
+    def loads_of(self, setting: Setting) -> tuple[float, ...]:
+        """With friction as the speeds; of the pairs that no claim is about the lightest, the scene's own and the heaviest."""
+        if (setting.direction, setting.amplitude) not in CLAIMED:
+            return tuple(sorted({self.loads[0], self.own_load, self.loads[-1]}))
+        return self.loads if setting.friction == "none" else _thinned(self.loads)
+
+    @property
+    def own_load(self) -> float:
+        """The scene's own axial load, or the one of the study that lies next to it [N]."""
+        own = self.tables.get("load", {}).get("axial", 0.0)
+        return min(self.loads, key=lambda load: abs(load - own))
+
+    def relative_speeds_of(self, setting: Setting) -> list[float]:
+        return self._relative(self.speeds_of(setting))
+
+    def _relative(self, speeds: Sequence[float]) -> list[float]:
         first, last = self.speeds[0], self.speeds[-1]
-        return [(speed - first) / (last - first) for speed in self.speeds]
+        return [(speed - first) / (last - first) for speed in speeds]
+
+    def models(self) -> Iterator[dict[str, Any]]:
+        """Every way to model the bearing, apart from its excitation, in the order of the tables."""
+        for friction, tilt, inertia in product(self.frictions, TILTS, (True, False)):
+            for kind in [one for one in BODIES if one in self.bodies]:
+                if friction == "none" or (inertia and kind == "rigid"):
+                    yield {"friction": friction, "tilt": tilt, "inertia": inertia, "bodies": kind}
 
     def settings(self) -> Iterator[Setting]:
-        """All of them for the first kind of bodies; for a second one the pairs of excitation that the claims are about."""
+        """All of them for the first kind of bodies; for a second one, and with friction, the pairs that the claims are about."""
         for bodies, direction, amplitude, tilt, inertia in product(
             self.bodies, DIRECTIONS, AMPLITUDES, TILTS, (True, False)
         ):
             if bodies == self.bodies[0] or (direction, amplitude) in CLAIMED:
                 yield Setting(direction, amplitude, tilt, inertia, bodies)
+        for friction, (direction, amplitude), tilt in product(self.frictions[1:], CLAIMED, TILTS):
+            yield Setting(direction, amplitude, tilt, True, "rigid", friction)
+
+    def tasks(self) -> list[tuple[Setting, float]]:
+        """Every setting at each of its axial loads [N]: a curve over speed."""
+        return [(setting, load) for setting in self.settings() for load in self.loads_of(setting)]
 
     def point(self, setting: Setting, load: float, speed: float, registry: Registry) -> dict[str, Any]:
         """The scene's tables at one point."""
@@ -89,8 +145,17 @@ class Design:
             "supports.tilt": self.shaft if setting.tilt == "shaft" else setting.tilt,
             "kinematics.ball_inertia": setting.inertia,
             "load.axial": load,
+            "contact.friction": 0.0 if setting.friction == "none" else self.friction,
             "integrator.kind": "periodic",
         }
+        if setting.friction != "none":
+            chosen |= {
+                "kinematics.orbiting": setting.friction == "orbiting",
+                "integrator.kind": "newmark",
+                "integrator.start": "ramp",
+                "integrator.turns": FRICTION_TURNS,
+                "integrator.steps_per_turn": FRICTION_STEPS,
+            }
         return tables_at(self.tables, chosen, registry)
 
 
@@ -112,7 +177,7 @@ def article_tables() -> dict[str, Any]:
 
 def design(
     tables: Mapping[str, Any], speeds: str = SPEEDS, loads: str = LOADS, shaft: float | None = None,
-    bodies: Sequence[str] = BODIES,
+    bodies: Sequence[str] = BODIES, friction: float | None = None,
 ) -> Design:  # fmt: skip
     """The runs for a scene.
 
@@ -120,6 +185,7 @@ def design(
     ----------
     speeds, loads : "a,b,c" or "start:stop:count" [r/min], [N]
     shaft : tilt stiffness [N m/rad]; the scene's own where it has one, else that of the rig's shaft
+    friction : Coulomb coefficient; the scene's own where it has one, else the article's
 
     Raises
     ------
@@ -135,11 +201,20 @@ def design(
         shaft = float(own) if isinstance(own, int | float) and not isinstance(own, bool) else shaft_tilt_stiffness()
     if not (math.isfinite(shaft) and shaft > 0.0):
         raise SceneError.at("--shaft", shaft, "must be a tilt stiffness above 0 N m/rad")
-    found = Design(tables, _values("--speeds", speeds), _values("--axial", loads), shaft, tuple(bodies))
+    if friction is None:
+        friction = float(tables.get("contact", {}).get("friction", 0.0)) or FRICTION
+    if not (math.isfinite(friction) and friction >= 0.0):
+        raise SceneError.at("--friction", friction, "must be a coefficient of friction of at least 0")
+    found = Design(tables, _values("--speeds", speeds), _values("--axial", loads), shaft, tuple(bodies), friction)
     if "force" not in excitation and "reference_speed_rpm" not in excitation:
         changed = with_value(tables, "excitation.reference_speed_rpm", found.speeds[0])
         found = attrs.evolve(found, tables=changed)
     return found
+
+
+def _thinned(values: tuple[float, ...]) -> tuple[float, ...]:
+    """Every other value with both ends, where at least five are left: an exponent with its interval needs them."""
+    return values[::2] if len(values) % 2 and len(values) >= 9 else values
 
 
 def _values(option: str, text: str) -> tuple[float, ...]:

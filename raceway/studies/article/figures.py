@@ -15,7 +15,16 @@ import numpy as np
 from raceway.plugins.reports.pictures import new_figure
 from raceway.studies.article import causes
 from raceway.studies.article.curves import ROTATING, Curves
-from raceway.studies.article.design import AMPLITUDES, CLAIMED, DIRECTIONS, TILT_WORDS, TILTS, Setting
+from raceway.studies.article.design import (
+    AMPLITUDES,
+    CLAIMED,
+    DIRECTIONS,
+    FRICTION_WORDS,
+    FRICTIONS,
+    TILT_WORDS,
+    TILTS,
+    Setting,
+)
 from raceway.studies.article.rules import LEVEL
 
 if TYPE_CHECKING:
@@ -84,6 +93,8 @@ def pictures(study: Article) -> list[Picture]:
             *_surfaces(curves, kind),
         ]
         found += [attrs.evolve(one, name=named(one.name, curves.design.bodies, kind)) for one in made]
+    if len(curves.design.frictions) > 1:
+        found.append(_friction(curves))
     found.append(_tilt_stiffness(study))
     if len(curves.design.bodies) > 1:
         found.append(_bodies(curves))
@@ -93,12 +104,6 @@ def pictures(study: Article) -> list[Picture]:
 def named(figure: str, bodies: Sequence[str], kind: str) -> str:
     """The name of a figure: that of the first kind of bodies has nothing added."""
     return figure if kind == bodies[0] else f"{figure}-{kind}"
-
-
-def shown_load(curves: Curves) -> float:
-    """The scene's own axial load, or the one of the study that lies next to it."""
-    own = curves.design.tables.get("load", {}).get("axial", 0.0)
-    return min(curves.design.loads, key=lambda load: abs(load - own))
 
 
 def _some(values: Sequence[float], count: int = 5) -> list[int]:
@@ -124,7 +129,7 @@ def _ends(values: np.ndarray) -> str:
 
 def _excitations(curves: Curves, kind: str) -> list[Picture]:
     """Figure 9: both excitations over speed, and the mixed pairs, as far as they are run, that change one thing only."""
-    load = shown_load(curves)
+    load = curves.design.own_load
     w = np.array(curves.design.relative_speeds)
     parts = (
         ("figure-9", "Figure 9: k*, both excitations", "K", True, "k* (k = K)"),
@@ -334,6 +339,41 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
 
     words = f"Surface of K over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(k)} 10⁶ N/m; with weightless balls {_range(light)}"
     return Panel(draw, words, "Red wires: weightless balls.", solid=True)
+
+
+def _friction(curves: Curves) -> Picture:
+    """k* over speed without friction, and with it on balls that stand and that orbit, at the lightest and heaviest load."""
+    panels = tuple(_friction_panel(curves, tilt) for tilt in TILTS)
+    title = f"What friction does: k* over speed, rotating force m e w², coefficient {curves.design.friction:g}"
+    return Picture("friction", title, panels)
+
+
+def _friction_panel(curves: Curves, tilt: str) -> Panel:
+    loads = (curves.design.loads[-1], curves.design.loads[0])
+    lines = {
+        (friction, load): Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid", friction=friction)
+        for load in loads
+        for friction in curves.design.frictions
+    }
+    colours = dict(zip(FRICTIONS, ("#55636f", "#c8501e", "#0b5fa5"), strict=True))
+
+    def draw(axes: Any) -> None:
+        for (friction, load), setting in lines.items():
+            w, star = np.array(curves.design.relative_speeds_of(setting)), curves.normalised(setting, load)
+            known = np.isfinite(star)
+            style, name = ("-", FRICTION_WORDS[friction]) if load == loads[0] else ("--", None)
+            axes.plot(
+                w[known], star[known], style, marker="o", markersize=3, color=colours[friction], linewidth=1.7, label=name
+            )
+        axes.axhline(1.0, color="#8794a0", linewidth=0.8)
+        _finish(axes, TILT_WORDS[tilt], _SPEED, _STAR, legend=1)
+
+    words = "; ".join(
+        f"{load:g} N, {FRICTION_WORDS[friction]}: {_ends(curves.normalised(setting, load))}"
+        for (friction, load), setting in lines.items()
+    )
+    caption = f"Solid: {loads[0]:g} N. Dashed: {loads[1]:g} N."
+    return Panel(draw, f"k* over w* from 0 to 1, {TILT_WORDS[tilt]}: {words}", caption)
 
 
 def _tilt_stiffness(study: Article) -> Picture:

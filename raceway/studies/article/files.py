@@ -60,6 +60,7 @@ def _tables(study: Article, content: Mapping[str, Any]) -> dict[str, list[dict[s
         "quasi-static": trends,
         "static": list(study.static),
         "rig": list(study.rig),
+        "friction": content["friction_trends"],
         "tilt-stiffness": scan,
     }
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import attrs
 
-from raceway.studies.article.design import TILT_WORDS
+from raceway.studies.article.design import FRICTION_WORDS, TILT_WORDS
 
-_ORDER = ("case", "tilt", "inertia", "bodies", "speed", "load")
+_ORDER = ("case", "friction", "tilt", "inertia", "bodies", "speed", "load")
 
 
 @attrs.frozen
@@ -18,7 +18,7 @@ class Finding:
 
     Attributes
     ----------
-    at : which tilt, inertia, bodies, load [N], speed [r/min], or which case of a table
+    at : which friction, tilt, inertia, bodies, load [N], speed [r/min], or which case of a table
     holds : None where it could not be judged, with the reason in ``why``
     value : the number that the rule looks at
     """
@@ -64,6 +64,8 @@ def _named(key: str, chosen: list[Any], every: list[Any]) -> str:
     if key == "tilt":
         words = [TILT_WORDS[value].removeprefix("tilt ") for value in chosen]
         return "tilt " + " or ".join(words)
+    if key == "friction":
+        return " or ".join(FRICTION_WORDS[value] for value in chosen)
     if key == "inertia":
         return "with ball inertia" if chosen[0] else "weightless balls"
     if key == "bodies":
@@ -88,7 +90,15 @@ def _ranges(chosen: list[float], every: list[float], unit: str) -> str:
 
 
 def by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", form: str = ".3f") -> str:
-    """The range of the values at each tilt boundary."""
+    """The range of the values at each tilt boundary, for each kind of friction."""
+    kinds = list(dict.fromkeys(one.at.get("friction") for one in findings))
+    told = [_by_tilt([one for one in findings if one.at.get("friction") == kind], scale, unit, form) for kind in kinds]
+    if len(kinds) < 2:
+        return "".join(told)
+    return ". ".join(f"{FRICTION_WORDS[str(kind)].capitalize()}: {text}" for kind, text in zip(kinds, told, strict=True))
+
+
+def _by_tilt(findings: Sequence[Finding], scale: float, unit: str, form: str) -> str:
     parts = []
     for tilt in dict.fromkeys(one.at["tilt"] for one in findings):
         values = [scale * one.value for one in findings if one.at["tilt"] == tilt and one.value is not None]

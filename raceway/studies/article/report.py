@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.studies.article import causes, expected
-from raceway.studies.article.claims import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
 from raceway.studies.article.curves import told
-from raceway.studies.article.design import TILT_WORDS, TILTS
-from raceway.studies.article.figures import Picture, named, shown_load
+from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, FRICTIONS, TILT_WORDS, TILTS
+from raceway.studies.article.figures import Picture, named
+from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
 from raceway.studies.page import Cell, Page
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def page(study: Article, pictures: Sequence[Picture], command: str) -> Page:
     footer += "Numbers of all runs: article.json and curves.csv beside this page."
     out = Page("The article’s claims, computed again", study.title, footer)
     _opening(out, study)
+    _friction(out, study, {one.name: one for one in pictures})
     _verdicts(out, study)
     _setting(out, study)
     _figures(out, study, {one.name: one for one in pictures})
@@ -50,20 +51,23 @@ def _opening(out: Page, study: Article) -> None:
     }
     told_counts = ", ".join(f"{count} {words[kind]}" for kind, count in counts.items() if count)
     out.text(
-        f"The claims of {ARTICLE} are put to {sum(len(rows) for rows in study.curves.rows.values())} steady orbits of this "
+        f"The claims of {ARTICLE} are put to {sum(len(rows) for rows in study.curves.rows.values())} motions of this "
         f"program, each claim in every reading that its words allow. Of {len(study.verdicts)} readings {told_counts}. No claim "
         "is fitted: each verdict follows from a rule that is printed beside it.",
         kind="lead",
     )
     out.listing(in_short(study))
-    _swaps(out, study, shown_load(study.curves))
+    _swaps(out, study, study.curves.design.own_load)
 
 
 def in_short(study: Article) -> list[str]:
     """What the numbers say, in two sentences."""
-    load = shown_load(study.curves)
+    load = study.curves.design.own_load
     row = causes.one_at_a_time(study.curves, load)[0][1]
-    out = [f"Under the rotating force m e w² at {load:g} N, K changes from the lowest to the highest speed by {_each(row)}."]
+    out = [
+        _friction_in_short(study),
+        f"Under the rotating force m e w² at {load:g} N, without friction, K changes from the lowest to the highest speed by {_each(row)}.",
+    ]
     turns = {load: causes.turning_point(causes.hardening(rows)) for load, rows in study.scan.items()}
     known = [f"{_round(value)} N m/rad at {load:g} N" for load, value in turns.items() if value is not None]
     if known:
@@ -72,6 +76,52 @@ def in_short(study: Article) -> list[str]:
             f"{', '.join(known)}. The shaft is taken with {_round(study.curves.design.shaft)} N m/rad."
         )
     return out
+
+
+def _friction_in_short(study: Article) -> str:
+    """What the article's friction does where it does most."""
+    made = study.curves.design
+    if len(made.frictions) < 2:
+        return "All runs are without friction, of which the article has a coefficient of 0.03."
+    known = [
+        one for one in causes.friction_trends(study.curves) if not any(isinstance(one[kind], str) for kind in FRICTIONS)
+    ]
+    if not known:
+        return f"No run with the article's friction of {made.friction:g} came to an end: every verdict is without it."
+    most = max(known, key=lambda one: abs(one["standing"] - one["none"]))
+    told = ", ".join(f"{_percent(most[kind])} {FRICTION_WORDS[kind]}" for kind in FRICTIONS)
+    return (
+        f"Friction, {made.friction:g} in the article, comes first: where it does most ({TILT_WORDS[most['tilt']]}, "
+        f"{most['axial_n']:g} N, rotating force m e w²) K changes from the lowest to the highest speed by {told}."
+    )
+
+
+def _friction(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
+    made = study.curves.design
+    out.section("Friction")
+    if len(made.frictions) < 2:
+        out.text(
+            "Nothing was run with friction: `--friction 0`, or no rigid bodies. Every verdict is without it.", kind="note"
+        )
+        return
+    out.text(
+        f"The article's contacts have a Coulomb coefficient of {made.friction:g} between balls and rings, so that every claim is "
+        "judged without and with it. It acts in the plane of axis and ball, in which balls do not roll: a contact that sticks holds ball "
+        "and ring together along the groove, which is a tangential stiffness. A turning bearing renews its contacts within a small part "
+        "of a turn, and keeps little of it. Balls that stand keep what sticks for as long as the motion repeats itself; on balls that "
+        "orbit at cage speed each contact meets the force at another frequency, so that what sticks changes all the time. "
+        "The two are told apart because the article does not say how its balls move.",
+        f"With friction there is no steady orbit to solve for: where contacts stick depends on how the motion began. Those runs go "
+        f"through time (integrator `newmark`, {FRICTION_TURNS} turns of {FRICTION_STEPS} steps, the force grows over two thirds of them "
+        "and the last third counts) at every other speed and axial load, with rigid bodies and ball inertia.",
+    )
+    columns = ["", *(FRICTION_WORDS[one] for one in made.frictions)]
+    rows = [
+        [f"{TILT_WORDS[one['tilt']]}, {one['axial_n']:g} N", *(_percent(one[kind]) for kind in made.frictions)]
+        for one in causes.friction_trends(study.curves)
+    ]
+    out.table(columns, rows, "Change of K from the lowest to the highest speed, k*(1) − 1, rotating force m e w²")
+    _picture(out, pictures["friction"])
 
 
 def _swaps(out: Page, study: Article, load: float) -> None:
@@ -116,13 +166,13 @@ def _setting(out: Page, study: Article) -> None:
     constant = f"{given['force']:g} N" if "force" in given else f"that at {given['reference_speed_rpm']:g} r/min"
     out.section("What is computed")
     out.text(
-        f"The steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(made.speeds)} speeds from "
+        f"Without friction the steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(made.speeds)} speeds from "
         f"{made.speeds[0]:g} to {made.speeds[-1]:g} r/min and {len(made.loads)} axial loads from {made.loads[0]:g} to "
         f"{made.loads[-1]:g} N. Its 1x line gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
         f"said; the mass m is the ring’s and {mass:g} kg of the rotor. w* = (w − w_min) / (w_max − w_min), k* = k / k(w_min).",
         "Rotating: a force that turns with the rotor (the article’s bidirectional model). Unidirectional: a force along one fixed "
         f"line. Its amplitude is m e w², or constant: {constant}. The article changes both at once; here each is varied alone, "
-        f"too ({made.bodies[0]} bodies).",
+        f"too, at the lightest, the scene's own and the heaviest axial load ({made.bodies[0]} bodies).",
         f"Tilt of the inner ring: locked, free, or against the shaft with {_round(made.shaft)} N m/rad (2 E I / L of a shaft of "
         "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
         "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
@@ -151,7 +201,7 @@ def _figures(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
     out.section("What causes the trend")
     out.text("One choice is swapped at a time; everything else stays.")
     curves = study.curves
-    for load in dict.fromkeys((curves.design.loads[0], shown_load(curves), curves.design.loads[-1])):
+    for load in dict.fromkeys((curves.design.loads[0], curves.design.own_load, curves.design.loads[-1])):
         _swaps(out, study, load)
     _picture(out, pictures["tilt-stiffness"])
     if "bodies" in pictures:
@@ -167,9 +217,9 @@ def _picture(out: Page, picture: Picture) -> None:
 def _static(out: Page, study: Article) -> None:
     out.section("Static verification")
     out.text(
-        "Section 3.2 of the article: peak pressures of its finite-element model against exact Hertz in the rigid equilibrium. "
-        "Here: nodal contact on condensed bodies, the pressure at surface points, no penalty. The article’s load cases are lost; "
-        "these four span its range. The bearing is the article’s, whatever scene the study is given."
+        "Claims 1a and 1b cannot be tested: the article’s load cases are lost. Section 3.2 of it compares peak pressures of its finite-element model with exact Hertz in the rigid equilibrium. "
+        "Reported here: nodal contact on condensed bodies, the pressure at surface points, no penalty, in four load cases of our own "
+        "that span its range. The bearing is the article’s, whatever scene the study is given."
     )
     rows = [
         [one["quantity"], _digits(one["reference"]), _digits(one["computed"]), _share(one["error"]), _share(one["tolerance"]),

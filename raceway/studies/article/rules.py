@@ -6,7 +6,6 @@ other numbers that are missing belong to unstable motions: those between two num
 
 from __future__ import annotations
 
-import attrs
 import numpy as np
 
 from raceway.studies.compare.effects import trend
@@ -15,8 +14,6 @@ from raceway.studies.compare.effects import trend
 LEVEL = 0.005
 #: "about" a percentage: within this share of it.
 ABOUT = 0.25
-#: A parabola describes a curve when it leaves at most this share of its rise.
-MISFIT = 0.05
 
 
 def course(values: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> str | None:
@@ -39,45 +36,6 @@ def course(values: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> str | 
     return found if found == "not monotonic" or abs(y[-1] / y[0] - 1.0) >= LEVEL else "level"
 
 
-@attrs.frozen
-class Parabola:
-    """k* = 1 + slope w* + bend w*^2 by least squares; ``misfit``: largest rest over the change from w* = 0 to 1."""
-
-    slope: float
-    bend: float
-    misfit: float
-
-    @property
-    def bend_share(self) -> float:
-        """Part of the change at w* = 1 that is quadratic."""
-        whole = self.slope + self.bend
-        return self.bend / whole if whole else 0.0
-
-
-def parabola(relative_speed: np.ndarray, normalised: np.ndarray) -> Parabola:
-    """Fit through k*(0) = 1; numbers that are missing are left out."""
-    known = np.isfinite(normalised)
-    w, change = relative_speed[known], normalised[known] - 1.0
-    matrix = np.stack([w, w**2], axis=1)
-    (slope, bend), *_ = np.linalg.lstsq(matrix, change, rcond=None)
-    rest = np.abs(matrix @ np.array([slope, bend]) - change).max()
-    size = abs(change[-1])
-    return Parabola(float(slope), float(bend), float(rest / size) if size > 0.0 else np.inf)
-
-
-def rises_quadratically(
-    relative_speed: np.ndarray, values: np.ndarray, errors: np.ndarray, failed: np.ndarray
-) -> bool | None:
-    """Rises at every step, bends upwards, and a parabola describes it."""
-    found = course(values, errors, failed)
-    if found is None:
-        return None
-    if found != "rises":
-        return False
-    fit = parabola(relative_speed, values / values[0])
-    return fit.bend > 0.0 and fit.misfit <= MISFIT
-
-
 def about(value: float, target: float) -> bool:
     return abs(value - target) <= ABOUT * target
 
@@ -85,7 +43,7 @@ def about(value: float, target: float) -> bool:
 def change_within(
     relative_speed: np.ndarray, values: np.ndarray, failed: np.ndarray, first: float, last: float
 ) -> float | None:
-    """|k(last) / k(first) - 1|, between neighbours by straight lines; None with a failed run or without numbers around them."""
+    """k(last) / k(first) - 1, between neighbours by straight lines; None with a failed run or without numbers around them."""
     if failed.any():
         return None
     known = np.isfinite(values)
@@ -93,7 +51,7 @@ def change_within(
     if len(w) < 2 or first < w[0] or last > w[-1]:
         return None
     ends = np.interp([first, last], w, k)
-    return float(abs(ends[1] / ends[0] - 1.0))
+    return float(ends[1] / ends[0] - 1.0)
 
 
 def spread(relative_speed: np.ndarray, surface: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:

@@ -16,10 +16,11 @@ from raceway.result import without_nan
 from raceway.scene_file import scene_from_dict
 from raceway.simulate import OnProgress
 from raceway.studies.article import causes, expected
-from raceway.studies.article.claims import Verdict, verdicts
+from raceway.studies.article.claims import verdicts
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import BODIES, LOADS, SPEEDS, TILTS, Design, Setting, article_tables, design
 from raceway.studies.article.runs import Row, Task, curve, work
+from raceway.studies.article.verdict import Verdict
 from raceway.studies.processes import processor_time
 from raceway.studies.reference import reference_cases
 from raceway.studies.row_store import RowStore
@@ -68,7 +69,7 @@ class Article:
 
     @property
     def runs(self) -> int:
-        """How many steady orbits were sought."""
+        """How many motions were sought: steady orbits, and with friction transients."""
         return sum(map(len, [*self.curves.rows.values(), self.rig, *self.scan.values()]))
 
     def as_dict(self) -> dict[str, Any]:
@@ -77,7 +78,7 @@ class Article:
         rows = [
             {**attrs.asdict(setting), **row, "relative_speed": w}
             for (setting, _), found in self.curves.rows.items()
-            for row, w in zip(found, made.relative_speeds, strict=True)
+            for row, w in zip(found, made.relative_speeds_of(setting), strict=True)
         ]
         content: dict[str, Any] = without_nan(
             {
@@ -87,6 +88,8 @@ class Article:
                 "axial_n": made.loads,
                 "shaft_tilt_stiffness": made.shaft,
                 "bodies": made.bodies,
+                "friction": made.friction if len(made.frictions) > 1 else 0.0,
+                "friction_trends": causes.friction_trends(self.curves),
                 "verdicts": [one.as_dict() for one in self.verdicts],
                 "quasi_static": [one.as_dict() for one in self.trends],
                 "static": self.static,
@@ -128,6 +131,7 @@ def article(
     loads: str = LOADS,
     shaft: float | None = None,
     bodies: Sequence[str] = BODIES,
+    friction: float | None = None,
     processes: int = PROCESSES,
     store: Path | None = None,
     registry: Registry | None = None,
@@ -141,6 +145,7 @@ def article(
     tables : plain tables of a scene; the article's when None
     speeds, loads : "a,b,c" or "start:stop:count" [r/min], [N]
     shaft : tilt stiffness of the setting "against the shaft" [N m/rad]
+    friction : Coulomb coefficient of the settings with friction; 0 leaves them out, None takes the scene's or the article's
     processes : how many work at a time; 0 works in this one
     store : file that finished curves are kept in and taken from
     plugins : one-off plug-in files, which each process loads
@@ -155,8 +160,8 @@ def article(
     """
     begun, cpu, own = time.monotonic(), processor_time(), time.process_time()
     registry = registry or default_registry()
-    made = design(tables if tables is not None else article_tables(), speeds, loads, shaft, bodies)
-    settings = [(setting, load) for setting in made.settings() for load in made.loads]
+    made = design(tables if tables is not None else article_tables(), speeds, loads, shaft, bodies, friction)
+    settings = made.tasks()
     title = _checked(made, registry)
     tasks = _tasks(made, settings, registry)
     kept = RowStore(store)
@@ -187,8 +192,9 @@ def _tasks(made: Design, settings: Sequence[tuple[Setting, float]], registry: Re
         points = [made.point(setting, load, speed, registry) for load in RIG_LOADS for speed in RIG_SPEEDS]
         tasks.append(Task("the rig's speeds", curve, points))
     for setting, load in settings:
-        points = [made.point(setting, load, speed, registry) for speed in made.speeds]
-        tasks.append(Task("curves over speed", curve, points))
+        points = [made.point(setting, load, speed, registry) for speed in made.speeds_of(setting)]
+        what = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
+        tasks.append(Task(what, curve, points))
     return tasks
 
 
