@@ -2,6 +2,7 @@
 # make test     everything installed, the quick tests
 # make lint     ruff, import-linter, mypy
 # make evidence every number that README and docs show, computed again
+# make reports-cheap  the reports of a few seconds, computed again: does each row hold as it did when the report was made?
 # make mutants  deliberate faults of one line, and whether the tests catch them
 
 PYTHON ?= python3
@@ -9,12 +10,15 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 SCENE  ?= examples/b7206.toml
 
+# Together one minute of one core with kernels compiled.
+CHEAP := compare_bodies depth expected_values orders running tangent verify
+
 # What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display), the tests of pages (a browser)
 # and of the .inp files (CalculiX).
 APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
-.PHONY: demo test lint evidence mutants system-libraries apt-line clean
+.PHONY: demo test lint evidence reports-cheap mutants system-libraries apt-line clean
 
 demo: $(VENV)/.base
 	$(BIN)/raceway run $(SCENE)
@@ -30,6 +34,9 @@ lint: $(VENV)/.all
 
 evidence: $(VENV)/.all
 	$(BIN)/python -m benchmarks.evidence
+
+reports-cheap: $(VENV)/.all
+	$(BIN)/python -m benchmarks.evidence --check $(CHEAP)
 
 mutants: $(VENV)/.all
 	$(BIN)/python -m benchmarks.mutants

@@ -8,6 +8,7 @@ import os
 import platform
 import re
 import subprocess
+from collections.abc import Container
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,8 @@ from typing import Any
 import attrs
 
 from benchmarks.evidence import Row
+from benchmarks.evidence._age import ROOT, listed
 
-ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "reports"
 #: What stands for the limit of a row that nothing is asked of.
 _NO_LIMIT = ("reported", "told", "for information")
@@ -54,8 +55,11 @@ def _git(*words: str) -> str:
     return subprocess.run(["git", *words], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
 
 
-def write(name: str, title: str, rows: list[Row], seconds: float, folder: Path = FOLDER) -> dict[str, Any]:
-    """Write the JSON and the Markdown file of a report; returns the JSON's content."""
+def write(name: str, title: str, rows: list[Row], seconds: float, digest: str, folder: Path = FOLDER) -> dict[str, Any]:
+    """Write the JSON and the Markdown file of a report; returns the JSON's content.
+
+    ``digest`` is that of the code that the report measures, taken before it was computed.
+    """
     data = {
         "title": title,
         "rows": [attrs.asdict(row) for row in rows],
@@ -64,6 +68,7 @@ def write(name: str, title: str, rows: list[Row], seconds: float, folder: Path =
         "machine": machine(),
         "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d"),
         "seconds": round(seconds, 1),
+        "digest": digest,
     }
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
@@ -89,7 +94,8 @@ def _origin(data: dict[str, Any]) -> str:
     m = data["machine"]
     return (
         f"Made by `{data['command']}` in {data['seconds']} s, commit {data['commit']}, {data['date']}; "
-        f"{m['cores']} cores {m['processor']}, {m['system']}, Python {m['python']}, numba {m['numba']}."
+        f"{m['cores']} cores {m['processor']}, {m['system']}, Python {m['python']}, numba {m['numba']}; "
+        f"digest of the code measured: {data['digest'] or 'none'}."
     )
 
 
@@ -109,11 +115,12 @@ def shown(value: float | str) -> str:
     return str(value)
 
 
-def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
+def summary(reports: dict[str, dict[str, Any]], older: Container[str], links: str = "") -> str:
     """Every report with its counts as a Markdown table; ``links`` is the folder as seen from the document."""
     lines = ["| report | rows that hold | date | commit |", "|---|---|---|---|"]
     for name, data in reports.items():
-        lines.append(f"| [{data['title']}]({links}{name}.md) | {holding(data)} | {data['date']} | {data['commit']} |")
+        commit = f"{data['commit']}, older than the code" if name in older else data["commit"]
+        lines.append(f"| [{data['title']}]({links}{name}.md) | {holding(data)} | {data['date']} | {commit} |")
     return "\n".join(lines)
 
 
@@ -131,8 +138,8 @@ def documents() -> list[Path]:
     return [path for path in [ROOT / "README.md", *pages] if path.is_file()]
 
 
-def render(text: str, reports: dict[str, dict[str, Any]], links: str = "docs/reports/") -> str:
-    """A document's text with every block made anew; ``evidence:summary`` is the table of reports.
+def render(text: str, reports: dict[str, dict[str, Any]], older: Container[str] = (), links: str = "docs/reports/") -> str:
+    """A document's text with every block made anew; ``evidence:summary`` is the table of reports, with a mark at the older ones.
 
     Raises
     ------
@@ -144,7 +151,7 @@ def render(text: str, reports: dict[str, dict[str, Any]], links: str = "docs/rep
         name = match[2]
         if name != "summary" and name not in reports:
             raise KeyError(f"a block asks for the report '{name}'; there are {', '.join(reports)}")
-        body = summary(reports, links) if name == "summary" else table(reports[name])
+        body = summary(reports, older, links) if name == "summary" else table(reports[name])
         return f"{match[1]}{body}\n{match[4]}"
 
     return _BLOCK.sub(block, text)
@@ -157,13 +164,13 @@ def links_from(document: Path) -> str:
 
 def refresh() -> list[Path]:
     """Rewrite the index of reports and every block; returns the documents that changed."""
-    reports = read()
-    index = "# Reports\n\nMade by `make evidence`; see `benchmarks/evidence`.\n\n" + summary(reports) + "\n"
+    reports, older = read(), listed()
+    index = "# Reports\n\nMade by `make evidence`; see `benchmarks/evidence`.\n\n" + summary(reports, older) + "\n"
     (FOLDER / "README.md").write_text(index, encoding="utf-8")
     changed = []
     for path in documents():
         old = path.read_text(encoding="utf-8")
-        new = render(old, reports, links_from(path))
+        new = render(old, reports, older, links_from(path))
         if new != old:
             path.write_text(new, encoding="utf-8")
             changed.append(path)

@@ -1,0 +1,135 @@
+"""Which reports are older than the code that they measure.
+
+A report carries a digest of the areas that it measures, of its own module, and of what that imports from ``benchmarks`` and
+``tests``.  Comments, docstrings and blank lines are no part of it.  A report whose digest is not that of the code is out of date:
+it is made again or, where that costs too much for now, stands with date and reason in ``docs/reports/older.toml``.
+"""
+
+from __future__ import annotations
+
+import ast
+import datetime
+import hashlib
+import io
+import json
+import tokenize
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from benchmarks.evidence._areas import AREAS, MEASURES
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "raceway"
+LISTED = ROOT / "docs" / "reports" / "older.toml"
+#: What every report is made with: no part of what a report measures.
+_RUNNER = {Path(__file__).with_name(name) for name in ("__init__.py", "_files.py", "_kept.py")}
+_PLACES = {place: area for area, places in AREAS.items() for place in places.split()}
+
+
+def digest(name: str) -> str:
+    """Digest of the code that a report measures, 16 hexadecimal digits.
+
+    Raises
+    ------
+    KeyError
+        A report for which ``_areas.MEASURES`` names no areas.
+    """
+    total = hashlib.sha256()
+    for path in measured(name):
+        total.update(f"{path.relative_to(ROOT).as_posix()}\n{_content(path)}\n".encode())
+    return total.hexdigest()[:16]
+
+
+def measured(name: str) -> list[Path]:
+    """The files that a report measures."""
+    found = _imported(Path(__file__).with_name(f"{name}.py"))
+    for word in MEASURES[name].split():
+        if "/" in word:
+            place = ROOT / word
+            found |= set(place.rglob("*.py")) if place.is_dir() else {place}
+        else:
+            found |= {path for path in package_files() if area(path) == word}
+    return sorted(found)
+
+
+@cache
+def package_files() -> list[Path]:
+    """The package's sources and data."""
+    return sorted(path for path in PACKAGE.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+
+
+def area(path: Path) -> str | None:
+    """The area of a file of the package; None where no place of ``_areas.AREAS`` holds it."""
+    inside = path.relative_to(PACKAGE)
+    places = (inside.with_suffix(""), *inside.parents)
+    return next((_PLACES[place.as_posix()] for place in places if place.as_posix() in _PLACES), None)
+
+
+def out_of_date(reports: dict[str, dict[str, Any]]) -> list[str]:
+    """Names of the reports that were made with other code than this."""
+    return [name for name, data in reports.items() if data["digest"] != digest(name)]
+
+
+def listed() -> dict[str, str]:
+    """Reports that are known to be older than the code, with the date of the entry and the reason."""
+    return tomllib.loads(LISTED.read_text(encoding="utf-8"))
+
+
+def put_on_list(names: list[str], reason: str) -> None:
+    """List reports as known to be older than the code."""
+    today = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d")
+    _write(listed() | dict.fromkeys(names, f"{today}: {reason}"))
+
+
+def take_off_list(names: list[str]) -> None:
+    """Take reports that were made again off the list."""
+    _write({name: reason for name, reason in listed().items() if name not in names})
+
+
+def _write(entries: dict[str, str]) -> None:
+    head = (
+        "# Reports that are older than the code they measure, with date and reason: python -m benchmarks.evidence --older\n"
+    )
+    lines = [f"{name} = {json.dumps(entries[name], ensure_ascii=False)}\n" for name in sorted(entries)]
+    LISTED.write_text(head + "".join(lines), encoding="utf-8")
+
+
+@cache
+def _content(path: Path) -> str:
+    """What counts of a file: a source without comments, docstrings and blank lines; other files as they are."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix != ".py":
+        return text
+    lines = text.splitlines()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column]
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            lines[node.lineno - 1 : node.end_lineno] = [""] * (node.end_lineno - node.lineno + 1)  # type: ignore[operator]
+    return "\n".join(line.rstrip() for line in lines if line.strip())
+
+
+@cache
+def _imported(path: Path) -> frozenset[Path]:
+    """A module of ``benchmarks`` or ``tests`` with all of those folders that it imports, directly or not."""
+    found: set[Path] = set()
+    waiting = [path]
+    while waiting:
+        path = waiting.pop()
+        if path in found or path in _RUNNER:
+            continue
+        found.add(path)
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] in ("benchmarks", "tests"):
+                base = ROOT.joinpath(*node.module.split("."))
+                candidates = [
+                    base.with_suffix(".py"),
+                    *(base / f"{alias.name}.py" for alias in node.names),
+                    base / "__init__.py",
+                ]
+                waiting += [candidate for candidate in candidates if candidate.is_file()]
+    return frozenset(found)
