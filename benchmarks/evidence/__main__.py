@@ -62,7 +62,7 @@ def make(name: str) -> int:
 
 
 def check(name: str) -> int:
-    """Compute a report, write nothing; 1 when a row holds that did not, or the other way round, or is not in the report."""
+    """Compute a report without writing it; 1 when a row holds that did not, or the other way round, or is not in the report."""
     start = time.perf_counter()
     differences = other_verdicts(_files.read()[name]["rows"], report(name).rows())
     print(f"{name}: {len(differences)} rows other than in the report, {time.perf_counter() - start:.1f} s", flush=True)
@@ -112,7 +112,7 @@ def _parser() -> argparse.ArgumentParser:
     instead = parser.add_mutually_exclusive_group()
     instead.add_argument("--render", action="store_true", help="only refresh the documents")
     instead.add_argument(
-        "--check", action="store_true", help="compute, write nothing, compare each row's verdict with the report's"
+        "--check", action="store_true", help="compute, write no report, compare each row's verdict with the report's"
     )
     instead.add_argument("--older", action="store_true", help="tell which reports are older than their code")
     instead.add_argument(
