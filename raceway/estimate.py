@@ -58,7 +58,7 @@ def highest_frequency(scene: Scene) -> float:
     if scene.excitation is not None:
         load += 5.0 * scene.excitation.amplitude_n / b.ball_count
     normal = 1.5 * load / (load / series_factor(scene)) ** (2.0 / 3.0) if load > 0.0 else 1.0
-    mass, inertia = ring_inertia(scene)
+    mass, inertia, _ = ring_inertia(scene)
     mass, inertia = mass + scene.rotor.mass, inertia + scene.rotor.transverse_inertia
     alpha = b.contact_angle
     best = b.ball_count * normal * max(sin(alpha) ** 2, 0.5 * cos(alpha) ** 2) / mass

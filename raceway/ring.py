@@ -8,8 +8,8 @@ from typing import Any
 from raceway.scene import Scene
 
 
-def ring_inertia(scene: Scene) -> tuple[float, float]:
-    """Mass [kg] and transverse inertia [kg m2] of the inner ring, or of a pair's two; zeros when bore or width are not known.
+def ring_inertia(scene: Scene) -> tuple[float, float, float]:
+    """Mass [kg], transverse and polar inertia [kg m2] of the inner ring, or of a pair's two; zeros when bore or width are not known.
 
     Notes
     -----
@@ -19,9 +19,9 @@ def ring_inertia(scene: Scene) -> tuple[float, float]:
     moments = _moments(scene)
     places = [place for _, place in scene.bearing.rows]
     if moments is None:
-        return 0.0, 0.0
-    mass, transverse, _ = (scene.bearing.rings.density * moment for moment in moments)
-    return mass * len(places), sum(transverse + mass * place**2 for place in places)
+        return 0.0, 0.0, 0.0
+    mass, transverse, polar = (scene.bearing.rings.density * moment for moment in moments)
+    return mass * len(places), sum(transverse + mass * place**2 for place in places), polar * len(places)
 
 
 def _moments(scene: Scene) -> tuple[float, float, float] | None:

@@ -199,7 +199,9 @@ class Rotor:
     transverse_inertia: float = option(
         0.0, unit="kg m2", help="about the reference point, added to the ring's own", rule=at_least(0.0)
     )
-    polar_inertia: float = option(0.0, unit="kg m2", help="gyroscopic moments on the tilts", rule=at_least(0.0))
+    polar_inertia: float = option(
+        0.0, unit="kg m2", help="gyroscopic moments on the tilts, beside those of the inner ring", rule=at_least(0.0)
+    )
     damping: float = option(0.0, unit="N s/m", help="viscous, on the translations", rule=at_least(0.0))
 
 

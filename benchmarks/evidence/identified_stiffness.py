@@ -30,12 +30,12 @@ CASES = tuple(product(("locked", "free"), (400.0, 1000.0), (10980.0, 15000.0), (
 def reference(axial: float, tilt: str, speed_rpm: float, inertia: bool) -> tuple[float, float]:
     """K [N/m] and the largest Floquet multiplier of the periodic motion; B7206C typed in here once more."""
     w, force = speed_rpm * np.pi / 30.0, rig_force(speed_rpm)
-    translation, tilting = ring_inertia(scene_from_dict(rotating(axial, tilt, speed_rpm, inertia, "newmark")))
+    translation, tilting, polar = ring_inertia(scene_from_dict(rotating(axial, tilt, speed_rpm, inertia, "newmark")))
     translation += 2.0
     mass = np.diag([translation] * 3 + [tilting] * 2)
     ring = Ring(
         ball_diameter=9.525e-3, pitch_diameter=46e-3, ball_count=12, contact_angle=np.radians(15.0),
-        conformity_inner=0.522, conformity_outer=0.522, spin_speed=w if inertia else 0.0, damping=0.001,
+        conformity_inner=0.522, conformity_outer=0.522, spin_speed=w if inertia else 0.0, damping=0.001, spin=polar * w,
     )  # fmt: skip
     free = np.array([1.0, 1.0, 1.0, *([float(tilt == "free")] * 2)])
     load, push, q = np.array([axial, 0.0, 0.0, 0.0, 0.0]), force, np.array([3e-5, 0.0, 0.0, 0.0, 0.0])

@@ -110,9 +110,9 @@ def law_params(scene: Scene, basis: Basis) -> np.ndarray:
 def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
     """Mass, damping and stiffness (5, 5) of ring, rotor and shaft, the unknowns (5,) and the constant load (5,)."""
     rotor = scene.rotor
-    mass, tilt = ring_inertia(scene)
+    mass, tilt, _ = ring_inertia(scene)
     translation, rotation = rotor.mass + mass, rotor.transverse_inertia + tilt
-    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0]) + rotor_gyroscopic(scene)
+    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0]) + gyroscopic(scene)
     shaft = scene.supports.tilt if isinstance(scene.supports.tilt, float) else 0.0
     return {
         "mass": np.diag([translation] * 3 + [rotation] * 2),
@@ -142,18 +142,18 @@ def changing_speed(scene: Scene) -> ChangingSpeed | None:
     if not scene.spin_changes:
         return None
     growth = radial_growth(scene) - scene.kinematics.radial_expansion
-    return ChangingSpeed(scene.excitation.phase, scene.spin_speed, growth, rotor_gyroscopic(scene))
+    return ChangingSpeed(scene.excitation.phase, scene.spin_speed, growth, gyroscopic(scene))
 
 
-def rotor_gyroscopic(scene: Scene) -> np.ndarray:
-    """(5, 5) part of the damping that a spinning rotor makes [N m s/rad].
+def gyroscopic(scene: Scene) -> np.ndarray:
+    """(5, 5) part of the damping that the spinning ring and rotor make [N m s/rad].
 
     Notes
     -----
     dH/dt: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
     """
     found = np.zeros((5, 5))
-    found[3, 4] = scene.rotor.polar_inertia * scene.spin_speed
+    found[3, 4] = (scene.rotor.polar_inertia + ring_inertia(scene)[2]) * scene.spin_speed
     found[4, 3] = -found[3, 4]
     return found
 

@@ -74,7 +74,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         if getattr(method, "steady", False) and "record" in scene.identifier.method.needs:
             _refuse_steady(scene, refuse)
     if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
-        mass, tilt = ring_inertia(scene)
+        mass, tilt, _ = ring_inertia(scene)
         if scene.rotor.mass + mass <= 0.0:
             why = "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own"
             faults.append(Mistake("rotor.mass", scene.rotor.mass, why))

@@ -10,6 +10,7 @@ from raceway.planning.elastic import ElasticCost, words
 from raceway.planning.parts import Decisions
 from raceway.planning.patches import PatchCost
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
+from raceway.ring import ring_inertia
 from raceway.scene import Scene
 
 #: Name of what repeats itself, for ``make_plan``'s ``force``.
@@ -130,9 +131,9 @@ def decide_bodies(scene: Scene, parts: Decisions, elastic: ElasticCost | None, p
 def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -> Motion:
     """What moves, and how many turns of it are integrated."""
     dynamic, integrator, identifier = scene.excitation is not None, scene.integrator, scene.identifier
-    rotor = scene.rotor.polar_inertia > 0.0 and tilts and dynamic
-    part, why = "gyroscopic moments of the rotor", "rotor.polar_inertia on free tilts"
-    parts.decide(rotor, part, why, "no polar inertia on free tilts")
+    spins = scene.rotor.polar_inertia + ring_inertia(scene)[2] > 0.0 and scene.spin_speed != 0.0
+    part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"
+    parts.decide(spins and tilts and dynamic, part, why, "nothing spins on free tilts")
     unused = "the scene is static" if not dynamic else f"identifier '{identifier.kind}' needs the equilibrium only"
     part, why = f"time integration ({integrator.kind})", "the identifier needs recorded motion"
     recorded = parts.decide(uses_record(scene), part, why, unused)

@@ -1,10 +1,11 @@
-"""Gyroscopic moments of the rotor: the identified stiffness against a linear model written from the angular momentum."""
+"""Gyroscopic moments of ring and rotor: the identified stiffness against a linear model written from the angular momentum."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from raceway.ring import ring_inertia
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
 from tests.conftest import b7206c
@@ -14,7 +15,7 @@ POLAR, TRANSVERSE = 8.05e-3, 4.1e-3
 SPEED_RPM = 12000.0
 
 
-def linear(stiffness: np.ndarray, model, whirl: float) -> complex:
+def linear(stiffness: np.ndarray, model, polar: float, whirl: float) -> complex:
     """Z [N/m] of a force that turns with ``whirl`` times the speed, on the tangent of the equilibrium.
 
     Notes
@@ -25,23 +26,30 @@ def linear(stiffness: np.ndarray, model, whirl: float) -> complex:
     """
     w = SPEED_RPM * np.pi / 30.0
     moments = np.zeros((5, 5))
-    moments[3, 4], moments[4, 3] = POLAR * w, -POLAR * w
+    moments[3, 4], moments[4, 3] = polar * w, -polar * w
     dynamic = stiffness - w**2 * model.system.mass + 1j * w * moments
     force = np.array([0.0, 1.0, -1j * whirl, 0.0, 0.0])
     return 1.0 / np.linalg.solve(dynamic, force)[1]
 
 
+@pytest.mark.parametrize("polar", [0.0, POLAR])
 @pytest.mark.parametrize("whirl", ["forward", "backward"])
-def test_the_disc_stiffens_forward_whirl_and_softens_backward_whirl(whirl):
+def test_what_spins_stiffens_forward_whirl_and_softens_backward_whirl(whirl, polar):
+    """The inner ring alone, 1.9e-5 kg m2, and with a disc."""
     tables = b7206c(
         load={"axial": 400.0},
         supports={"tilt": "free"},
-        rotor={"polar_inertia": POLAR, "transverse_inertia": TRANSVERSE},
+        rotor={"polar_inertia": polar, "transverse_inertia": TRANSVERSE if polar else 0.0},
         excitation={"kind": "bidirectional", "speed_rpm": SPEED_RPM, "amplitude": "constant", "force": 0.1, "whirl": whirl},
         contact={"damping": 0.0},
         integrator={"kind": "periodic"},
     )
     result = run(scene_from_dict(tables))
-    expected = linear(result.equilibrium.stiffness, result.model, 1.0 if whirl == "forward" else -1.0)
+    # A hollow cylinder of the bore and a land at 0.2 D, without its groove: 0.5 m (r_i^2 + r_a^2), 10 % more than the ring.
+    bore, land = 15e-3, 0.5 * (46e-3 - 9.525e-3) + 0.2 * 9.525e-3
+    cylinder = 0.5 * 7810.0 * np.pi * 16e-3 * (land**4 - bore**4)
+    ring = ring_inertia(result.model.scene)[2]
+    assert 0.8 * cylinder < ring < cylinder
+    expected = linear(result.equilibrium.stiffness, result.model, polar + ring, 1.0 if whirl == "forward" else -1.0)
     # 0.1 N of 400 N: what is not linear in the force is of second order, 1e-6, and amplified by the moments' cancelling.
     assert result.identification.dynamic_stiffness == pytest.approx(expected, rel=1e-4)

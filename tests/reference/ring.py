@@ -34,6 +34,8 @@ class Ring:
     density: float = 7810.0
     spin_speed: float = 0.0
     damping: float = 0.0
+    #: Polar inertia times speed of what spins with the inner ring [N m s].
+    spin: float = 0.0
     first_azimuth: float = 0.0
     ball: np.ndarray = field(init=False)
 
@@ -77,6 +79,13 @@ class Ring:
         else:
             load, pull, tangent = self._inertial(e)
         return np.einsum("zai,za->i", self.J, pull), np.einsum("zai,zab,zbj->ij", self.J, tangent, self.J), load
+
+    @property
+    def gyroscopic(self) -> np.ndarray:
+        """(5, 5): the axis points along (1, tilt_z, -tilt_y), and so does the spin; its rate is a moment [N m s]."""
+        found = np.zeros((5, 5))
+        found[3, 4], found[4, 3] = self.spin, -self.spin
+        return found
 
     def damping_matrix(self, q: np.ndarray) -> np.ndarray:
         """(5, 5) of the contacts' dashpots, to first order in the damping (exact in the limit that it does not bend paths).

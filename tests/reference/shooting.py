@@ -49,7 +49,7 @@ def trajectory(
         v = np.zeros(5)
         v[chosen] = state[n : 2 * n] * unit[n:]
         inner, tangent, _ = ring(q)
-        dashpot = ring.damping_matrix(q) if ring.damping else np.zeros((5, 5))
+        dashpot = ring.gyroscopic + (ring.damping_matrix(q) if ring.damping else 0.0)
         rest = load + force(t) - inner - dashpot @ v
         out = np.empty_like(state)
         out[:n] = v[chosen] / unit[:n]

@@ -17,6 +17,8 @@ from raceway.studies.sweep.selection import Selection, listed
 DIRECTION = "excitation.direction_deg"
 #: Backward over forward amplitude, or cross over direct receptance, above which one number does not stand for the bearing.
 MOST_ANISOTROPY = 0.01
+#: Of ``_across``: squares that leave 1e-16 are 1e-8.
+_ROUNDING = 1e-7
 
 Found = tuple[np.ndarray, np.ndarray, np.ndarray, str, list[str]]
 
@@ -65,8 +67,9 @@ def directions(selection: Selection) -> Found:
     Notes
     -----
     Along a unit vector n the receptance is h = n' H n: h(0) = Hyy, h(90) = Hzz, h(45) = (Hyy + Hzz + Hyz + Hzy) / 2.  The
-    matrix is taken as symmetric (no gyroscopic moments).  |Hzy| is known from the orbit under the force along y, too:
-    forward^2 + backward^2 = (|x_y|^2 + |x_z|^2) / 2.  An error dH of H moves Z = H^-1 by at most |Z| |dH| |Z|.
+    matrix is taken as symmetric.  |Hzy| is known from the orbit under the force along y, too: forward^2 + backward^2 =
+    (|x_y|^2 + |x_z|^2) / 2; so the part that gyroscopic moments of the ring make antisymmetric on free tilts,
+    |A|^2 = (|Hyz|^2 + |Hzy|^2) / 2 - |Hyz + Hzy|^2 / 4, is an error of the cross terms.  An error dH of H moves Z = H^-1 by at most |Z| |dH| |Z|.
     """
     given = selection.axes[DIRECTION]
     missing = [angle for angle in (0, 90) if angle not in given]
@@ -80,22 +83,30 @@ def directions(selection: Selection) -> Found:
     data = selection.dataset
     z = data["z_real"].values + 1j * data["z_imag"].values
     w = 2.0 * np.pi * data["frequency"].values
+    antisymmetric = np.zeros(z.shape[:-1])
     h = dict(zip(given, np.moveaxis(1.0 / z, -1, 0), strict=True))
     across = _across(data, given, h)
+    widest = max(0.0, float(np.max(list(across.values()))) - _ROUNDING)
     if 45 in given:
         cross = h[45] - 0.5 * (h[0] + h[90])
         told = "cross terms from the force along 45 deg, the matrix taken as symmetric"
+        if selection.value("supports.tilt", "locked") != "locked":
+            power = 0.5 * sum((across[angle] * np.abs(h[angle])) ** 2 for angle in (0, 90))
+            antisymmetric = np.sqrt(np.maximum(power - np.abs(cross) ** 2, 0.0))
+            told += (
+                f"; the ring's gyroscopic moments add {np.max(antisymmetric / np.abs(h[0])):.1e} of H, counted as its error"
+            )
     else:
-        if across > MOST_ANISOTROPY:
+        if widest > MOST_ANISOTROPY:
             raise RacewayError(
-                f"a force along y moves the ring along z by {across:.1%} of its motion along y: cross terms are there, and two "
+                f"a force along y moves the ring along z by {widest:.1%} of its motion along y: cross terms are there, and two "
                 f"directions do not tell them. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
             )
         cross = np.zeros_like(h[0])
-        told = f"no cross terms: a force along one direction moves the ring across by at most {across:.1e} of its motion"
+        told = f"no cross terms: a force along one direction moves the ring across by at most {widest:.1e} of its motion"
     dynamic = np.linalg.inv(_symmetric(h[0], cross, h[90]))
     off = {angle: _errors(data)[..., k] * np.abs(h[angle]) for k, angle in enumerate(given)}
-    apart = off[45] + 0.5 * (off[0] + off[90]) if 45 in given else np.zeros_like(off[0])
+    apart = antisymmetric + (off[45] + 0.5 * (off[0] + off[90]) if 45 in given else 0.0)
     error = np.abs(dynamic) @ _symmetric(off[0], apart, off[90]) @ np.abs(dynamic)
     w, mass = w[..., 0, None, None], data["mass"].values[..., 0, None, None]
     stiffness = dynamic.real + mass * w**2 * np.eye(2)
@@ -121,16 +132,15 @@ def _errors(data: Any) -> np.ndarray:
     return np.asarray(np.nan_to_num(data["error_total"].values), dtype=float)
 
 
-def _across(data: Any, given: list[Any], h: dict[Any, np.ndarray]) -> float:
-    """Largest motion across a force along y or z over the motion along it."""
-    found = []
+def _across(data: Any, given: list[Any], h: dict[Any, np.ndarray]) -> dict[int, np.ndarray]:
+    """Motion across a force along y (0) and z (90) over the motion along it."""
+    found = {}
     for angle in (0, 90):
         k = given.index(angle)
         turning = data["forward_amplitude"].values[..., k] ** 2 + data["backward_amplitude"].values[..., k] ** 2
         along = (data["force_amplitude"].values[..., k] * np.abs(h[angle])) ** 2
-        found.append(np.sqrt(np.maximum(2.0 * turning / along - 1.0, 0.0)))
-    # Rounding of the difference above: squares of 1e-16 leave 1e-8.
-    return max(0.0, float(np.max(found)) - 1e-7)
+        found[angle] = np.sqrt(np.maximum(2.0 * turning / along - 1.0, 0.0))
+    return found
 
 
 def tangent(selection: Selection) -> Found:
