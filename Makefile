@@ -3,7 +3,7 @@
 # make lint     ruff, import-linter, mypy
 # make evidence every number that README and docs show, computed again
 # make reports-cheap  the reports of a few seconds, computed again: does each row hold as it did when the report was made?
-# make mutants  deliberate faults of one line, and whether the tests catch them
+# make mutants  deliberate faults of one line, and whether the tests catch them: half an hour
 
 PYTHON ?= python3
 VENV   ?= .venv

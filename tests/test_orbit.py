@@ -7,6 +7,7 @@ import pytest
 
 from benchmarks.evidence._scenes import model_of, rig_force, rotating
 from raceway.core.orbit import at_time, differentiation, steady_orbit
+from raceway.core.start import from_orbit
 from raceway.statics import settle
 from tests.reference.ring import Ring
 from tests.reference.shooting import periodic, swinging
@@ -57,3 +58,19 @@ def test_without_inertia_it_is_a_series_of_equilibria():
     for q, force in zip(orbit.displacement, orbit.force, strict=True):
         rest = system.evaluate(q).force - system.load - force
         assert np.abs(rest * [1, 1, 1, 1 / system.arm, 1 / system.arm]).max() < 1e-5  # N, of 1500 N
+
+
+def test_a_transient_starts_with_the_orbit_s_acceleration():
+    """From the balance of forces, of which damping and the rotor's gyroscopic moment are the larger part here."""
+    tables = rotating(1000.0, "free", 12000.0, False, "newmark")
+    tables["rotor"] |= {"damping": 2e4, "polar_inertia": 1e-2, "transverse_inertia": 1e-3}
+    model = model_of(tables)
+    system = model.system
+    orbit = steady_orbit(system, 5e-3, settle(model).displacement)
+    start = from_orbit(system, orbit, 1e-6)
+    weight = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
+    size = np.abs(orbit.acceleration * weight).max()
+    damped = np.linalg.solve(system.mass, system.damping @ start.v)
+    assert np.abs(damped * weight).max() > 0.5 * size
+    # 65 samples resolve the motion to 1e-4, its second derivative to some times that.
+    assert np.abs((start.a - orbit.acceleration[0]) * weight).max() < 1e-2 * size

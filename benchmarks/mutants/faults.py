@@ -47,3 +47,8 @@ def read_faults(path: Path = TABLE) -> list[Fault]:
     with path.open("rb") as file:
         rows = tomllib.load(file)["fault"]
     return [Fault(**{**row, "tests": tuple(row["tests"])}) for row in rows]
+
+
+def chosen(words: list[str]) -> list[Fault]:
+    """The faults whose file or effect holds one of the words; all without words."""
+    return [fault for fault in read_faults() if not words or any(word in f"{fault.file} {fault.does}" for word in words)]

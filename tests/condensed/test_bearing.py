@@ -89,6 +89,17 @@ def test_mesh_independence(size, along, tolerance):
     assert np.abs(coarse / fine - 1.0).max() < tolerance
 
 
+@pytest.mark.parametrize(("size", "along"), [(1e-3, 2), (0.7e-3, 3)])
+def test_the_mesh_error_bounds_what_a_finer_mesh_changes(size, along):
+    """Above it, and not by more than ten times: half the size leaves half to a quarter of the error, twice the size has two to four
+    times as much."""
+    case, found = settled(mesh={"kind": "structured", "element_size": size, "nodes_per_semi_axis": along})
+    _, fine = settled(mesh={"kind": "structured", "element_size": 0.5 * size, "nodes_per_semi_axis": 2 * along})
+    free = case.system.free > 0.0
+    change = np.abs(np.diag(fine.stiffness)[free] / np.diag(found.stiffness)[free] - 1.0).max()
+    assert change < case.bodies.mesh_error(case, found)[0] < 10.0 * change
+
+
 def test_second_use_of_a_geometry_takes_compliances_from_the_cache(monkeypatch, tmp_path):
     made = []
     monkeypatch.setattr(condensed, "_BODIES", {})  # what other tests computed in this process

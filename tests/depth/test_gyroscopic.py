@@ -69,6 +69,14 @@ def test_without_moment_it_is_the_inertial_kernel(built):
         np.testing.assert_allclose(b.contact_force, a.contact_force, atol=1e-8 * a.contact_force.max())
 
 
+def test_springs_of_the_shaft_cost_newton_no_iterations(built):
+    """They are linear: Newton's method knows them exactly, and one step settles them however stiff they are."""
+    free, held = (fast(built, supports={"tilt": tilt}) for tilt in ("free", 1e5))
+    assert held.system.stiffness[3, 3] == 1e5 > 3.0 * held.system.evaluate(held.guess).stiffness[3, 3]
+    spent, more = (model.system.settle(model.guess)[2] for model in (free, held))
+    assert more <= spent + 2
+
+
 def harris_ball(model, e, inner_share, outer_share, start):
     """Load and angle of both races from Harris' two balances of a ball, solved by MINPACK's hybrid method.
 

@@ -6,6 +6,7 @@ import pytest
 
 from raceway.core.mesh import HexMesh, merged
 from raceway.core.mesh_quality import quality, refuse_bad_cells
+from raceway.core.mesh_summary import summary
 from raceway.errors import MeshError
 from tests.mesh.cubes import block
 
@@ -29,6 +30,28 @@ def test_volume_area_and_normals_of_a_block():
     assert np.abs((areas[:, None] * normals).sum(axis=0)).max() < 1e-12
     centres = mesh.points[mesh.facet_nodes("outside")].mean(axis=1)
     assert (areas * (normals * centres).sum(axis=1)).sum() == pytest.approx(18.0, rel=ROUNDING)
+
+
+def test_areas_of_facets_that_are_no_parallelograms():
+    """A cube whose side x grows with y: trapezoids of area (1 + 1.5) / 2 at both ends along z, where Gauss' rule is exact."""
+    mesh = block(1, 1, 1, (1.0, 1.0, 1.0))
+    x, y, z = mesh.points.T
+    mesh = attrs.evolve(mesh, points=np.column_stack([x * (1.0 + 0.5 * y), y, z]))
+    flat = np.ptp(mesh.points[mesh.facet_nodes("outside")][:, :, 2], axis=1) == 0.0
+    assert flat.sum() == 2
+    assert mesh.facet_areas("outside")[flat] == pytest.approx(1.25, rel=ROUNDING)
+    slanted = np.hypot(1.0, 0.5)
+    assert mesh.facet_areas("outside").sum() == pytest.approx(2.0 * 1.25 + 1.0 + 1.5 + 1.0 + slanted, rel=ROUNDING)
+
+
+def test_sizes_of_the_cells_below_a_patch():
+    """Facets of 1/2 by 3/4 on top of cells that are 2 deep."""
+    mesh = block(2, 4, 1, (1.0, 3.0, 2.0))
+    outside = mesh.facets("outside")
+    top = (mesh.points[mesh.facet_nodes("outside")][:, :, 2] == 2.0).all(axis=1)
+    found = summary({"body": attrs.evolve(mesh, facet_sets={"band": outside[top]})})["patch_size_m"]
+    for word, size in (("short", 0.5), ("long", 0.75), ("depth", 2.0)):
+        assert found[word] == pytest.approx({"min": size, "max": size}, rel=ROUNDING)
 
 
 def test_volume_of_a_distorted_cell_is_that_of_its_faces():

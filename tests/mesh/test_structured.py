@@ -10,6 +10,8 @@ from raceway import load_scene, scene_from_dict
 from raceway.core.mesh import EDGES
 from raceway.core.mesh_quality import quality, refuse_bad_cells
 from raceway.core.mesh_summary import summary
+from raceway.core.meshing import sphere
+from raceway.core.meshing.quarter import quarter_groove
 from raceway.core.meshing.ring import ring_mesh
 from raceway.core.meshing.ring_shape import ring_shape
 from raceway.core.meshing.spacing import graded, growing, halved
@@ -70,6 +72,30 @@ def test_a_ball_converges_at_order_2_to_the_sphere():
         u, v, w, layers = map(halved, (u, v, w, layers))
     assert rate(volume) == pytest.approx(2.0, abs=0.05)
     assert rate(area) == pytest.approx(2.0, abs=0.05)
+
+
+def test_a_cube_with_all_of_the_bulge_is_a_sphere(monkeypatch):
+    """The smooth map of cube to ball takes the cube's faces to the unit sphere: to rounding."""
+    line = np.linspace(-1.0, 1.0, 7)
+    faces = np.stack(np.meshgrid(line, line, [-1.0, 1.0]), axis=-1).reshape(-1, 3)
+    monkeypatch.setattr(sphere, "BULGE", 1.0)
+    for turn in range(3):
+        assert np.linalg.norm(sphere._rounded(np.roll(faces, turn, axis=1)), axis=1) == pytest.approx(1.0, rel=1e-14)
+    monkeypatch.setattr(sphere, "BULGE", 0.0)
+    assert sphere._rounded(faces) == pytest.approx(faces, rel=1e-14)
+
+
+def test_a_quarter_groove_is_a_torus_that_touches_the_ball():
+    """Nodes lie on the groove to rounding; the one at its bottom is the ball's lowest point."""
+    ball, groove, rolling = 4.76e-3, 4.97e-3, 18.4e-3
+    mesh = quarter_groove(
+        ball, groove, rolling, np.linspace(0.0, 0.3, 7), np.linspace(0.0, 0.1, 5), np.array([0.0, 1e-3, 3e-3])
+    )
+    x, y, z = mesh.points[mesh.nodes("raceway")].T
+    about = np.hypot(y, z + ball + rolling)
+    assert np.hypot(x, about - (rolling + groove)) == pytest.approx(groove, rel=1e-12)
+    distance = np.linalg.norm(mesh.points, axis=1)
+    assert mesh.points[distance.argmin()] == pytest.approx([0.0, 0.0, -ball], abs=1e-12 * ball)
 
 
 def test_the_bearing_is_whole_good_and_predicted():

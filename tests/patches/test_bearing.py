@@ -152,6 +152,16 @@ def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
     assert size >= (columns["approach_penetration_inner_m"] / columns["approach_inner_m"])[0]
 
 
+def test_the_mesh_error_is_near_what_twice_as_many_points_change():
+    """Of order 2: 4/3 of that; within a factor of 3, for two points per semi-axis are not yet in the limit."""
+    coarse, fine = (model(supports={"tilt": "free"}, mesh={"nodes_per_semi_axis": n}) for n in (2, 4))
+    found, other = settle(coarse), settle(fine)
+    weight = np.array([1.0, 1.0, 1.0, coarse.system.arm, coarse.system.arm])
+    moved = np.abs((other.displacement - found.displacement) * weight).max()
+    change = moved / np.abs(found.displacement * weight).max()
+    assert 1.0 / 3.0 < coarse.bodies.mesh_error(coarse, found)[0] / change < 3.0
+
+
 def test_the_mesh_error_is_that_of_the_state(free, monkeypatch):
     """Each state is dropped before the next, so that its place in memory is used again."""
     case, _ = free
