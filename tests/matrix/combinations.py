@@ -121,7 +121,7 @@ def elastic_tables(cell: Combination) -> dict[str, Any]:
         "excitation": given if nodal else given | {"unbalance": 3e-5},
         "bodies": {"kind": "elastic", "formulation": "one_point" if nodal else "incompatible"},
         "mesh": mesh | (fine if nodal else {"nodes_per_semi_axis": 0}),
-        "load": {"axial": 2400.0 if nodal else 240.0},
+        "load": {"axial": 2500.0 if nodal else 240.0},
         "integrator": {"kind": cell.integrator, "turns": 1, "steps_per_turn": 8 if nodal else 32, "tolerance": 1e-5},
         # Eight samples a turn tell three harmonics.
         **({"identifier": {"kind": "sine_fit", "harmonics": 3}} if nodal and cell.identifier == "sine_fit" else {}),

@@ -9,8 +9,10 @@ import numpy as np
 
 from raceway.errors import ConvergenceError
 
-#: Iterations of one load step, halvings of one line search, halvings of the load.
-NEWTON_LIMIT, HALVINGS, SMALLEST_PART = 40, 8, 1.0 / 16.0
+#: Iterations of one load step, trials of one line search, smallest part of the load.
+NEWTON_LIMIT, TRIALS, SMALLEST_PART = 40, 12, 1.0 / 16.0
+#: Slope of the potential over that where a line search begins, below which it ends.
+FLAT = 0.9
 #: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
 TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 
@@ -42,8 +44,9 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
     """
     load = system.load.copy()
     history: list[float] = []
-    # Points of an overlap that nothing has deformed yet: see ``Contact.evaluate``.  Whole contacts need their curvature.
-    share = 0.0 if getattr(system.contact, "whole", False) else 0.5
+    # Points of an overlap that nothing has deformed yet: see ``Contact.evaluate``.  From an equilibrium the same choice would leave
+    # balls on two points, and no curvature to hold them across the grooves: the tangent is then singular.
+    share = 0.5 if system.undeformed(guess) else 0.0
     good, part, step, count, before = guess.copy(), 0.0, 1.0, 0, system.solver.iterations
     try:
         while True:
@@ -96,17 +99,33 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
             forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous, 0.3 * tolerance / relative))
         previous = size
         step = system.solve(1.0, 0.0, 0.0, rest, tolerance=forcing)
-        slope = float(step @ rest)
-        part = 1.0
-        for _ in range(HALVINGS):
-            trial = y + part * step
-            rest = system.load - system.static_internal(trial)
-            now = float(step @ rest)
-            # The slope of the potential along the step: as long as it has not grown against the step, go on.
-            if done == 0 and share > 0.0 or abs(now) <= 0.9 * abs(slope) or system.measure(rest) <= tolerance * scale:
-                break
-            part *= 0.5 if now > 0.0 or slope - now <= 0.0 else min(max(slope / (slope - now), 0.1), 0.8)
-        y = trial
+        y, rest = _along(system, y, step, rest, tolerance * scale)
         if system.locate(y):
             rest = system.load - system.static_internal(y)
     raise ConvergenceError(f"Newton's residual stands at {history[-1]:.1e} of the load after {NEWTON_LIMIT} iterations.")
+
+
+def _along(system: Any, y: np.ndarray, step: np.ndarray, rest: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
+    """State along a step (size,) at which the potential's slope is a part of that at ``y``, and the residual there.
+
+    Notes
+    -----
+    -phi'(s) = step . rest falls from one side of the minimum to the other by as much as points that close are stiffer than the
+    bodies.  The minimum is kept between the longest part s that falls short of it and the shortest one beyond: a part that is
+    only cut, and never lengthened, stops short of where points close, in this iteration and in all that follow.
+    """
+    slope = float(step @ rest)
+    part, short, beyond, at_short, at_beyond = 1.0, 0.0, np.inf, slope, 0.0
+    for _ in range(TRIALS):
+        trial = y + part * step
+        rest = system.load - system.static_internal(trial)
+        now = float(step @ rest)
+        if abs(now) <= FLAT * abs(slope) or system.measure(rest) <= enough or now > 0.0 and np.isinf(beyond):
+            break
+        if now > 0.0:
+            short, at_short = part, now
+        else:
+            beyond, at_beyond = part, now
+        # The secant, but well inside: one end may stay for long where the slope bends.
+        part = short + (beyond - short) * min(max(at_short / (at_short - at_beyond), 0.1), 0.9)
+    return trial, rest

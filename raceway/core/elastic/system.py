@@ -15,6 +15,8 @@ from raceway.errors import ConvergenceError, MeshError
 
 #: Relative residual of the linear solves of a time step: Newton's next iteration takes the rest.
 LINEAR_TOLERANCE = 1e-4
+#: Nodal forces of bodies over those of contacts, one where they balance, below which nothing has deformed yet.
+_PRESSED_BACK = 0.5
 
 
 class ElasticSystem:
@@ -111,6 +113,16 @@ class ElasticSystem:
     def measure(self, r: np.ndarray) -> float:
         """Euclidean norm of nodal forces and of the frames' forces; moments over their arm [N]."""
         return float(np.linalg.norm(r * self._weight * self.assembly.unknown))
+
+    def undeformed(self, y: np.ndarray) -> bool:
+        """Whether contacts at surface points press on bodies that do not press back yet: they overlap as rigid ones do."""
+        a, contact = self.assembly, self.contact
+        if contact is None or contact.whole:
+            return False
+        u = a.nodal(y)
+        pressing, back = a.reduced(contact.evaluate(0.0, u)), a.internal(y, u)
+        m = a.frame_size
+        return bool(np.linalg.norm(back[m:]) < _PRESSED_BACK * np.linalg.norm(pressing[m:]))
 
     def force_scale(self) -> float:
         """Norm of the forces that have to balance at the last ``internal`` [N]."""
