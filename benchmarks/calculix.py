@@ -96,9 +96,9 @@ class Deck:
             self._next += len(numbers)
             self.lines += [f"*SPRING, ELSET=HOLD{axis}", str(axis), f"{HOLD:g}"]
 
-    def step(self, loads: list[str], printed: str) -> str:
-        """The whole file, with one static step that asks for the reaction of a set of nodes and for contact pressures."""
-        tail = ["*STEP, INC=100", "*STATIC, SOLVER=ITERATIVE CHOLESKY", "0.25, 1.0", *loads]
+    def step(self, loads: list[str], printed: str, part: float) -> str:
+        """The whole file: one static step, first by a part of the load; prints a set's reaction and contact pressures."""
+        tail = ["*STEP, INC=100", "*STATIC, SOLVER=ITERATIVE CHOLESKY", f"{part:g}, 1.0", *loads]
         tail += [
             f"*NODE PRINT, NSET={printed}, TOTALS=ONLY, FREQUENCY=100",
             "RF",
@@ -109,9 +109,11 @@ class Deck:
         return "\n".join(self.lines + tail) + "\n"
 
 
-def groove_deck(ball: HexMesh, block: HexMesh, young: float, poisson: float, penalty: float, approach: float) -> str:
+def groove_deck(
+    ball: HexMesh, block: HexMesh, young: float, poisson: float, penalty: float, approach: float, element: str = "C3D8"
+) -> str:
     """The groove case of ``benchmarks.groove`` with the approach prescribed [m]."""
-    deck = Deck({"ball": ball, "race": block}, young, poisson)
+    deck = Deck({"ball": ball, "race": block}, young, poisson, element)
     middle = deck.nodes("ball", ball.nodes("middle"))
     deck.node_set("MIDDLE", middle)
     deck.node_set("BASE", deck.nodes("race", block.nodes("base")))
@@ -121,7 +123,7 @@ def groove_deck(ball: HexMesh, block: HexMesh, young: float, poisson: float, pen
     deck.surface("RACEWAY", "race", block.facets("raceway"))
     deck.contact([("BALL_SURFACE", "RACEWAY")], penalty)
     deck.lines += ["*BOUNDARY", "BASE, 1, 3", "SIDE_X, 1, 1", "SIDE_Y, 2, 2"]
-    return deck.step(["*BOUNDARY", f"MIDDLE, 3, 3, {-1e3 * approach:.12g}"], "MIDDLE")
+    return deck.step(["*BOUNDARY", f"MIDDLE, 3, 3, {-1e3 * approach:.12g}"], "MIDDLE", 1.0)
 
 
 def bearing_deck(
@@ -150,7 +152,7 @@ def bearing_deck(
         "*CLOAD",
         *(f"{last + 1}, {axis}, {force:.12g}" for axis, force in zip((1, 2, 3), (axial, *radial), strict=True)),
     ]
-    return deck.step(loads, "OUTER")
+    return deck.step(loads, "OUTER", 0.25)
 
 
 def installed() -> str | None:

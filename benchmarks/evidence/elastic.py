@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 import time
 
 import numpy as np
 
-from benchmarks import against_calculix, calculix
+from benchmarks import calculix
 from benchmarks.evidence import Row, below, near
 from benchmarks.evidence._files import ROOT
 from benchmarks.evidence._kept import kept
@@ -57,17 +60,28 @@ def _finer_ball() -> list[Row]:
 
 def _cost() -> list[Row]:
     if calculix.installed() is None:
-        return [Row("CPU time against CalculiX", "not measured", "a tenth", False, COMPARE, "ccx is not installed")]
-    found = against_calculix.compare(300.0, 4.0)
-    mine, other = found["rows"]
+        return [Row("CPU time over CalculiX's", "not measured", "at most 0.1", False, COMPARE, "ccx is not installed")]
+    # A process of its own: its peak memory is that of this case.
+    words = [sys.executable, "-m", "benchmarks.against_calculix", "--json"]
+    found = json.loads(subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout)
+    mine, *others = found["rows"]
+    solved = [row for row in others if not row["failure"]]
+    if not solved:
+        return [Row("CPU time over CalculiX's", "not measured", "at most 0.1", False, COMPARE, others[0]["failure"])]
+    other = min(solved, key=lambda row: row["cpu_s"])
     told = (
-        f"{found['elements']} elements: {mine['cpu_s']:.1f} and {other['cpu_s']:.1f} CPU-s, {mine['memory_bytes'] / 2**20:.0f} and "
-        f"{other['memory_bytes'] / 2**20:.0f} MiB; peak pressure {100 * mine['pressure_deviation']:+.1f} %"
+        f"{found['elements']} elements: {mine['cpu_s']:.1f} CPU-s, peak pressure {100 * mine['pressure_deviation']:+.1f} %; "
     )
-    if other["pressure_deviation"] is not None:
-        told += f" and {100 * other['pressure_deviation']:+.1f} %, reaction {100 * other['reaction_deviation']:+.1f} %"
-    told += f". {other['failure']}" if other["failure"] else ""
-    return [below("CPU time over CalculiX's, ball on groove", mine["cpu_s"] / other["cpu_s"], 0.1, COMPARE, told)]
+    told += "; ".join(
+        f"{row['program']} {row['cpu_s']:.1f} CPU-s, {100 * row['pressure_deviation']:+.1f} %, reaction {100 * row['reaction_deviation']:+.1f} %"
+        for row in solved
+    )
+    memory = f"{mine['memory_bytes'] / 2**20:.0f} and {other['memory_bytes'] / 2**20:.0f} MiB, all of Python and its libraries included"
+    name = "over that of CalculiX's quickest deck, ball on groove"
+    return [
+        below(f"CPU time {name}", mine["cpu_s"] / other["cpu_s"], 0.1, COMPARE, told),
+        below(f"memory {name}", mine["memory_bytes"] / other["memory_bytes"], 1.0, COMPARE, memory),
+    ]
 
 
 def _bearing() -> list[Row]:
@@ -84,7 +98,7 @@ def _bearing() -> list[Row]:
     model = result["model"]
     solver = model["linear_solver"]
     cost = (
-        f"CalculiX with facets: {CALCULIX_BEARING:g} CPU-s; {found['iterations']} + {solver['iterations']} iterations, "
+        f"{cpu:.0f} and {CALCULIX_BEARING:g} CPU-s; {found['iterations']} + {solver['iterations']} iterations, "
         f"{solver['setups']} set-ups, with the 5 x 5 stiffness"
     )
     cells = model["mesh"]["cells"]
@@ -95,5 +109,5 @@ def _bearing() -> list[Row]:
         near("smallest ball load, N", float(inner.min()), EXPECTED["smallest"], 0.02, typed),
         near("axial displacement, m", found["displacement"]["x"], EXPECTED["x"], 0.05, typed),
         near("radial displacement, m", found["displacement"]["y"], EXPECTED["y"], 0.05, typed),
-        Row("CPU-s of the whole run", cpu, "told", True, typed, cost),
+        below("CPU time of the whole run over CalculiX's, with facets", cpu / CALCULIX_BEARING, 1.0, typed, cost),
     ]

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from benchmarks.evidence import Row
+from benchmarks.evidence._intervals import width as width_row
 from raceway.errors import RacewayError
 from raceway.registry import default_registry
 from raceway.rig import Rig
@@ -61,6 +62,7 @@ def _covered(rig: Rig, points: list[tuple[Bearing, State]], part: float) -> Iter
         note += f"half-width {scale * np.median(width[:, k]):.3g} {unit} (median)"
         yield Row(f"{words}: share of true {name} within the stated 95 %", share, f"{_LOWEST:.2f} to 1.00", share >= _LOWEST,
                   COMMAND, note)  # fmt: skip
+        yield width_row(f"{words}, {name}", list(error[:, k] / width[:, k]), COMMAND)
     yield Row(
         f"{words}: records that cannot be used", len(failed), "at most 0", not failed, COMMAND, failed[0] if failed else ""
     )

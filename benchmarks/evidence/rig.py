@@ -13,6 +13,7 @@ import attrs
 import numpy as np
 
 from benchmarks.evidence import Row, below
+from benchmarks.evidence._intervals import width
 from raceway.errors import ConvergenceError
 from raceway.registry import default_registry
 from raceway.rig import Rig, Signals
@@ -120,7 +121,7 @@ def _disturbed(rig: Rig, held: Bearing, state: State, signals: Signals, seed: in
 def _identified(rig: Rig, found: RigStudy, points: Points) -> Iterator[Row]:
     outside = attrs.evolve(rig, sensor_side="outside")
     for words, own in (("", rig), ("sensor 25 mm outside, ", outside)):
-        inside, counted = 0, 0
+        ratios, causes = [], []
         for axial, state, held in points:
             if own is not rig:
                 state = balance(rotor(own, state.speed), held)
@@ -128,8 +129,8 @@ def _identified(rig: Rig, found: RigStudy, points: Points) -> Iterator[Row]:
             clean = _off(identify(record(own, response(own, held, state, quiet), quiet, 1), own, held), state)
             noisy = [_disturbed(own, held, state, own.signals, seed) for seed in range(_SEEDS)]
             errors = [_off(one, state) for one in noisy]
-            inside += sum(error * state.stiffness <= one.uncertainty[0] for error, one in zip(errors, noisy, strict=True))
-            counted += len(noisy)
+            ratios += [error * state.stiffness / one.uncertainty[0] for error, one in zip(errors, noisy, strict=True)]
+            causes += [max(one.parts, key=lambda name, of=one: of.parts[name][0]) for one in noisy]
             bow = abs(state.sensor - state.deflection)
             note = f"K = {1e-6 * state.stiffness:.2f} N/um ({1e-6 * state.locked[0]:.1f} with the tilt locked), bearing "
             note += f"{1e6 * abs(state.deflection):.2f} um, bow at the sensor {1e6 * bow:.2f} um, force "
@@ -137,8 +138,12 @@ def _identified(rig: Rig, found: RigStudy, points: Points) -> Iterator[Row]:
             yield below(f"(b) {words}{_name(axial, state)}: error of K without noise", clean, 0.01, _STUDY, note)
             text = f"(b) {words}{_name(axial, state)}: largest error of K with 40 dB of noise, 5 um of run-out less a slow roll, 5 um "
             yield below(f"{text}of drift, {_SEEDS} seeds", max(errors), 0.03, COMMAND)
-        text = f"(b) {words}share of true K within the stated 95 %, {counted} records"
-        yield Row(text, inside / counted, "at least 0.9", inside / counted >= 0.9, COMMAND)
+        share = float(np.mean(np.array(ratios) <= 1.0))
+        text = f"(b) {words}share of true K within the stated 95 %, {len(ratios)} records"
+        yield Row(text, share, "0.9 to 1", share >= 0.9, COMMAND)
+        most = max(set(causes), key=causes.count)
+        note = f"the widest part of {causes.count(most)} of them: {most}"
+        yield width(f"(b) {words}K of {len(ratios)} records", ratios, COMMAND, note)
 
 
 def _printed(rig: Rig, scene: Scene, found: RigStudy) -> Iterator[Row]:
@@ -270,11 +275,13 @@ def _damping(scene: Scene, rig: Rig) -> Iterator[Row]:
         held = bearing(damped, axial, default_registry())
         state, quiet = balance(rotor(rig, 13000.0 * pi / 30.0), held), silent(rig.signals)
         found = identify(record(rig, response(rig, held, state, quiet), quiet, 1), rig, held)
-        text = f"bearing with 3000 N s/m, 13000 r/min, {axial:.0f} N: error of C, N s/m, over its stated half-width"
-        note = f"C = {found.state.damping:.0f} of {state.damping:.0f} +- {found.uncertainty[1]:.0f}; with the tilt locked "
+        text = f"bearing with 3000 N s/m, 13000 r/min, {axial:.0f} N"
+        note = f"C = {found.state.damping:.0f} of {state.damping:.0f} +- {found.uncertainty[1]:.0f} N s/m; with the tilt locked "
         note += f"{found.state.locked[1]:.0f} of {state.locked[1]:.0f} +- {found.uncertainty[3]:.0f}"
-        error = abs(found.state.damping - state.damping) / found.uncertainty[1]
-        yield below(text, error, 1.0, COMMAND, note)
+        yield below(f"{text}: error of C without noise", abs(found.state.damping / state.damping - 1.0), 0.01, COMMAND, note)
+        noisy = [_disturbed(rig, held, state, rig.signals, seed) for seed in range(_SEEDS)]
+        ratios = [(one.state.damping - state.damping) / one.uncertainty[1] for one in noisy]
+        yield width(f"{text}: C of {_SEEDS} records with noise, run-out and drift", ratios, COMMAND)
 
 
 def _cost(found: RigStudy, spent: float) -> Iterator[Row]:

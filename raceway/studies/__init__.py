@@ -1,6 +1,6 @@
 """Many runs, or many numbers, made into one answer.  Studies call ``raceway.run`` and never reach into a time loop.
 
-reference          the published cases in ``raceway/data/cases.json``
+reference          the reference cases in ``raceway/data/cases.json``
 verify             every case against this program's own numbers; verify_bearings, verify_impacts: how each is computed
 compare            one scene varied along axes: the table and what causes what; axes, effects, findings, explain, causes,
                    inertia, phrases, comparison: its parts, from the numbers to words and picture

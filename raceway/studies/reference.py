@@ -1,4 +1,4 @@
-"""The published reference cases that come with the package, ``raceway/data/cases.json``."""
+"""The reference cases that come with the package, ``raceway/data/cases.json``."""
 
 from __future__ import annotations
 
@@ -9,13 +9,21 @@ from typing import Any
 
 import attrs
 
+#: Where the numbers of a case come from: what a document tells numbers of a source from.
+BASES = {
+    "published": "published numbers",
+    "closed form": "numbers of closed forms",
+    "own": "numbers of this program by two ways",
+}
+
 
 @attrs.frozen
 class Case:
-    """One published case, in the units of its source (they are part of each key: ``Dw_mm``).
+    """One case, in the units of its source (they are part of each key: ``Dw_mm``).
 
     Attributes
     ----------
+    basis : where ``outputs`` come from, a key of ``BASES``
     inputs, outputs : what the source states and what it gives
     rel_tol : relative agreement asked for, one number or one for each group of outputs
     conventions : frame, signs and normalisation of the source, in words
@@ -25,6 +33,7 @@ class Case:
 
     id: str
     kind: str
+    basis: str
     title: str
     inputs: dict[str, Any]
     outputs: dict[str, Any]
@@ -41,7 +50,7 @@ class Case:
 
 @attrs.frozen
 class Number:
-    """One computed number beside the published one, both in the source's unit, with the largest relative error allowed.
+    """One computed number beside that of the case, both in the source's unit, with the largest relative error allowed.
 
     ``computed`` is None when ``note`` says why there is none.
     """

@@ -4,7 +4,7 @@ text          sections, tables, numbers with units
 result        one run
 plan          what a scene needs
 studies       comparisons, sweeps, studies of precision and of stability
-verification  published cases
+verification  reference cases
 kept          the caches
 """
 

@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.commands.screen.text import number
+from raceway.studies.reference import BASES
 
 #: Columns of numbers in the table of ``verify`` and their significant digits.
 _VERIFIED = (("reference", 5), ("computed", 5), ("error", 2), ("tolerance", 2))
@@ -20,7 +21,7 @@ _IN_FULL = ("seed-static-pressures",)
 
 
 def verify_screen(verification: Mapping[str, Any], passed: bool, every: bool = False) -> RenderableType:
-    """Published cases, what was computed, and whether it agrees.
+    """Reference cases, what was computed, and whether it agrees.
 
     Parameters
     ----------
@@ -44,11 +45,8 @@ def verify_screen(verification: Mapping[str, Any], passed: bool, every: bool = F
         verdict = "[green]ok[/]" if row["ok"] else f"[red]off[/] {escape(row.get('note') or '')}"
         table.add_row(f"  {escape(row['quantity'])}", *numbers, verdict)
         before = row["case"]
-    kept = sum(bool(row["ok"]) for row in verification["rows"])
-    style = "green" if passed else "red"
-    parts: list[RenderableType] = [table]
-    parts.append(Text(f"{kept} of {len(verification['rows'])} numbers within their tolerance", style=style))
-    return Group(*parts)
+    counts = [f"{kept['within']} of {kept['of']} {BASES[basis]}" for basis, kept in verification["kept"].items()]
+    return Group(table, Text(f"within their tolerance: {', '.join(counts)}", style="green" if passed else "red"))
 
 
 def _worst(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

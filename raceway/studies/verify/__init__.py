@@ -1,1 +1,1 @@
-"""Published reference cases."""
+"""Reference cases: published numbers, closed forms, and this program by two ways."""

@@ -1,4 +1,4 @@
-"""``raceway verify``: published reference cases against this program's own numbers."""
+"""``raceway verify``: reference cases against this program's own numbers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import attrs
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.options import nearest
 from raceway.registry import Registry, default_registry
-from raceway.studies.reference import Case, Number, reference_cases
+from raceway.studies.reference import BASES, Case, Number, reference_cases
 from raceway.studies.verify.article import article_pressures
 from raceway.studies.verify.bearings import ellipse_table, masta, nsk_pair, race_ellipse, rig_force
 from raceway.studies.verify.impacts import impact_of_spheres
@@ -43,7 +43,8 @@ class Row:
     case, quantity : which number, with its unit
     reference, computed : in the unit of the source
     error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is kept
-    source : where the reference was published
+    source : where the case, or its inputs, were published
+    basis : where the reference comes from, a key of ``reference.BASES``
     note : why there is no computed number (then computed and error are None, and ok is False), or ""
     """
 
@@ -55,6 +56,7 @@ class Row:
     tolerance: float | None
     ok: bool
     source: str
+    basis: str
     note: str = ""
 
 
@@ -70,6 +72,12 @@ class Verification:
         return bool(self.rows) and all(row.ok for row in self.rows)
 
     @property
+    def kept(self) -> dict[str, dict[str, int]]:
+        """By basis how many numbers are within their tolerance, of how many."""
+        rows = {basis: [row.ok for row in self.rows if row.basis == basis] for basis in BASES}
+        return {basis: {"within": sum(ok), "of": len(ok)} for basis, ok in rows.items() if ok}
+
+    @property
     def worst(self) -> tuple[Row, ...]:
         """Of each case the row that comes closest to its tolerance, or misses it by most."""
         found: dict[str, Row] = {}
@@ -79,7 +87,7 @@ class Verification:
         return tuple(found.values())
 
     def as_dict(self) -> dict[str, Any]:
-        return {"passed": self.passed, "rows": [attrs.asdict(row) for row in self.rows]}
+        return {"passed": self.passed, "kept": self.kept, "rows": [attrs.asdict(row) for row in self.rows]}
 
 
 def _strain(row: Row) -> float:
@@ -89,7 +97,7 @@ def _strain(row: Row) -> float:
 def verify(
     only: str | Iterable[str] | None = None, on_progress: OnProgress | None = None, registry: Registry | None = None
 ) -> Verification:
-    """Compute the published cases, each within the agreement that its source allows.
+    """Compute the cases, each within the agreement that its source allows.
 
     Parameters
     ----------
@@ -147,7 +155,7 @@ def compute(case: Case, registry: Registry) -> list[Row]:
         for number in COMPUTED[case.id](case, registry):
             rows.append(_row(case, number))
     except RacewayError as why:
-        rows.append(Row(case.id, "the rest of the case", None, None, None, None, False, case.source, str(why)))
+        rows.append(Row(case.id, "the rest of the case", None, None, None, None, False, case.source, case.basis, str(why)))
     return rows
 
 
@@ -157,4 +165,6 @@ def _row(case: Case, number: Number) -> Row:
         computed, note = None, f"computed {computed}: not a finite number"
     error = None if computed is None else abs(computed - number.reference) / abs(number.reference)
     ok = error is not None and error <= number.tolerance
-    return Row(case.id, number.quantity, number.reference, computed, error, number.tolerance, ok, case.source, note)
+    return Row(
+        case.id, number.quantity, number.reference, computed, error, number.tolerance, ok, case.source, case.basis, note
+    )
