@@ -10,10 +10,11 @@ from raceway.core.condensed.contact import BeyondPatch, Contact
 from raceway.core.condensed.factor import Factor
 from raceway.core.condensed.field import pressure_field
 from raceway.core.condensed.nodal_law import PointLaw
+from raceway.core.condensed.patch import Spacing
 from raceway.core.contact_laws.hertz import three_halves_or_linear
 from raceway.core.jit import jit
 from raceway.core.signatures import LAW
-from raceway.errors import ConvergenceError
+from raceway.errors import ConvergenceError, MeshError
 from tests.patches.single import Single, single
 
 
@@ -179,3 +180,10 @@ def test_a_law_that_is_no_number_is_a_failure(coarse):
     law = attrs.evolve(linear(coarse, 0.01), kernel=broken)
     with pytest.raises(ConvergenceError, match="pressures were not found"):
         coarse.press(Contact(coarse.patch, law), 5e-6)
+
+
+def test_an_ellipse_that_reaches_around_its_ball_is_no_contact():
+    """Rubber in ceramic at 10 N: a major semi-axis above the ball's equator leaves no two points around it."""
+    with pytest.raises(MeshError, match="reaches around the ball"):
+        Spacing.of((0.1, 1e-3), 3, 4.7e-3, 1e-3)
+    assert Spacing.of((1e-3, 1e-4), 3, 4.7e-3, 1e-3).ball_divisions == 90

@@ -16,6 +16,8 @@ from math import ceil, cos, pi
 import attrs
 import numpy as np
 
+from raceway.errors import MeshError
+
 
 @attrs.frozen
 class Spacing:
@@ -47,8 +49,18 @@ class Spacing:
         semi_axes : major and minor one at the load that counts [m]
         radius : of the ball [m]
         widest : largest minor semi-axis that has to fit, with margin [m]
+
+        Raises
+        ------
+        MeshError
+            An ellipse so long that no two points lie around the ball's equator: it is no contact of this ball.
         """
         divisions = round(2.0 * pi * radius / (semi_axes[0] / nodes))
+        if divisions < 2:
+            size = f"{1e3 * semi_axes[0]:.3g} mm, of a ball of {2e3 * radius:.3g} mm"
+            raise MeshError(
+                f"a contact's major semi-axis is {size}: it reaches around the ball, and surface points have no place"
+            )
         divisions += divisions % 2  # the opposite pole is a point too
         across = float(semi_axes[1]) / nodes
         return cls(2.0 * pi * radius / divisions, across, divisions, ceil(widest / across))
