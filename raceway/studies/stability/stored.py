@@ -1,0 +1,35 @@
+"""What the energy stored in contacts and bodies says of the forces on the ring: a second way to the same numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway.core.energy import energy_balance
+from raceway.core.record import Record, Schedule
+from raceway.core.start import at_rest
+from raceway.model import Model
+from raceway.statics import Equilibrium
+
+#: Step of the difference over the deepest penetration: its error is the square of that.
+_PART = 1e-3
+
+
+def axial_force(model: Model, found: Equilibrium) -> float:
+    """Slope [N] of the stored energy along the ring's axial displacement, in equilibrium; for conservative forces.
+
+    Notes
+    -----
+    Balls are in equilibrium themselves, so that what follows of them does not count.  Unlike a sum over the balls' loads it
+    holds what a compliance that varies with the contact angle pushes along the groove.
+    """
+    system, axis = model.system, np.eye(5)[0]
+    step = _PART * float(np.max(-system.evaluate(found.displacement, ball=found.ball).gap))
+    places = [found.displacement + sign * step * axis for sign in (-1.0, 1.0)]
+    states = [system.evaluate(place, ball=found.ball) for place in places]
+    gap, force, ball = (np.array([getattr(one, name) for one in states]) for name in ("gap", "contact_force", "ball"))
+    still = np.zeros((2, 5))
+    final = at_rest(system, places[1], ball[1], False)
+    record = Record(np.array([0.0, 1.0]), np.array(places), still, still, gap, force, ball, final, Schedule(1.0, 2, 1), {})
+    stored = energy_balance(system, record).stored
+    # The stored energy counts the load's potential, too, whose slope is the load.
+    return float(system.load[0] + (stored[1] - stored[0]) / (2.0 * step))
