@@ -37,12 +37,21 @@ def rows() -> list[Row]:
     for name in dict.fromkeys(row["case"] for row in found):
         own = [row for row in found if row["case"] == name]
         good = sum(row["verdict"] == "as expected" for row in own)
-        out.append(
-            Row(
-                name, f"{good} of {len(own)}", "all", good == len(own), f"raceway stability --only {shlex.quote(name)} --all"
-            )
-        )
+        command = f"raceway stability --only {shlex.quote(name)} --all"
+        out.append(Row(name, f"{good} of {len(own)}", "all", good == len(own), command, _missed(own)))
     return out
+
+
+def _missed(rows: list[dict[str, Any]]) -> str:
+    """What the rows that are not as expected have in common, and the farthest of them."""
+    missed = [row for row in rows if row["verdict"] != "as expected"]
+    numbers = [row for row in missed if row["observed"] is not None and row["predicted"]]
+    if not numbers:
+        return "; ".join(dict.fromkeys(row["note"] for row in missed))
+    worst = max(numbers, key=lambda row: abs(row["observed"] / row["predicted"] - 1.0))
+    setting = ", ".join(str(value) for value in worst["setting"].values())
+    off = 100.0 * (worst["observed"] / worst["predicted"] - 1.0)
+    return f"farthest: {setting}: {worst['quantity']}, {off:+.2g} %; {worst['note']}"
 
 
 def _foreign() -> Row:
