@@ -17,6 +17,7 @@ from raceway import scene_from_dict
 from raceway.core.record import Motion, Schedule
 from raceway.core.system import System
 from raceway.model import Model
+from raceway.ring import ring_inertia
 from raceway.simulate import simulate
 from raceway.statics import settle
 from tests.reference.ring import Ring
@@ -106,7 +107,8 @@ def independent(tilt: str, keep: int) -> np.ndarray:
     """(n, 2) the same motion without damping and with weightless balls, by DOP853 on the reference's equations."""
     model = bearing("newmark", tilt, False, 0.0, 360)
     start, w = settle(model).displacement, 12000.0 * np.pi / 30.0
-    ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522)
+    _, _, polar = ring_inertia(model.scene)
+    ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, spin=polar * w)
     times = np.linspace(0.0, TURNS * 2.0 * np.pi / w, TURNS * keep + 1)
     system = model.system
     q, _, _ = trajectory(

@@ -12,6 +12,7 @@ from benchmarks.evidence._orbits import ONE_WAY, Tables, apart, by_turns, method
 from benchmarks.evidence._scenes import model_of, rig_force
 from raceway.core.record import Schedule
 from raceway.integrators.periodic import Periodic
+from raceway.ring import ring_inertia
 from raceway.statics import settle
 from raceway.testing.systems import SPEED, linear_system, motion
 from tests.reference.ring import Ring
@@ -149,7 +150,8 @@ def _monodromy(tables: Tables) -> np.ndarray:
     model = model_of(tables)
     system, w = model.system, 12000.0 * np.pi / 30.0
     damping = tables["contact"]["damping"]
-    ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, damping=damping)
+    _, _, polar = ring_inertia(model.scene)
+    ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, damping=damping, spin=polar * w)
     one_way = tables["excitation"]["kind"] == "unidirectional"
     force = (swinging if one_way else turning)(rig_force(12000.0), w)
     record = _tight(tables).simulation.record
