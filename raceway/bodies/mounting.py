@@ -35,20 +35,22 @@ def place_ring(scene: Scene, basis: Basis, system: System) -> np.ndarray:
     if preloaded:
         row = _row(system.as_mounted(growth), 0, geometry.ball_count, facing=True)
         start = np.array([0.05 * geometry.centre_distance, 0.0, 0.0, 0.0, 0.0])
-        system.table[:, ring.SHIFT] = _alone(row, scene.bearing.preload, start)[0]
+        system.table[:, ring.SHIFT] = _under(row, scene.bearing.preload).settle(start)[0][0]
         guess[0] = 0.0
+    sprung = preloaded and scene.bearing.preload_kind == "spring"
     if scene.supports.axial == "displacement":
-        guess = _alone(system.as_mounted(growth), scene.load.axial, guess)
-    if preloaded and scene.bearing.preload_kind == "spring":
+        mounted = _under(system.as_mounted(growth), scene.load.axial)
+        start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
+        guess = _follow_spring(scene, basis, mounted, start) if sprung else mounted.settle(start)[0]
+    if sprung:
         guess = _follow_spring(scene, basis, system, guess)
     return guess
 
 
-def _alone(system: System, axial: float, guess: np.ndarray) -> np.ndarray:
-    """(5,) equilibrium under an axial load alone, the other coordinates held."""
-    start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
-    load = np.array([axial, 0.0, 0.0, 0.0, 0.0])
-    return attrs.evolve(system, load=load, free=np.array([1.0, 0.0, 0.0, 0.0, 0.0])).settle(start)[0]
+def _under(system: System, axial: float) -> System:
+    """The system under an axial load alone, the other coordinates held."""
+    one = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+    return attrs.evolve(system, load=axial * one, free=one)
 
 
 def _row(system: System, index: int, balls: int, facing: bool = False) -> System:
@@ -119,8 +121,7 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any] | No
     running = bearing.preload
     if bearing.preload_kind == "rigid":
         try:
-            free = attrs.evolve(system, load=np.zeros(5), free=np.array([1.0, 0.0, 0.0, 0.0, 0.0]))
-            q, ball, _ = free.settle(np.zeros(5))
+            q, ball, _ = _under(system, 0.0).settle(np.zeros(5))
             running = _row_forces(model, q, ball)[0]
         except ConvergenceError:
             running = 0.0  # both rows are loose

@@ -99,6 +99,23 @@ def test_a_spring_keeps_its_force(load):
     assert found["stiffness"][1][1] == pytest.approx(tangent[1], rel=TOLERANCE)
 
 
+@pytest.mark.parametrize("bodies", ["rigid", "condensed"])
+def test_a_held_displacement_of_a_sprung_pair_is_that_under_the_axial_load(built, bodies):
+    """Mounted, too, the second row keeps the spring's force: the first one carries load and preload; at rest nothing changes."""
+    more = {"load": {"axial": 400.0}, "bodies": {"kind": bodies}}
+    held, free = (built(**pair("spring", supports={"axial": axial}, **more)) for axial in ("displacement", "force"))
+    now, loaded = settle(held), settle(free)
+    # The spring's force is met to 1e-9, and the force of 400 N by as much of the stiffness.
+    assert now.displacement == pytest.approx(loaded.displacement, rel=1e-8, abs=1e-16)
+    assert mounting.held_table(held, now)["running_n"] == pytest.approx(400.0, rel=1e-8)
+    assert preload_table(held, now)["rows_n"] == pytest.approx([700.0, 300.0], rel=1e-8)
+    if bodies == "rigid":
+        assert now.displacement[0] == pytest.approx(approach(row(), 700.0) - approach(row(), 300.0), rel=TOLERANCE)
+    running = built(**pair("spring", supports={"axial": "displacement"}, kinematics=ALL, **more))
+    assert running.guess[0] == pytest.approx(now.displacement[0], rel=1e-8)
+    assert preload_table(running, settle(running))["rows_n"][1] == pytest.approx(300.0, rel=1e-8)
+
+
 def test_a_spring_that_the_load_overcomes_is_told():
     """On deep grooves nothing stops a ring that leaves its first row."""
     tables = pair("spring", load={"axial": -350.0}, kinematics={"spin_speed_rpm": 20000.0})
