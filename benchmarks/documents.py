@@ -38,8 +38,8 @@ Every mistake is reported at once, each with its path, the value, the rule and t
 table.key=value` changes one key for one run. Made by `python -m benchmarks.documents` from the declarations in
 `raceway/scene.py` and in the plug-ins; do not edit by hand.
 
-`title` is a string; by default the name of the file. What `--set` changes stands in its second line, on screens, pictures and
-pages, and in the name of the folder of the results, so that no run overwrites another's.
+`title` is a string; by default the name of the file. What `--set` changes stands in its second line, by key, on screens,
+pictures and pages, and in the name of the folder of the results, so that no run overwrites another's.
 """
 
 #: Tables in the order in which people write them: with the kind of plug-in that each names.

@@ -141,9 +141,13 @@ def titled(tables: Mapping[str, Any], name: str, changes: Iterable[tuple[str, An
     Parameters
     ----------
     name : the title where the file has none;  changes : keys and values, the last of a key holds
+
+    Notes
+    -----
+    Keys are sorted: changes in another order make the same scene, and folders are named by the title.
     """
     title = tables.get("title", name)
-    told = ", ".join(f"{key} = {_told(value)}" for key, value in dict(changes).items() if key != "title")
+    told = ", ".join(f"{key} = {_told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
     if told and isinstance(title, str) and title.strip():
         title += (", " if "\n" in title else "\n") + told
     return {**tables, "title": title}

@@ -29,6 +29,7 @@ FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"
         ("T", [], "T"),
         (None, ["load.axial=400"], "file\nload.axial = 400"),
         ("T", ["load.axial=400.0", "supports.tilt=free"], "T\nload.axial = 400, supports.tilt = free"),
+        ("T", ["supports.tilt=free", "load.axial=400"], "T\nload.axial = 400, supports.tilt = free"),
         ("T", ["load.axial=1", "load.axial=2"], "T\nload.axial = 2"),
         ("T", ["kinematics.orbiting=true", "load.radial=[0, 1.5]"], "T\nkinematics.orbiting = true, load.radial = [0, 1.5]"),
         ("T\nrotor.mass = 1", ["load.axial=2"], "T\nrotor.mass = 1, load.axial = 2"),  # the scene of a result, changed again
