@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from raceway.core.energy import energy_balance
 from raceway.core.orbit import steady_orbit
 from raceway.core.record import Schedule
 from raceway.core.start import from_orbit, static_orbit
-from tests.condensed.bodies import BED, INNER, OUTER, elastic
+from tests.condensed.bodies import ANGLES, BALL, BED, INNER, OPPOSITE, OUTER, elastic
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
 #: What ball and contacts can be, each another kernel or branch.
@@ -88,6 +89,19 @@ def test_approach_is_law_and_structure_in_series(built):
     own = np.r_[np.full(z, -0.62e-9 - 0.304e-9), np.full(z, -0.64e-9 - 0.304e-9)]
     matrix = np.diag(own) + 0.167e-9 * np.kron([[0.0, 1.0], [1.0, 0.0]], np.eye(z))
     assert soft.structural_approach(ball) == pytest.approx(matrix @ force, rel=1e-9)
+
+
+def test_compliances_follow_the_angle_between_the_table_s_knots(built):
+    """Against scipy's cubic spline without slope at its ends."""
+    rigid, slope = model(built), 1.3e-9
+    soft = elastic(rigid.system, slope=slope)
+    q, ball, _ = soft.settle(rigid.guess)
+    force, z = soft.evaluate(q, ball=ball).contact_force, soft.ball_count
+    angle, change = np.arctan2(*soft.centre_vectors(q)[0].T), slope * (ANGLES - 0.3) * (ANGLES + 0.7)
+    assert np.ptp(angle) > 0.02
+    own = [CubicSpline(ANGLES, ring + BALL + change, bc_type=((1, 0.0), (1, 0.0)))(angle) for ring in (INNER, OUTER)]
+    other = OPPOSITE * np.r_[force[z:], force[:z]]
+    assert soft.structural_approach(ball) == pytest.approx(np.concatenate(own) * force + other, rel=1e-9)
 
 
 def test_groove_centres_move_as_the_loads_of_all_balls_push_them(built):

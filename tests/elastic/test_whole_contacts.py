@@ -60,6 +60,12 @@ def dense(matrix: np.ndarray, contact: Any, held: Cage | None, rates: float) -> 
     return out
 
 
+def test_the_cage_s_force_is_the_gradient_of_its_energy():
+    """Of a quadratic form central differences are exact."""
+    held, (u, v) = cage(), np.random.default_rng(6).standard_normal((2, SIZE))
+    assert held.energy(u + v) - held.energy(u - v) == pytest.approx(2.0 * held.internal(u) @ v, rel=1e-12)
+
+
 @pytest.mark.parametrize("rates", [0.0, 2e5])
 @pytest.mark.parametrize("held", [None, cage()], ids=["loose", "caged"])
 def test_it_is_the_inverse_of_bodies_contacts_and_cage(bodies, contact, held, rates):

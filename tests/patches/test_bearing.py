@@ -11,6 +11,7 @@ import pytest
 from raceway import build_model, make_plan, scene_from_dict
 from raceway.contact_error import contact_error
 from raceway.core.bodies.ring import CAGE, CENTRIFUGAL
+from raceway.core.condensed.balls import Balls
 from raceway.core.condensed.pool import Pool
 from raceway.errors import ConvergenceError, SceneError
 from raceway.run import run
@@ -88,6 +89,24 @@ def test_a_state_does_not_depend_on_the_states_before(free):
     assert after.force == pytest.approx(before.force, abs=1e-6)
 
 
+def test_balls_go_along_with_their_grooves_before_newton(free, monkeypatch):
+    """A linearisation leaves a tenth at most of what the balls move within a tenth of a micrometre."""
+    case, found = free
+    seen, settle_balls = [], Balls.settle
+
+    def watched(self, centre, where, *rest):
+        place = settle_balls(self, centre, where, *rest)
+        seen.append((where, place[0]))
+        return place
+
+    monkeypatch.setattr(Balls, "settle", watched)
+    for axial in (0.0, 1e-7):
+        case.system.evaluate(found.displacement + np.array([axial, 0.0, 0.0, 0.0, 0.0]), ball=found.ball)
+    (_, before), (guess, after) = seen[0], seen[-1]
+    assert np.abs(after - before).max() > 1e-8
+    assert np.abs(after - guess).max() < 0.1 * np.abs(after - before).max()
+
+
 def test_balls_at_cage_speed_press_the_outer_race():
     case = model(excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0})
     found = settle(case)
@@ -95,6 +114,11 @@ def test_balls_at_cage_speed_press_the_outer_race():
     # A pressure over points leans by some hundredths of a degree against the line through ball and groove centre.
     assert radial == pytest.approx(case.system.table[:, CENTRIFUGAL], rel=0.02)
     assert radial.min() > 10.0
+
+
+def test_the_first_points_hold_the_contacts_of_the_scene(free):
+    """Patches that are too small would be made again, wider, at several times the cost."""
+    assert len(free[0].system.pool.generations) == 1
 
 
 def test_contacts_that_leave_their_points_get_more():

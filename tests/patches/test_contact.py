@@ -117,6 +117,18 @@ def test_the_mean_stiffness_has_no_ripple(coarse):
     assert mean < 0.4 * point
 
 
+def test_the_mean_stiffness_is_the_mean_of_the_points_over_one_distance_of_rows(coarse):
+    """1 %: of a swing by some percent eight places see the mean to a tenth."""
+    contact = Contact(coarse.patch, None)
+    pitch = coarse.patch.race.angle[1] - coarse.patch.race.angle[0]
+    places = [coarse.place(5e-6, coarse.angle + pitch * ((k + 0.5) / 8.0 - 0.5)) for k in range(8)]
+    normals = [place / np.hypot(*place) for place in places]
+    point = np.mean([n @ contact.press(p, np.zeros(2)).stiffness @ n for n, p in zip(normals, places, strict=True)])
+    middle = coarse.place(5e-6, coarse.angle)
+    normal = middle / np.hypot(*middle)
+    assert normal @ contact.mean_stiffness(middle) @ normal == pytest.approx(point, rel=0.01)
+
+
 def test_a_softer_law_approaches_further_by_its_penetration(coarse):
     """At the peak the law's penetration joins the bodies' approach; the pressure falls a little."""
     hard, pressed = coarse.at_load(300.0)

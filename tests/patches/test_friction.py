@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from raceway import build_model, make_plan
 from raceway.core.condensed.balls import Given
 from raceway.core.condensed.contact import Contact, Held
 from raceway.core.condensed.friction import Friction, Gripped
+from raceway.core.condensed.gyroscopic import Gyroscopic
 from raceway.core.condensed.history import History
 from raceway.planning.patches import patch_cost
 from raceway.run import run
@@ -208,6 +210,24 @@ def test_gyroscopic_moments_turn_contacts_as_they_do_with_resultants():
         ahead, behind = (case.system.evaluate(moved + s * step, ball=found.ball).force for s in (1.0, -1.0))
         weight = np.sqrt(np.diag(now.stiffness) * now.stiffness[j, j])
         assert np.abs(((ahead - behind) / (2.0 * size) - now.stiffness[:, j]) / weight).max() < 1e-3
+
+
+@pytest.mark.parametrize("load", [500.0, 5.0])
+def test_the_moment_of_a_ball_has_exact_derivatives(load):
+    """Of central differences of 1e-9 m in 2e-4 m, 1e-6; at the smaller load the inner contact holds no more than that load."""
+    turned = Gyroscopic(1.0, 0.2, (1.0, 1.0), 9.525e-3, 4.97e-3)
+    places = 2e-4 * np.array([-np.sin(0.3), -np.cos(0.3), np.sin(0.25), np.cos(0.25)])
+    contact = 1e6 * np.array([[0.2, 0.1], [0.1, 0.9]])
+
+    def of(moved):
+        force = load * np.array([np.sin(0.3), np.cos(0.3)]) - contact @ (moved - places)[:2]
+        pressed = SimpleNamespace(force=force, gripped=None, stiffness=contact, along=np.zeros((2, 2)))
+        return turned.of(moved[:2], moved[2:], pressed)
+
+    now, step = of(places), 1e-9 * np.eye(4)
+    assert (abs(now.couple) == pytest.approx(4.97e-3 * load, rel=1e-12)) == (load == 5.0)
+    found = -np.column_stack([(of(places + one).force - of(places - one).force) / 2e-9 for one in step])
+    assert np.abs(found - now.stiffness).max() < 1e-6 * np.abs(now.stiffness).max()
 
 
 def test_balls_are_accelerated_by_their_contacts():
