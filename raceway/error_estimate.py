@@ -29,6 +29,7 @@ from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError
 from raceway.finer_series import finer_value, more_equilibria
 from raceway.free_vibration import without_free_vibration
+from raceway.misfit import largest_misfit
 from raceway.model import Model
 from raceway.planning.modules import compares_with_steady_motion
 from raceway.planning.recording import fits
@@ -88,7 +89,7 @@ def error_table(
         parts = {
             "time_step": step,
             "transient": _transient(model, equilibrium, motions, found, step),
-            "identification": _identification(model, found),
+            "identification": _identification(model, equilibrium, found),
         }
     parts["mesh"] = Part(mesh, how["mesh"])
     if is_calibrated(model):
@@ -106,7 +107,8 @@ def error_table(
     if motions and _wanders(motions[-1][1], found):
         how["total"] = "not estimated: no steady motion was found, and the turns that are used do not repeat"
         return table
-    unknown = [name for name in ("time_step", "transient") if motions and parts[name].size is None]
+    needed = ("time_step", "transient", *(("identification",) if "speeds" in model.scene.identifier.method.needs else ()))
+    unknown = [name for name in needed if motions and parts[name].size is None]
     if unknown:
         how["total"] = f"not estimated: that of the {' and the '.join(unknown).replace('_', ' ')} is not known"
         return table
@@ -131,12 +133,16 @@ def _total(parts: dict[str, Part]) -> float | None:
     return float(together + sum(sizes))
 
 
-def _identification(model: Model, found: Identification) -> Part:
+def _identification(model: Model, equilibrium: Equilibrium, found: Identification) -> Part:
     if found.window is None:
         return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
-    if "speeds" in model.scene.identifier.method.needs:
-        return Part(found.window, "misfit of K and C at this whirl speed; the largest where it was not run")
-    return Part(found.window, "Fourier line against least squares")
+    if "speeds" not in model.scene.identifier.method.needs:
+        return Part(found.window, "Fourier line against least squares")
+    try:
+        size, rpm = largest_misfit(model, equilibrium, found)
+    except ConvergenceError as why:
+        return Part(None, f"no motion at the scene's own whirl speed, which is none of those of the fit: {why}")
+    return Part(max(size, found.window), f"largest misfit of K - m w^2 + j w C, over |Z| there: at {rpm:.6g} r/min")
 
 
 def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex) -> Part:

@@ -20,6 +20,7 @@ from raceway.core.stepping.energy import drift, friction_lost, largest_share
 from raceway.error_estimate import error_table, no_error
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.implausible import implausible
+from raceway.misfit import misfit_warnings
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
 from raceway.plausibility import motion_warnings, refuse_impossible
@@ -120,6 +121,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
                 # A mesh too coarse for its answer comes first, keys without effect last.
                 [
                     *_unresolved(error),
+                    *misfit_warnings(model, error),
                     *_bodies_warnings(model, equilibrium),
                     *equilibrium.warnings,
                     *_motion_warnings(motions),

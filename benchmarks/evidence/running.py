@@ -18,12 +18,14 @@ RUN_UP = "python -m pytest tests/depth/test_speeds.py"
 _STEADY, _NOTHING = 5e-3, 1.0
 #: Fitted K against a steady run, over |Z|: what the amplitude changes is left.
 _FIT = 0.02
+#: A true error over the stated one, with the steps in time of what it is held against; kg of a mass that is known.
+_COVERED, _NO_MASS = 1.01, 1e-9
 #: Of a stiffness or a force, against a solution by independent code.
 _LIMIT = 1e-3
 
 
 def rows() -> list[Row]:
-    return [*_pairs(), *_grown(), *_held(), *_run_ups(), *_example(), *_fits()]
+    return [*_pairs(), *_grown(), *_held(), *_run_ups(), *_example(), *_fits(), *_tilting_fits()]
 
 
 def _scene(**tables: Any) -> Any:
@@ -126,4 +128,23 @@ def _fits() -> list[Row]:
         told = fitted.error["identification"]
         note = f"error.identification {told:.2g}, true {off:.2g}"
         out.append(below(f"{name} K over the stated one", off / told, 2.0, RUN_UP, note))
+    return out
+
+
+def _tilting_fits() -> list[Row]:
+    """400 N, 2 kg, free tilts with a disc, 13 000 r/min: the distance of the fit from the steady motion over its stated error."""
+    out, rotor = [], {"mass": 2.0, "polar_inertia": 5e-3, "transverse_inertia": 3e-3}
+    excitation = {"kind": "bidirectional", "speed_rpm": 13000.0, "unbalance": 1e-4}
+    common = {"load": {"axial": 400.0}, "rotor": rotor, "supports": {"tilt": "free"}, "excitation": excitation}
+    steady = run(_scene(**common, integrator={"kind": "periodic"})).identification
+    for speeds in ([11e3, 12e3, 13e3, 14e3, 15e3], [12e3, 14e3], [1e3, 2e3, 3e3], [16e3, 20e3]):
+        fitted = run(_scene(**common, identifier={"kind": "impedance_fit", "speeds_rpm": speeds}))
+        found, told = fitted.identification, fitted.error["total"]
+        off = abs(found.dynamic_stiffness - steady.dynamic_stiffness) / abs(found.dynamic_stiffness)
+        name = f"impedance_fit, free tilts, {speeds[0]:g} to {speeds[-1]:g} r/min"
+        note = f"true {off:.2g}, stated {told:.2g}; K {1e-6 * found.equivalent_stiffness:.2f}, steady "
+        note += f"{1e-6 * steady.equivalent_stiffness:.2f} N/um; m {found.mass_used:.4g} kg"
+        out.append(below(f"{name}: true error of Z over the stated one", off / told, _COVERED, RUN_UP, note))
+        off_mass = abs(found.mass_used - steady.mass_used)
+        out.append(below(f"{name}: m less ring and rotor, kg", off_mass, _NO_MASS, RUN_UP, ""))
     return out

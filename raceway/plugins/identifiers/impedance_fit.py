@@ -11,13 +11,8 @@ from raceway.options import option, worded
 from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from raceway.core.identification import Identification
     from raceway.core.record import Record
-
-#: Relative difference of two speeds that are one.
-_SAME = 1e-9
 
 
 def _speeds(_instance: Any, _attribute: Any, value: tuple[float, ...]) -> None:
@@ -32,9 +27,9 @@ class ImpedanceFit:
     Notes
     -----
     K changes with the spin speed of the balls and with the amplitude: a fitted m would take what K loses over the speeds.  So
-    spin and force are held, as a shaker on a turning rotor does, and m is that of ring and rotor, with free tilts that of the
-    static shape.  The misfit, ``window``, is what Z of the scene's own whirl speed is away from the fit, over |Z|, or the largest
-    such distance where that speed is none of ``speeds_rpm``.
+    spin and force are held, as a shaker on a turning rotor does, and m is that of ring and rotor, as in every K of this program.
+    Free tilts lean with a shape that changes with w, and gyroscopic moments are linear in w: Z is of another form then, and the
+    misfit tells.  ``window`` is the largest misfit over the whirl speeds, over |Z| there.
     """
 
     name: ClassVar[str] = "impedance_fit"
@@ -45,7 +40,7 @@ class ImpedanceFit:
 
     speeds_rpm: tuple[float, ...] = option(
         unit="r/min",
-        help="whirl speeds of the force that are run at the scene's spin speed, at least two",
+        help="whirl speeds of the force that are run at the scene's spin speed, at least two; best around the scene's own",
         rule=worded(_speeds, "at least two different speeds greater than 0"),
     )
 
@@ -66,9 +61,8 @@ class ImpedanceFit:
             for r, s in zip(records, w, strict=True)
         ]
         z = np.array([stiffness(force, line) for force, line in lines])
-        own = 2.0 * pi * model.excitation.frequency_hz
+        own, mass = 2.0 * pi * model.excitation.frequency_hz, model.mass_used
         nearest = int(np.argmin(np.abs(w - own)))
-        mass = moving_mass(model, equilibrium, lines[nearest][0])
         k, damping = float((z.real + mass * w**2).mean()), float((w @ z.imag) / (w @ w))
         fitted, here = k - mass * w**2 + 1j * w * damping, complex(k - mass * own**2, own * damping)
         away = np.abs(z - fitted)
@@ -77,19 +71,6 @@ class ImpedanceFit:
             found,
             dynamic_stiffness=here,
             residual=float(np.sqrt(np.mean(away**2)) / abs(z).mean()),
-            window=float((away[nearest] if abs(w[nearest] / own - 1.0) < _SAME else away.max()) / abs(here)),
+            window=float((away / np.abs(z)).max()),
             series=tuple((float(s), complex(one)) for s, one in zip(w, z, strict=True)),
         )
-
-
-def moving_mass(model: Any, equilibrium: Any, force: np.ndarray) -> float:
-    """Mass [kg] that moves with the static shape x of a force (5,), of the system's own tangent: |F|^2 x^H M x / (F^H x)^2."""
-    import numpy as np
-
-    if model.mass_used == 0.0:
-        return 0.0
-    system = model.system
-    chosen = system.free > 0.0
-    shape = np.zeros(5, dtype=complex)
-    shape[chosen] = np.linalg.solve(system.reduced(equilibrium.stiffness + system.stiffness), force[chosen])
-    return float((np.vdot(force, force) * np.vdot(shape, system.mass @ shape) / np.vdot(force, shape) ** 2).real)
