@@ -9,6 +9,8 @@ import pytest
 from benchmarks.evidence import orders
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
+from raceway.core.address import by_address
+from raceway.core.integrators import outer_force
 from raceway.core.record import Schedule
 from raceway.core.start import at_rest
 from raceway.errors import StabilityError
@@ -123,3 +125,13 @@ def test_progress_and_stop():
     with pytest.raises(KeyboardInterrupt):
         model.scene.integrator.method.advance(model.system, start, Schedule(1e-6, 60_000, 1, 60), stop)
     assert seen == [(20_000, 60_000)]
+
+
+def test_the_ramp_grows_from_nothing_to_all_of_the_force_smoothly(built):
+    """10 s^3 - 15 s^4 + 6 s^5, whose slope and curvature are zero at both ends."""
+    excitation = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 100.0}
+    system, ramp, out = by_address(built(excitation=excitation, rotor={"mass": 2.0}).system), 0.02, np.empty(5)
+    for s in (0.0, 0.1, 0.25, 0.5, 0.9, 1.0, 1.5):
+        outer_force(system.force, s * ramp, system.force_params, ramp, out)
+        share = 10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5 if s < 1.0 else 1.0
+        assert np.linalg.norm(out) == pytest.approx(100.0 * share, rel=1e-12, abs=1e-12)

@@ -13,9 +13,12 @@ from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
 from raceway.core.orbit import steady_orbit
 from raceway.core.periodic.branch import Branch
-from raceway.core.periodic.collocation import Problem
+from raceway.core.periodic.collocation import Problem, solve
+from raceway.core.periodic.first_guess import guess
 from raceway.core.periodic.rates import stiff
+from raceway.core.periodic.sampling import motion_at
 from raceway.core.periodic.search import find, from_rest, highest_order, mesh_of
+from raceway.core.periodic.steady import _equilibrium
 from raceway.core.periodic.symmetry import one_turn
 from raceway.core.record import Schedule
 from raceway.errors import SceneError
@@ -173,6 +176,43 @@ def test_a_branch_over_the_speed(softening):
     points = branch.follow(branch.start(begin, low.speed), 0.2, lambda p: p.parameter >= wanted, 60)
     direct = find(at(points[-1].parameter), q, tangent, 1e-8).refined.solved
     assert points[-1].solved.path.q[0, 0] == pytest.approx(direct.path.q[0, 0], abs=1e-5 * direct.size)
+
+
+def test_newton_ends_at_its_tolerance():
+    """Where the answer is solved for once more, to rounding, it moves by no more than that."""
+    model = model_of(scene(axial=400.0, tilt="free"))
+    equilibrium = settle(model)
+    problem = Problem(model.system, 1256.0, one_turn(model.system))
+    nodes = mesh_of(problem, highest_order(problem, equilibrium.stiffness))
+    for tolerance in (1e-4, 1e-6, 1e-8):
+        once = solve(problem, guess(problem, equilibrium.displacement, equilibrium.stiffness, nodes), tolerance)
+        assert once.correction <= tolerance * once.size
+        again = solve(problem, once.path, 1e-13)
+        assert np.abs((again.path.q - once.path.q) / problem.weight).max() <= tolerance * once.size
+
+
+def test_a_start_off_the_equilibrium_is_settled():
+    model = model_of(scene())
+    equilibrium = settle(model)
+    off = motion(model.system, equilibrium.displacement + np.array([1e-6, 2e-6, 0.0, 0.0, 0.0]), np.zeros(5))
+    q, tangent = _equilibrium(model.system, off)
+    # Newton's tolerance of 1e-11 of the forces.
+    assert q == pytest.approx(equilibrium.displacement, abs=1e-13)
+    assert tangent == pytest.approx(equilibrium.stiffness, rel=1e-8, abs=1e-2)
+
+
+@pytest.mark.parametrize("damping", [0.001, 500.0])
+def test_rates_of_the_balls_are_the_derivatives_of_their_places(damping):
+    """Put in after every sweep, or solved for; 1e-3 of the largest rate for balls that are interpolated."""
+    model = model_of(scene(contact={"damping": damping}, inertia=True))
+    equilibrium, step = settle(model), 1e-3
+    problem = Problem(model.system, 1256.0, one_turn(model.system))
+    path = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8).refined.solved.path
+    assert stiff(problem, path) == (damping == 500.0)
+    angles = np.linspace(0.1, 6.0, 50)
+    ahead, behind = (motion_at(problem, path, angles + sign * step)[3][:, :, :2] for sign in (1.0, -1.0))
+    rate = motion_at(problem, path, angles)[4][:, :, :2]
+    assert np.abs((ahead - behind) / (2.0 * step) * problem.speed - rate).max() < 1e-3 * np.abs(rate).max()
 
 
 def test_dashpots_are_noticed():

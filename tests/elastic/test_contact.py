@@ -6,7 +6,7 @@ import pytest
 from benchmarks.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body
-from raceway.core.elastic.contacts.gap import gaps, plane
+from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps, plane
 from raceway.core.elastic.contacts.nodal import NodalContact, Pair
 from raceway.core.elastic.system import ElasticSystem
 from raceway.errors import ConvergenceError, MeshError
@@ -48,6 +48,27 @@ def test_gap_of_a_groove_is_the_references_and_its_derivatives_are_differences()
         # Central differences of a surface of 1/mm curvature: (step/mm)^2 = 1e-8 of the values, and rounding over the step.
         np.testing.assert_allclose(normal[:, axis], (more[0] - less[0]) / (2 * step), atol=1e-7)
         np.testing.assert_allclose(bend[:, :, axis], (more[1] - less[1]) / (2 * step), atol=2e-6 * np.abs(bend).max())
+
+
+def test_forces_of_a_soft_law_have_exact_tangents():
+    """So soft that what the groove's curvature adds is a tenth; central differences as above."""
+    where = np.array([0.0, 0.0, -RADIUS]) + 1e-3 * np.random.default_rng(3).uniform(-1.0, 1.0, (20, 3))
+    surface = np.array([[1.0, *MIDDLE, ROLLING + GROOVE, GROOVE, 0.0, 0.0]])
+    which, soft = np.zeros(20, dtype=np.int64), 1e9
+
+    def evaluate(place):
+        gap, normal, bend = np.empty(20), np.empty((20, 3)), np.empty((20, 3, 3))
+        gaps(np.ascontiguousarray(place), which, surface, gap, normal, bend)
+        force, stiffness, damping = np.empty((20, 3)), np.empty((20, 3, 3)), np.empty((20, 3, 3))
+        pressure, slope, none = soft * (1e-3 - gap), np.full(20, -soft), np.zeros(20)
+        forces_and_tangents(np.ones(20), pressure, slope, none, normal, bend, force, stiffness, damping)
+        return force, stiffness, np.abs(pressure[:, None, None] * bend).max()
+
+    _, stiffness, curved = evaluate(where)
+    assert curved > 0.1 * soft
+    for axis, step in enumerate(1e-7 * np.eye(3)):
+        found = -(evaluate(where + step)[0] - evaluate(where - step)[0]) / 2e-7
+        np.testing.assert_allclose(stiffness[:, :, axis], found, atol=1e-6 * soft)
 
 
 def test_forces_are_the_references(pressed):
