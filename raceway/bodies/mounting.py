@@ -12,8 +12,10 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess
 from raceway.core.bodies import ring
+from raceway.core.changing_speed import ChangingSpeed
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
+from raceway.planning.recording import turns_of
 from raceway.ring import radial_growth
 from raceway.scene import Scene
 
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 _TOLERANCE = 1e-9
 #: First step of the search for a sprung ring's place, over the distance of the groove centres; steps of that search.
 _STEP, _LIMIT = 0.01, 60
+#: Times at which the speeds of a run are looked at, and steady speeds that a sprung ring is placed at.
+_SAMPLES, _SPEEDS = 1001, 17
 
 
 def place_ring(scene: Scene, basis: Basis, system: System) -> np.ndarray:
@@ -43,6 +47,8 @@ def place_ring(scene: Scene, basis: Basis, system: System) -> np.ndarray:
         start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
         guess = _follow_spring(scene, basis, mounted, start) if sprung else mounted.settle(start)[0]
     if sprung:
+        if system.spin is not None:
+            system.spin = _follow_speed(scene, basis, system, system.spin, guess)
         guess = _follow_spring(scene, basis, system, guess)
     return guess
 
@@ -63,6 +69,22 @@ def _row(system: System, index: int, balls: int, facing: bool = False) -> System
     both = np.r_[index * balls : (index + 1) * balls, z + index * balls : z + (index + 1) * balls]
     params = np.ascontiguousarray(system.law_params[both])
     return attrs.evolve(system, table=table, law_params=params, law_state=system.law_state[both].copy())
+
+
+def _follow_speed(scene: Scene, basis: Basis, system: System, spin: ChangingSpeed, guess: np.ndarray) -> ChangingSpeed:
+    """The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds."""
+    from scipy.interpolate import CubicSpline
+
+    spin = attrs.evolve(spin, shift=None)
+    duration = turns_of(scene) / scene.excitation.frequency_hz
+    met = spin.speed(np.linspace(0.0, duration, _SAMPLES))
+    speeds = np.linspace(met.min(), met.max(), _SPEEDS)
+    shifts = []
+    for speed in speeds:
+        steady = spin.constants(system, float(speed))
+        _follow_spring(scene, basis, steady, guess)
+        shifts.append(steady.table[-1, ring.SHIFT])
+    return attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
 
 
 def _follow_spring(scene: Scene, basis: Basis, system: System, guess: np.ndarray) -> np.ndarray:

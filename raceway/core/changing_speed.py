@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.core.bodies.ring import CAGE, CENTRIFUGAL, COSINE, GYROSCOPIC, REST_RADIAL, SINE
+from raceway.core.bodies.ring import CAGE, CENTRIFUGAL, COSINE, GYROSCOPIC, REST_RADIAL, SHIFT, SIDE, SINE
 
 if TYPE_CHECKING:
     from raceway.core.system import System
@@ -27,17 +27,19 @@ class ChangingSpeed:
     reference : w_r that the system's constants were made for [rad/s]
     growth : of the inner raceway at w_r, as far as it goes with w^2 [m]
     gyroscopic : (5, 5) part of the system's damping at w_r that goes with w
+    shift : function of speeds (n,) [rad/s] -> shift of a sprung second row (n,) [m]; None where rows stay
 
     Notes
     -----
     Centrifugal forces, gyroscopic moments of the balls and centrifugal growth go with w^2, the cage speed and gyroscopic moments
-    of the rotor with w.
+    of the rotor with w.  A sprung row slides to where the spring's force is met at w, as in a steady run.
     """
 
     phase: Callable[[np.ndarray], np.ndarray]
     reference: float
     growth: float
     gyroscopic: np.ndarray
+    shift: Callable[[np.ndarray], np.ndarray] | None = None
 
     def speed(self, time: np.ndarray) -> np.ndarray:
         """w (n,) [rad/s] at times (n,) [s] from zero on."""
@@ -52,18 +54,27 @@ class ChangingSpeed:
         """The system with the constants of one moment; its kernels take a steady speed, so the azimuths at time zero are those
         from which balls at the speed of now would have come to their places of now."""
         now = np.array([t])
-        ratio = float(self.speed(now)[0]) / self.reference
-        scalars, table = system.scalars.copy(), system.table.copy()
-        scalars[REST_RADIAL] += self.growth * (ratio**2 - 1.0)
-        scalars[GYROSCOPIC] *= ratio**2
-        table[:, CENTRIFUGAL] *= ratio**2
-        if scalars[CAGE] != 0.0:
-            ahead = float(self.cage_angle(scalars[CAGE], now)[0]) - scalars[CAGE] * ratio * t
-            scalars[CAGE] *= ratio
+        speed = float(self.speed(now)[0])
+        found = self.constants(system, speed)
+        if system.scalars[CAGE] != 0.0:
+            ahead = float(self.cage_angle(system.scalars[CAGE], now)[0]) - found.scalars[CAGE] * t
             c, s = np.cos(ahead), np.sin(ahead)
-            table[:, COSINE], table[:, SINE] = (
+            found.table[:, COSINE], found.table[:, SINE] = (
                 system.table[:, COSINE] * c - system.table[:, SINE] * s,
                 system.table[:, SINE] * c + system.table[:, COSINE] * s,
             )
+        return found
+
+    def constants(self, system: System, speed: float) -> System:
+        """The system at a steady speed [rad/s]."""
+        ratio = speed / self.reference
+        scalars, table = system.scalars.copy(), system.table.copy()
+        scalars[REST_RADIAL] += self.growth * (ratio**2 - 1.0)
+        scalars[GYROSCOPIC] *= ratio**2
+        scalars[CAGE] *= ratio
+        table[:, CENTRIFUGAL] *= ratio**2
+        if self.shift is not None:
+            second = table[:, SIDE] != table[0, SIDE]
+            table[second, SHIFT] = self.shift(np.array([speed]))[0]
         damping = system.damping + (ratio - 1.0) * self.gyroscopic
         return attrs.evolve(system, scalars=scalars, table=table, damping=damping, spin=None)

@@ -60,10 +60,14 @@ def _place(system: System, record: Record) -> np.ndarray:
         rest = rest + system.spin.growth * ((system.spin.speed(record.time) / system.spin.reference) ** 2 - 1.0)[:, None]
     azimuth = np.arctan2(table[:, SINE], table[:, COSINE]) + travelled[:, None]
     c, s = np.cos(azimuth), np.sin(azimuth)
+    shift = np.broadcast_to(table[:, SHIFT], azimuth.shape)
+    if system.spin is not None and system.spin.shift is not None:
+        second = table[:, SIDE] != table[0, SIDE]
+        shift = np.where(second, system.spin.shift(system.spin.speed(record.time))[:, None], shift)
     x, y, z, tilt_y, tilt_z = (record.displacement[:, k, None] for k in range(5))
     side, lever = table[:, SIDE], table[:, LEVER]
     turn = side * (tilt_y * s - tilt_z * c)
-    axial = scalars[REST_AXIAL] + table[:, SHIFT] + side * x + scalars[TILT_ARM] * turn
+    axial = scalars[REST_AXIAL] + shift + side * x + scalars[TILT_ARM] * turn
     radial = rest + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
     p, moved = record.ball, system.groove_displacement(record.ball)
     groove = scalars[OFFSET_INNER] + 0.5 * scalars[DIAMETER]

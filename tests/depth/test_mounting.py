@@ -6,6 +6,7 @@ axial displacement that was built in.
 
 from __future__ import annotations
 
+import attrs
 import numpy as np
 import pytest
 
@@ -114,6 +115,40 @@ def test_a_held_displacement_of_a_sprung_pair_is_that_under_the_axial_load(built
     running = built(**pair("spring", supports={"axial": "displacement"}, kinematics=ALL, **more))
     assert running.guess[0] == pytest.approx(now.displacement[0], rel=1e-8)
     assert preload_table(running, settle(running))["rows_n"][1] == pytest.approx(300.0, rel=1e-8)
+
+
+def run_up(first, last, **more):
+    excitation = {"kind": "run_up", "first_speed_rpm": first, "speed_rpm": last, "duration_s": 0.5, "unbalance": 3.2e-4}
+    identifier, integrator = {"kind": "order_tracking", "window_turns": 6.0}, {"steps_per_turn": 120}
+    common = {"load": {"axial": 100.0}, "rotor": {"mass": 2.0}, "identifier": identifier, "integrator": integrator}
+    return pair("spring", excitation=excitation, **common, **more)
+
+
+@pytest.mark.parametrize("bodies", ["rigid", "condensed"])
+@pytest.mark.parametrize(("first", "last"), [(500.0, 30000.0), (15000.0, 6000.0)])
+def test_a_sprung_row_follows_a_changing_speed(built, bodies, first, last):
+    """Between the speeds that it is placed at, too, the second row carries the spring's force; 1e-4 of it is what a spline leaves."""
+    model = built(**run_up(first, last, bodies={"kind": bodies}, kinematics={"ring_growth": True}))
+    now = settle(model)
+    for share in (0.0, 0.28, 0.53, 0.97, 1.0):
+        system = model.system.at_speed(0.5 * share)
+        q, ball, _ = system.settle(now.displacement)
+        moved = attrs.evolve(now, displacement=q, ball=ball)
+        rows = preload_table(attrs.evolve(model, system=system), moved)["rows_n"]
+        assert rows == pytest.approx([400.0, 300.0], rel=1e-4)
+
+
+@pytest.mark.parametrize(("first", "last"), [(6000.0, 15000.0), (15000.0, 6000.0)])
+def test_stiffness_of_a_sprung_pair_over_a_run_up_is_that_of_steady_runs(first, last):
+    """0.5 %, where a ring placed at the last speed makes -4.4 and +7.2 %."""
+    result = run(scene_from_dict(run_up(first, last)))
+    mass, series = result.model.mass_used, result.identification.series
+    for rpm in (6500.0, 14780.0):
+        w, z = min(series, key=lambda one: abs(one[0] - rpm * np.pi / 30.0))
+        excitation = {"kind": "bidirectional", "speed_rpm": float(w) * 30.0 / np.pi, "unbalance": 3.2e-4}
+        steady = pair("spring", load={"axial": 100.0}, rotor={"mass": 2.0}, excitation=excitation, integrator={"turns": 4})
+        expected = run(scene_from_dict(steady)).identification.equivalent_stiffness
+        assert z.real + mass * w**2 == pytest.approx(expected, rel=5e-3)
 
 
 def test_a_spring_that_the_load_overcomes_is_told():
