@@ -16,13 +16,14 @@ from raceway.catalogue import catalogue
 from raceway.errors import RacewayError
 from raceway.estimate import highest_frequency
 from raceway.plan import make_plan
+from raceway.planning.wall_time import START_S
 from raceway.result import Result
 from raceway.run import run
 
 Tables = dict[str, Any]
 FINISHED, REFUSED, FAILED, PLANNED = "finished", "refused, exit code 2", "failed, exit code 1", "planned only"
-#: Longer runs are planned and not run: steps, seconds, and natural frequencies over the force's for steady orbits.
-_STEPS, _SECONDS, _ORDER = 3000, 1.0, 200.0
+#: Longer runs are planned and not run: steps, seconds beyond start-up, and natural frequencies over the force's for steady orbits.
+_STEPS, _SECONDS, _ORDER = 3000, 0.5, 200.0
 _GARBAGE: tuple[Any, ...] = (
     float("nan"), float("inf"), -float("inf"), -1.0, 0.0, 1e300, -(10**30), "", "free", "42", True, None, [], [1.0], {}, {"a": 1},
     [[1.0, float("nan")], [2.0, 3.0]], 0.5, 3, "\x00", "../../etc", 1e-300,
@@ -165,7 +166,9 @@ def outcome(tables: Tables) -> str:
     try:
         scene = scene_from_dict(tables)
         plan = make_plan(scene)
-        if plan.predicted_steps > _STEPS or plan.predicted_wall_s > _SECONDS + 3.0 * (scene.bodies.kind == "condensed"):
+        if plan.predicted_steps > _STEPS or plan.predicted_work_s - START_S > _SECONDS + 3.0 * (
+            scene.bodies.kind == "condensed"
+        ):
             return PLANNED
         if scene.integrator.kind == "periodic" and scene.excitation is not None:
             order = highest_frequency(scene) / (2.0 * math.pi * scene.excitation.frequency_hz)

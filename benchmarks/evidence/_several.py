@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from raceway.result import Result
+from raceway.ring import ring_inertia
 from tests.reference.ring import Ring
 from tests.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory
 
@@ -52,7 +53,17 @@ def by_integration(result: Result, damping: float = 0.0) -> tuple[complex, float
     """Z, the largest multiplier, and what a turn does not close by over its amplitude, of a turn that begins on the motion."""
     model, simulation = result.model, result.simulation
     assert simulation is not None and model.excitation is not None
-    ring = Damped(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, spin_speed=W, damping=damping)
+    ring = Damped(
+        9.525e-3,
+        46e-3,
+        12,
+        np.radians(15.0),
+        0.522,
+        0.522,
+        spin_speed=W,
+        damping=damping,
+        spin=ring_inertia(model.scene)[2] * W,
+    )
     force = (rotating if model.excitation.sense else swinging)(model.excitation.amplitude_n, W)
     times = np.linspace(0.0, 2.0 * np.pi / W, 181)
     mass, load, free = model.system.mass, model.system.load, model.system.free

@@ -236,7 +236,7 @@ def _cost() -> list[Row]:
     moving = {**BEARING, "integrator": {"kind": "newmark", "turns": 1, "steps_per_turn": 8}}
     for name, tables in (("equilibrium", still), ("newmark, one turn of 8 steps", moving)):
         scene = scene_from_dict(tables)
-        predicted = make_plan(scene).predicted_wall_s
+        predicted = make_plan(scene).predicted_work_s
         begun = time.process_time()
         run(scene)
         ratio = (time.process_time() - begun) / predicted

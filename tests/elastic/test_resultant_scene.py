@@ -143,9 +143,10 @@ def test_a_coarse_mesh_gives_what_condensed_bodies_give():
     assert coarse.as_dict()["model"]["mesh"]["cells"] < 3000
     ratio = coarse.equilibrium.displacement[:2] / condensed.equilibrium.displacement[:2]
     stiffness = np.diag(coarse.equilibrium.stiffness) / np.diag(condensed.equilibrium.stiffness)
-    # What is taken off is known to 1 % of a contact's compliance (``replaced_uncertainty``): measured 0.5 to 0.9 %.
-    np.testing.assert_allclose(ratio, 1.0, atol=0.015)
-    np.testing.assert_allclose(stiffness, 1.0, atol=0.015)
+    # What is taken off is known to 1 % of a contact's compliance (``replaced_uncertainty``): 0.5 to 0.9 % beside condensed bodies
+    # matched at depth, too; the calibration that only those have makes them 0.8 % softer.
+    np.testing.assert_allclose(ratio, 1.0, atol=0.018)
+    np.testing.assert_allclose(stiffness, 1.0, atol=0.018)
     # Rigid bodies miss it by several times as much.
     assert np.abs(np.diag(rigid.equilibrium.stiffness) / np.diag(condensed.equilibrium.stiffness) - 1.0).min() > 0.045
     # Loads of the balls decide little: one by one within the same bound of the largest.

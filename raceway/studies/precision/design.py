@@ -132,7 +132,7 @@ def setting_at(
         return Setting(family, values, model, changed, None, reason=short(str(error)))
     if needs_motion(scene) and not scene.integrator.method.inertial:
         model["inertia"] = False
-    return Setting(family, values, model, changed, scene, _physics(scene), plan.predicted_wall_s)
+    return Setting(family, values, model, changed, scene, _physics(scene), plan.predicted_work_s)
 
 
 def needs_motion(scene: Scene) -> bool:
