@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import attrs
 import numpy as np
 
@@ -12,6 +14,8 @@ from raceway.statics import Equilibrium, beyond_the_groove, contact_angles, refu
 
 #: Samples of the last turn that are looked at.
 _SAMPLES = 60
+#: Part of what a body gives way, by which it lags behind, that is worth a sentence.
+_LAG = 0.01
 
 
 def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) -> None:
@@ -58,3 +62,22 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
 
 def _turn(record: Record) -> int:
     return max(record.schedule.steps_per_turn // record.schedule.stride, 1)
+
+
+def inertia_warnings(table: dict[str, Any] | None, total: float | None) -> list[str]:
+    """Where motions that follow at once are off by more than a result's stated error says, and by more than 1 %."""
+    found = {} if table is None else table.get("inertia") or {}
+    parts = {
+        "the inner ring": found.get("inner_supported_error"),
+        "the outer ring": found.get("outer_supported_error"),
+        "a ball along its grooves": found.get("ball_along_grooves_error"),
+    }
+    limit = max(_LAG, total or 0.0)
+    beyond = {name: share for name, share in parts.items() if share is not None and share > limit}
+    if not beyond:
+        return []
+    worst = max(beyond, key=lambda name: beyond[name])
+    return [
+        f"{worst} follows at once, which is off by (w / w1)^2 = {beyond[worst]:.2g} of what it gives way: that is not in the stated "
+        "error. Elastic bodies (bodies.kind = 'elastic') move with their mass"
+    ]

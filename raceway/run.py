@@ -23,7 +23,7 @@ from raceway.implausible import implausible
 from raceway.misfit import misfit_warnings
 from raceway.model import Model, build_model
 from raceway.plan import make_plan
-from raceway.plausibility import motion_warnings, refuse_impossible
+from raceway.plausibility import inertia_warnings, motion_warnings, refuse_impossible
 from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
@@ -105,6 +105,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         error_s = working_clock() - identified
     done = working_clock()
     compile_s = take_compile_seconds()
+    bodies = None if model.bodies is None else model.bodies.report(model, equilibrium)
     result = Result(
         model=model,
         equilibrium=equilibrium,
@@ -115,7 +116,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         stability=_stability(motions),
         environment=_environment(scene, registry),
         lines=_lines(model, simulation),
-        bodies=None if model.bodies is None else model.bodies.report(model, equilibrium),
+        bodies=bodies,
         warnings=tuple(
             dict.fromkeys(
                 # A mesh too coarse for its answer comes first, keys without effect last.
@@ -123,6 +124,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
                     *_unresolved(error),
                     *misfit_warnings(model, error),
                     *_bodies_warnings(model, equilibrium),
+                    *([] if identification is None else inertia_warnings(bodies, error["total"])),
                     *equilibrium.warnings,
                     *_motion_warnings(motions),
                     *unused(scene),

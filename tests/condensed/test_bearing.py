@@ -188,3 +188,18 @@ def test_an_unwritable_cache_is_said_once_and_costs_nothing_else(monkeypatch, tm
     array_cache._warn_unwritable.cache_clear()
     assert len([w for w in said if "cannot be kept" in str(w.message)]) == 1
     assert 1e6 * found.displacement[0] == pytest.approx(28.7, rel=0.01)
+
+
+@pytest.mark.parametrize(("speed_rpm", "told"), [(6000.0, False), (30000.0, True)])
+def test_rings_that_lag_by_more_than_the_stated_error_are_told(speed_rpm, told):
+    """On beds of 1e10 N/m3 the inner ring's first frequency is 2.1 kHz: (w / w1)^2 is 0.2 % and 5.5 %, the stated error 0.1 %."""
+    soft = {"outer_seat": 1e10, "inner_seat": 1e10}
+    tables = {
+        "bearing": {"preset": "B7206C"}, "bodies": {"kind": "condensed"}, "supports": soft, "load": {"axial": 1000.0},
+        "rotor": {"mass": 2.0}, "integrator": {"kind": "periodic"},
+        "excitation": {"kind": "bidirectional", "speed_rpm": speed_rpm, "amplitude": "constant", "force": 20.0},
+    }  # fmt: skip
+    result = run(scene_from_dict(tables))
+    lag = result.as_dict()["model"]["inertia"]["inner_supported_error"]
+    assert lag == pytest.approx((speed_rpm / 60.0 / 2140.0) ** 2, rel=0.05) and result.error["total"] < 2e-3
+    assert any("inner ring follows at once" in text for text in result.warnings) is told
