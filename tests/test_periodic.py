@@ -20,7 +20,7 @@ from raceway.core.periodic.sampling import motion_at
 from raceway.core.periodic.search import find, from_rest, highest_order, mesh_of
 from raceway.core.periodic.steady import _equilibrium
 from raceway.core.periodic.symmetry import one_turn
-from raceway.core.record import Schedule
+from raceway.core.record import Motion, Schedule
 from raceway.errors import SceneError
 from raceway.integrators.periodic import Periodic
 from raceway.run import run
@@ -194,7 +194,8 @@ def test_newton_ends_at_its_tolerance():
 def test_a_start_off_the_equilibrium_is_settled():
     model = model_of(scene())
     equilibrium = settle(model)
-    off = motion(model.system, equilibrium.displacement + np.array([1e-6, 2e-6, 0.0, 0.0, 0.0]), np.zeros(5))
+    there = equilibrium.displacement + np.array([1e-6, 2e-6, 0.0, 0.0, 0.0])
+    off = Motion(there, np.zeros(5), np.zeros(5), equilibrium.ball, equilibrium.ball.copy())
     q, tangent = _equilibrium(model.system, off)
     # Newton's tolerance of 1e-11 of the forces.
     assert q == pytest.approx(equilibrium.displacement, abs=1e-13)
