@@ -133,7 +133,9 @@ class Identifier(Protocol):
     2. ``definition``: one sentence: secant or tangent, of which signals.
     3. ``identify(records, equilibrium, model)``: an ``Identification``; ``model`` offers ``mass_used``,
        ``excitation``, ``scene`` and ``system``.
-    4. An option ``harmonics``, if there is one, is how many multiples of the frequency are fitted with mean and drift: the plan
+    4. Where ``series`` holds several speeds of one record, ``series_error`` may hold the relative error of each Z; of a changing
+       speed it is replaced by the distance from the steady motion where that can be solved for.
+    5. An option ``harmonics``, if there is one, is how many multiples of the frequency are fitted with mean and drift: the plan
        refuses more than the samples of a turn tell.
     """
 

@@ -101,6 +101,8 @@ def error_table(
     how["total"] = (
         "time step and transient with their phases, at least half the larger; plus identification, mesh and calibration"
     )
+    if found.series_error:
+        how["total"] += f"; of the last window alone, at {60.0 * found.frequency_hz:.6g} r/min"
     if model.scene.bodies.kind == "elastic":
         how["total"] = "not estimated: that of the mesh is not known, and is the largest"
         return table

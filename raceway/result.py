@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -79,7 +80,7 @@ class Result:
         found = self.identification
         if found is None:
             return None
-        z, wrong = found.dynamic_stiffness, self._across()
+        z, across = found.dynamic_stiffness, self._across()
         return {
             "definition": found.definition,
             "speed_rpm": found.frequency_hz * 60.0,
@@ -89,11 +90,11 @@ class Result:
             "equivalent_stiffness": found.equivalent_stiffness,
             "equivalent_stiffness_error": None if self.error["total"] is None else self.error["total"] * abs(z),
             "equivalent_damping": found.equivalent_damping,
-            "equivalent_damping_error": None if wrong is None else wrong * abs(z) / found.speed,
+            "equivalent_damping_error": None if across is None else across * abs(z) / found.speed,
             "mass_used_kg": found.mass_used,
             "tilt": self.model.scene.supports.tilt,
             "phase_lag_deg": found.phase_lag_deg,
-            "phase_lag_error_deg": None if wrong is None else math.degrees(wrong),
+            "phase_lag_error_deg": None if across is None else math.degrees(across),
             "forward_amplitude_m": found.forward_amplitude,
             "backward_amplitude_m": found.backward_amplitude,
             "orbit": {"major_m": found.orbit_major, "minor_m": found.orbit_minor},
@@ -110,8 +111,8 @@ class Result:
                 for line in self.lines
             ],
             "series": [
-                {"speed_rpm": speed * 30.0 / math.pi, "real": one.real, "imag": one.imag, "abs": abs(one)}
-                for speed, one in found.series
+                {"speed_rpm": speed * 30.0 / math.pi, "real": one.real, "imag": one.imag, "abs": abs(one), "error": wrong}
+                for (speed, one), wrong in zip_longest(found.series, found.series_error)
             ],
         }
 

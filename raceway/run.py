@@ -27,6 +27,7 @@ from raceway.plausibility import inertia_warnings, motion_warnings, refuse_impos
 from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
+from raceway.series_error import series_warnings, with_series_error
 from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.statics import Equilibrium, settle
 from raceway.unused import unused
@@ -102,6 +103,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         _refuse_no_number(identification)
         identified = working_clock()
         error = error_table(model, equilibrium, motions, identification)
+        identification = with_series_error(model, identification, error)
         error_s = working_clock() - identified
     done = working_clock()
     compile_s = take_compile_seconds()
@@ -123,6 +125,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
                 [
                     *_unresolved(error),
                     *misfit_warnings(model, error),
+                    *series_warnings(identification),
                     *_bodies_warnings(model, equilibrium),
                     *([] if identification is None else inertia_warnings(bodies, error["total"])),
                     *equilibrium.warnings,

@@ -36,17 +36,24 @@ def settled_value(
         None where a steady motion cannot be solved for (friction, laws with memory, bodies that are stepped from Python), is
         not found, or is another one than the transient settles on.
     """
-    changing = None if model.excitation.period_s is not None else _at_speed(model, found.speed)
+    if model.excitation.period_s is None and getattr(model.excitation, "steady", None) is not None:
+        return value_at_speed(model, found.speed)
     records = []
-    for one, motion in [(changing, None)] if changing is not None else motions:
+    for one, motion in motions:
         settled = steady_record(one, equilibrium if one is model else settle(one))
-        if settled is None or (motion is not None and settles_elsewhere(one, motion, settled)):
+        if settled is None or settles_elsewhere(one, motion, settled):
             return None
         records.append(settled)
-    if changing is None:
-        return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
-    frequency = changing.excitation.frequency_hz
-    record = records[0]
+    return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
+
+
+def value_at_speed(model: Model, speed: float) -> complex | None:
+    """Z [N/m] of the steady motion at one speed [rad/s] of an excitation that changes its own; None where there is none."""
+    one = _at_speed(model, speed)
+    record = None if one is None else steady_record(one, settle(one))
+    if one is None or record is None:
+        return None
+    frequency = one.excitation.frequency_hz
     return stiffness(*(fourier_line(record.time, part, frequency) for part in (record.force, record.displacement)))
 
 

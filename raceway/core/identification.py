@@ -28,6 +28,7 @@ class Identification:
     window : deviation of Z from the other fit (Fourier against least squares), relative, or the misfit of a fit over speeds;
         None where neither is known
     series : (speed [rad/s], Z) of every speed, where several were looked at
+    series_error : relative error of Z of each of them, None where it is not known; empty where none is
     """
 
     definition: str
@@ -43,6 +44,7 @@ class Identification:
     spread: float | None = None
     window: float | None = None
     series: tuple[tuple[float, complex], ...] = ()
+    series_error: tuple[float | None, ...] = ()
 
     @property
     def speed(self) -> float:

@@ -21,7 +21,7 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     ----------
     result : content of result.json;  files : what was written
     """
-    rows = [*_equilibrium(result), *_identification(result), *_error(result["error"]), *_bodies(result.get("model"))]
+    rows = [*_equilibrium(result), *_identification(result), *_error(result), *_bodies(result.get("model"))]
     rows += _orbits((result.get("motion") or {}).get("orbits") or [])
     rows += _cost(result["cost"])
     rows += _stability(result["stability"])
@@ -173,12 +173,18 @@ def _resolved(name: str, value: float, error: float | None, unit: str, remark: s
     return name, number(value, unit, 3), f"+- {number(error, unit, 2)}; {remark}"
 
 
-def _error(error: Mapping[str, Any]) -> list[Row]:
+def _error(result: Mapping[str, Any]) -> list[Row]:
+    error = result["error"]
     how = error["how"]
     rows = [("Relative error of Z", "", "")]
     for name in ("total", "time_step", "transient", "identification", "mesh", "contact"):
         value = error.get(name)
         rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", how.get(name, "")))
+    known = [one for one in (result["identification"] or {}).get("series", []) if one["error"] is not None]
+    if known:
+        worst = max(known, key=lambda one: one["error"])
+        how = f"at {worst['speed_rpm']:.6g} r/min; of {len(known)} windows, each with its own in result.json"
+        rows.insert(2, ("largest of the series", f"{worst['error']:.1e}", how))
     return rows
 
 

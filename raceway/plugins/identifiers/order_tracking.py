@@ -17,14 +17,15 @@ if TYPE_CHECKING:
 
 @attrs.frozen
 class OrderTracking:
-    """Least squares of the 1x line in windows of a few turns of the excitation's own phase; a series over speed.
+    """Least squares of the 1x line in windows of a few turns of the excitation's own phase; a series over speed, each with its error.
 
     Notes
     -----
     Samples have Hann's weights.  Within a window the complex amplitude A may change linearly in time; the line is taken at its
     middle.  While speed and amplitude change, M q'' of q = Re A e^{j phase} is M (-w^2 A + 2 j w A' + j w' A), and of a known
     damping C that is C (j w A + A'): what is beyond the steady terms would be told as damping m (w' + 2 w A' / A) / w and is
-    subtracted.  A curvature of A would let more noise in than it takes error out.
+    subtracted.  A curvature of A would let more noise in than it takes error out: what it would change, with its own m A'', and the
+    square of the change's share of the force, which steady terms of first order leave out, are the error of a window.
     """
 
     name: ClassVar[str] = "order_tracking"
@@ -46,7 +47,7 @@ class OrderTracking:
         phase = model.excitation.phase(record.time)
         signals = np.hstack([record.force, record.displacement])
         width = 2.0 * np.pi * self.window_turns
-        series, last = [], None
+        series, wrong, last = [], [], None
         first = phase[0]
         # A sample stands for the step that ends with it: n turns are n turns less one step from first to last sample.
         end = phase[-1] + 1.01 * (phase[-1] - phase[-2])
@@ -55,45 +56,75 @@ class OrderTracking:
             first += 0.5 * width
             if len(chosen) < 24:
                 continue
-            speed, line, value, residual = _window(model, record.time[chosen], phase[chosen], signals[chosen])
-            series.append((speed, value))
-            last = (speed, line, residual)
+            found = _window(model, record.time[chosen], phase[chosen], signals[chosen])
+            series.append((found.speed, found.value))
+            wrong.append(found.error)
+            last = found
         if last is None:
             raise ConvergenceError(
                 f"the record holds less than {self.window_turns:g} turns: shorten identifier.window_turns"
             )
-        speed, line, residual = last
-        found = identification(
-            self.definition, speed / (2.0 * np.pi), line[:5], line[5:], model.mass_used,
-            residual=residual, series=tuple(series),
+        whole = identification(
+            self.definition, last.speed / (2.0 * np.pi), last.line[:5], last.line[5:], model.mass_used,
+            residual=last.residual, series=tuple(series),
         )  # fmt: skip
-        return attrs.evolve(found, dynamic_stiffness=series[-1][1])
+        return attrs.evolve(whole, dynamic_stiffness=last.value, series_error=tuple(wrong))
 
 
-def _window(
-    model: Any, time: np.ndarray, phase: np.ndarray, signals: np.ndarray
-) -> tuple[float, np.ndarray, complex, float | None]:
-    """Speed [rad/s], 1x line (10,), Z [N/m] at the middle of a window, and what is left over the line."""
+@attrs.frozen
+class _Window:
+    """Speed [rad/s], 1x line (10,) and Z [N/m] at the middle of a window, its relative error, and what is left over the line."""
+
+    speed: float
+    line: np.ndarray
+    value: complex
+    error: float
+    residual: float | None
+
+
+def _window(model: Any, time: np.ndarray, phase: np.ndarray, signals: np.ndarray) -> _Window:
+    import numpy as np
+
+    t = time - time.mean()
+    span = t[-1] - t[0]
+    u = t / span
+    c, s = np.cos(phase), np.sin(phase)
+    basis = np.column_stack([c, s, u * c, u * s, np.ones_like(u), u, u * u, np.cos(2 * phase), np.sin(2 * phase)])
+    bent = np.column_stack([basis, u * u * c, u * u * s])
+    # Hann's weights: a free vibration leaks less into the line by orders of magnitude.
+    weight = np.sqrt(1.0 - np.cos(2.0 * np.pi * (np.arange(len(t)) + 0.5) / len(t)))[:, None]
+    solution, other = (np.linalg.lstsq(weight * one, weight * signals, rcond=None)[0] for one in (basis, bent))
+    # Of the phase: w at the middle, and its rate.
+    half_rate, w, _ = np.polyfit(t, phase, 2)
+    speeds, system = (w, 2.0 * half_rate), model.system.at_speed(time.mean()) if model.mass_used > 0.0 else None
+    line = solution[0] - 1j * solution[1]
+    value, change = _steady(system, speeds, line, (solution[2] - 1j * solution[3]) / span, 0.0 * line)
+    curved = other[0] - 1j * other[1]
+    rate, bend = ((other[k] - 1j * other[k + 1]) / scale for k, scale in ((2, span), (9, 0.5 * span**2)))
+    more, _ = _steady(system, speeds, curved, rate, bend)
+    rest = (signals - basis @ solution)[:, 6:8]
+    size = np.linalg.norm(line[6:8]) * np.sqrt(0.5 * len(t))
+    residual = float(np.linalg.norm(rest) / size) if size > 0.0 else None
+    error = abs(more - value) / abs(value) + change**2 if abs(value) > 0.0 else np.inf
+    return _Window(float(w), line, value, float(error), residual)
+
+
+def _steady(
+    system: Any, speeds: tuple[float, float], line: np.ndarray, rate: np.ndarray, bend: np.ndarray
+) -> tuple[complex, float]:
+    """Z [N/m] less the forces of a changing motion, of 1x vectors (10,) of force and motion A with A', A''; and their share.
+
+    Parameters
+    ----------
+    system : None where nothing has inertia;  speeds : w [rad/s] and w' [rad/s2]
+    """
     import numpy as np
 
     from raceway.core.identification import steady_stiffness
 
-    t = time - time.mean()
-    u = t / (t[-1] - t[0])
-    c, s = np.cos(phase), np.sin(phase)
-    basis = np.column_stack([c, s, u * c, u * s, np.ones_like(u), u, u * u, np.cos(2 * phase), np.sin(2 * phase)])
-    # Hann's weights: a free vibration leaks less into the line by orders of magnitude.
-    weight = np.sqrt(1.0 - np.cos(2.0 * np.pi * (np.arange(len(t)) + 0.5) / len(t)))[:, None]
-    solution, *_ = np.linalg.lstsq(weight * basis, weight * signals, rcond=None)
-    line, rate = (solution[k] - 1j * solution[k + 1] for k in (0, 2))
-    rate = rate / (t[-1] - t[0])
-    # Of the phase: w at the middle, and its rate.
-    half_rate, w, _ = np.polyfit(t, phase, 2)
-    inertia = np.zeros(5, dtype=complex)
-    if model.mass_used > 0.0:
-        moved, system = line[5:], model.system.at_speed(time.mean())
-        inertia = system.mass @ (2j * w * rate[5:] + 2j * half_rate * moved) + system.damping @ rate[5:]
-    rest = (signals - basis @ solution)[:, 6:8]
-    size = np.linalg.norm(line[6:8]) * np.sqrt(0.5 * len(t))
-    residual = float(np.linalg.norm(rest) / size) if size > 0.0 else None
-    return float(w), line, steady_stiffness(line[:5], line[5:], inertia), residual
+    if system is None:
+        return steady_stiffness(line[:5], line[5:], np.zeros(5, dtype=complex)), 0.0
+    w, faster = speeds
+    change = system.mass @ (2j * w * rate[5:] + 1j * faster * line[5:] + bend[5:]) + system.damping @ rate[5:]
+    power = np.linalg.norm(line[:3])
+    return steady_stiffness(line[:5], line[5:], change), float(np.linalg.norm(change[:3]) / power) if power > 0.0 else 0.0
