@@ -7,6 +7,7 @@ from collections.abc import Callable
 import attrs
 import numpy as np
 
+from raceway.bodies.mounting import lost_preload
 from raceway.core.bodies.ring import CAGE
 from raceway.core.system import COORDINATES
 from raceway.errors import ConvergenceError
@@ -126,9 +127,10 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
         return
     motion = np.abs(vectors[:, 0])
     names = [COORDINATES[chosen[k]] for k in np.argsort(-motion) if motion[k] > 0.3 * motion.max()]
+    held = "supports.tilt" if names[0].startswith("tilt") else "an axial load"
+    why = lost_preload(model) or f"Hold it ({held}) or load more balls."
     raise ConvergenceError(
-        f"the equilibrium is singular: nothing holds the ring against {' with '.join(names)}. Hold it "
-        f"({'supports.tilt' if names[0].startswith('tilt') else 'an axial load'}) or load more balls.",
+        f"the equilibrium is singular: nothing holds the ring against {' with '.join(names)}. {why}",
         {"q": q},
     )
 

@@ -137,18 +137,41 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any] | No
     ``running_n`` is what both rows of the turning, warm pair carry against each other without any load, ``rows_n`` the axial
     forces of the rows under the constant loads.
     """
-    bearing, system = model.scene.bearing, model.system
+    bearing = model.scene.bearing
     if bearing.preload == 0.0:
         return None
-    running = bearing.preload
-    if bearing.preload_kind == "rigid":
-        try:
-            q, ball, _ = _under(system, 0.0).settle(np.zeros(5))
-            running = _row_forces(model, q, ball)[0]
-        except ConvergenceError:
-            running = 0.0  # both rows are loose
+    running = running_preload(model)
     rows = _row_forces(model, equilibrium.displacement, equilibrium.ball)
     return {"kind": bearing.preload_kind, "mounted_n": bearing.preload, "running_n": running, "rows_n": rows}
+
+
+def running_preload(model: Model) -> float:
+    """What both rows of a turning, warm pair carry against each other without any load [N]; 0 where both are loose."""
+    bearing = model.scene.bearing
+    if bearing.preload_kind == "spring":
+        return bearing.preload
+    try:
+        q, ball, _ = _under(model.system, 0.0).settle(np.zeros(5))
+    except ConvergenceError:
+        return 0.0
+    return _row_forces(model, q, ball)[0]
+
+
+def lost_preload(model: Model) -> str:
+    """What took the whole preload of a pair and the remedy; empty where some is left, or there was none.
+
+    Notes
+    -----
+    Centrifugal forces of balls and growth of rings raise a pair's preload: a raceway that shrinks is what takes it.
+    """
+    bearing, kinematics = model.scene.bearing, model.scene.kinematics
+    if bearing.preload == 0.0 or running_preload(model) > 0.0:
+        return ""
+    return (
+        f"The preload of {bearing.preload:g} N is gone: both rows are loose, as the inner raceway has shrunk by "
+        f"{-1e6 * radial_growth(model.scene):.3g} um (kinematics.radial_expansion = {kinematics.radial_expansion:g} m) since they "
+        "were mounted. Raise bearing.preload, shrink it less, or take preload_kind = 'spring'."
+    )
 
 
 def held_table(model: Model, equilibrium: Equilibrium) -> dict[str, float] | None:
