@@ -75,6 +75,8 @@ def _on_orbit(model: Model, equilibrium: Equilibrium, system: System, period: fl
             from raceway.core.periodic.beginning import beginning
 
             found = beginning(system, period, q)
+            if found is not None and not found.told:
+                return Start("orbit", found.orbit)
             if found is not None:
                 return _told(model, found.orbit, found.told, found.warnings)
         return Start("orbit", steady_orbit(system, period, q))

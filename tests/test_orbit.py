@@ -8,7 +8,9 @@ import pytest
 from benchmarks.evidence._scenes import model_of, rig_force, rotating
 from raceway.core.orbit import at_time, differentiation, steady_orbit
 from raceway.core.start import from_orbit
+from raceway.starting import chosen_start
 from raceway.statics import settle
+from tests.conftest import b7206c
 from tests.reference.ring import Ring
 from tests.reference.shooting import periodic, swinging
 
@@ -74,3 +76,18 @@ def test_a_transient_starts_with_the_orbit_s_acceleration():
     assert np.abs(damped * weight).max() > 0.5 * size
     # 65 samples resolve the motion to 1e-4, its second derivative to some times that.
     assert np.abs((start.a - orbit.acceleration[0]) * weight).max() < 1e-2 * size
+
+
+@pytest.mark.parametrize("rpm", [1.0, 10.0, 100.0, 150.0])
+def test_a_slow_motion_starts_on_its_orbit(built, rpm):
+    """No mesh holds vibrations that are 4e3 to 6e5 times as fast as the force; the orbit is then that of Fourier collocation,
+    whose secant is the tangent: the force is 3.5e-6 N and more."""
+    model = built(
+        **b7206c(load={"axial": 1000.0}, excitation={"kind": "bidirectional", "speed_rpm": rpm, "unbalance": 3.2e-4})
+    )
+    now = settle(model)
+    start = chosen_start(model, now)
+    assert start.kind == "orbit" and start.settled and not start.warnings
+    found = np.abs(np.fft.rfft(start.orbit.displacement[:, 1])[1]) * 2.0 / len(start.orbit.displacement)
+    # Places of 1e-14 m stand in rounded sums of gaps of 1e-5 m.
+    assert model.scene.excitation.amplitude_n / found == pytest.approx(now.stiffness[1, 1], rel=1e-5)

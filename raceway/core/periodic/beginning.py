@@ -19,7 +19,7 @@ from raceway.core.periodic.collocation import Path, Problem, solve
 from raceway.core.periodic.first_guess import standing
 from raceway.core.periodic.refinement import refine
 from raceway.core.periodic.sampling import states
-from raceway.core.periodic.search import Found, can_follow, find, found_by, highest_order, mesh_of, problem_of
+from raceway.core.periodic.search import HIGHEST, Found, can_follow, find, found_by, highest_order, mesh_of, problem_of
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
@@ -64,7 +64,13 @@ def beginning(system: System, period: float, q: np.ndarray) -> Beginning | None:
     try:
         found = find(problem, q, tangent, _TOLERANCE)
     except ConvergenceError:
-        found = _collocated(problem, period, q, tangent)
+        orbit, highest = steady_orbit(system, period, q, _SAMPLES), highest_order(problem, tangent)
+        try:
+            found = _collocated(problem, orbit, highest)
+        except ConvergenceError:
+            if highest <= HIGHEST:
+                raise
+            return Beginning(orbit)  # so slow that no mesh holds the vibrations that it has none of
     told = orbits(found.all)
     warnings = several(told)
     if not told[0]["stable"]:
@@ -75,10 +81,8 @@ def beginning(system: System, period: float, q: np.ndarray) -> Beginning | None:
     return Beginning(sampled(found, period), told, warnings)
 
 
-def _collocated(problem: Problem, period: float, q: np.ndarray, tangent: np.ndarray) -> Found:
+def _collocated(problem: Problem, orbit: Orbit, highest: float) -> Found:
     """The motion of Fourier collocation, solved for once more on a mesh."""
-    orbit = steady_orbit(problem.system, period, q, _SAMPLES)
-    highest = highest_order(problem, tangent)
     path = _path(problem, orbit, mesh_of(problem, highest))
     return found_by(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
 

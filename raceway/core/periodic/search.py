@@ -25,6 +25,9 @@ from raceway.errors import ConvergenceError
 
 #: Intervals a turn at least, and for each order of the highest natural frequency.
 _INTERVALS, _PER_ORDER = 24, 1.5
+#: Highest order that meshes are made for: the part of a solution that vibrates faster grows over each interval, a thousand
+#: radians of it beyond all numbers, so that slow motions look singular.
+HIGHEST = 2000.0
 _DIRECT_LIMIT = 12
 #: Points of a branch, intervals of its meshes, and relative error that they are kept fit for.
 _POINTS, _MOST, _ROUGH = 120, 512, 1e-4
@@ -89,7 +92,7 @@ def highest_order(problem: Problem, tangent: np.ndarray) -> float:
 
 def mesh_of(problem: Problem, highest: float, factor: int = 1) -> np.ndarray:
     """Nodes of a first mesh, equidistant over the span, for vibrations up to an order ``highest``."""
-    turn = max(_INTERVALS, _PER_ORDER * min(highest, 2000.0))
+    turn = max(_INTERVALS, _PER_ORDER * min(highest, HIGHEST))
     count = max(2, ceil(factor * turn * problem.symmetry.span / (2.0 * np.pi) - 1e-9))
     return np.linspace(0.0, problem.symmetry.span, count + 1)
 
