@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from io import StringIO
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 from benchmarks.evidence._several import article, by_integration, heavy
 from raceway import scene_from_dict
 from raceway.commands.screen.result import run_screen
+from raceway.core.orbit import differentiation
 from raceway.core.periodic import beginning
 from raceway.errors import ConvergenceError
 from raceway.run import run
@@ -110,6 +112,15 @@ def test_a_near_linear_motion_is_told_alone():
     (only,) = result.simulation.orbits
     assert only["taken"] and only["verdict"] == "stable" and only["found"] == "directly"
     assert not any("motion" in text for text in result.warnings)
+    orbit = result.simulation.start.orbit
+    derivative = differentiation(len(orbit.displacement), orbit.period)
+    for path, rate in ((orbit.displacement, orbit.velocity), (orbit.velocity, orbit.acceleration)):
+        # 65 samples of a motion without lift-off, differentiated.
+        assert np.abs(derivative @ path - rate).max() < 1e-4 * np.abs(rate).max()
+    # Half of what the ring goes to and fro along the direction in which that is most; harmonics are some percent.
+    angles = np.linspace(0.0, np.pi, 90)
+    along = orbit.displacement[:, 1:3] @ [np.cos(angles), np.sin(angles)]
+    assert only["amplitude_m"] == pytest.approx(0.5 * np.ptp(along, axis=0).max(), rel=0.1)
 
 
 def test_with_friction_orbits_are_no_motions_of_the_scene():

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import attrs
 
+from benchmarks.evidence._kept import EARLIER
 from benchmarks.mutants.faults import ROOT, Fault
 from benchmarks.mutants.trial import Verdict, copied
 from raceway.cache_folder import cache_root
@@ -33,6 +34,7 @@ def tried(faults: list[Fault], on_verdict: Callable[[Verdict], None] | None = No
                 store.put(keys[fault], attrs.asdict(verdict, filter=lambda field, _: field.name != "fault", recurse=False))
             else:
                 verdict = Verdict(fault, **row)
+                EARLIER["mutants"] = EARLIER.get("mutants", 0.0) + verdict.seconds
             found.append(verdict)
             if on_verdict is not None:
                 on_verdict(verdict)
