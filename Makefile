@@ -11,7 +11,7 @@ BIN    := $(VENV)/bin
 SCENE  ?= examples/b7206.toml
 
 # Together half a minute of one core with kernels compiled.
-CHEAP := depth expected_values orders running tangent verify
+CHEAP := depth expected_values orders tangent verify
 
 # What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display), the tests of pages (a browser)
 # and of the .inp files (CalculiX).
