@@ -10,6 +10,7 @@ import pytest
 from raceway import SceneError, build_model, scene_from_dict
 from raceway.commands.inputs import slug
 from raceway.core.mesh import HexMesh
+from raceway.error_estimate import no_error
 from raceway.errors import ConvergenceError, MeshError
 from raceway.estimate import highest_frequency
 from raceway.plan import make_plan
@@ -64,7 +65,7 @@ def test_more_harmonics_than_samples_are_refused_by_the_plan():
 
 
 def test_a_number_below_its_error_is_not_resolved(monkeypatch):
-    table = {"total": 1.3, "how": {}}
+    table = {**no_error("a test"), "total": 1.3}
     monkeypatch.setattr("raceway.run.error_table", lambda *_: table)
     result = run(
         scene_from_dict(
