@@ -36,7 +36,7 @@ def settled_value(
         None where a steady motion cannot be solved for (friction, laws with memory, bodies that are stepped from Python), is
         not found, or is another one than the transient settles on.
     """
-    if model.excitation.period_s is None and getattr(model.excitation, "steady", None) is not None:
+    if model.excitation.period_s is None:
         return value_at_speed(model, found.speed)
     records = []
     for one, motion in motions:

@@ -17,7 +17,8 @@ from raceway.studies.article import expected as trends
 from raceway.studies.article import study as driver
 from raceway.studies.article.curves import ROTATING
 from raceway.studies.article.design import ARTICLE, FRICTIONS, Setting, article_tables, design, shaft_tilt_stiffness
-from raceway.studies.article.figures import Picture, pictures
+from raceway.studies.article.figures import pictures
+from raceway.studies.article.panel import Picture
 from raceway.studies.article.report import page
 from tests.article_study import curves, row, study
 from tests.command_line import EXAMPLES, invoke

@@ -19,6 +19,7 @@ from raceway.plugins.reports.view import contacts
 from raceway.plugins.reports.view.bearing import Bearing
 from raceway.run import run
 from raceway.studies.article import figures as article
+from raceway.studies.article import panel
 from raceway.studies.map.curves import curves as map_curves
 from raceway.studies.measured import figures as measured
 from raceway.studies.measured.angle import turning
@@ -139,7 +140,7 @@ def of_contacts() -> list[Figure]:
 #: Module that makes figures -> how they come about here.
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
-    article: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
+    panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
 }  # fmt: skip
 
 

@@ -13,20 +13,10 @@ from raceway.model import build_model
 from raceway.plan import make_plan
 from raceway.scene_file import scene_from_dict
 from raceway.statics import settle as settle_model
+from tests.test_elastic_scene import TINY
 
-COARSE = {
-    "bearing": {"preset": "B7206C", "ball_count": 3},
-    "bodies": {"kind": "elastic", "formulation": "one_point"},
-    "mesh": {
-        "kind": "structured",
-        "element_size": 3.2e-3,
-        "nodes_per_semi_axis": 1,
-        "azimuth_cells": 12,
-        "growth": 3.0,
-        "patch": 0.5,
-        "ball_load": 3e4,
-    },
-    "contact": {"kind": "hertz", "discretisation": "nodal"},
+COARSE = {key: TINY[key] for key in ("bearing", "bodies", "mesh")} | {
+    "contact": {"kind": "hertz", "discretisation": "nodal"}
 }
 
 

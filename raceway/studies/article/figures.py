@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.plugins.reports.pictures import new_figure
 from raceway.studies.article import causes
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import (
@@ -25,15 +24,12 @@ from raceway.studies.article.design import (
     TILTS,
     Setting,
 )
+from raceway.studies.article.panel import GRID, Panel, Picture, colours, cut, end_labels, ends, finish
 from raceway.studies.article.rules import LEVEL
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from raceway.studies.article.study import Article
 
-_WIDTH, _HEIGHT = 4.7, 3.8
-_GRID = "#d8dee4"
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
 _PAIRS = {
     (DIRECTIONS[1], AMPLITUDES[1]): ("#c8501e", "-", 2.4, "rotating, m e w²"),
@@ -41,44 +37,6 @@ _PAIRS = {
     (DIRECTIONS[1], AMPLITUDES[0]): ("#c8501e", ":", 1.6, "rotating, constant"),
     (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "unidirectional, m e w²"),
 }
-
-
-@attrs.frozen
-class Panel:
-    """One pair of axes: how it is drawn, what is seen, and a caption; ``solid`` for three axes."""
-
-    draw: Callable[[Any], None]
-    alternative: str
-    caption: str
-    solid: bool = False
-
-    def figure(self) -> Figure:
-        figure = new_figure(_WIDTH, _HEIGHT)
-        self.draw(_axes(figure, 111, self.solid))
-        return figure
-
-
-@attrs.frozen
-class Picture:
-    """A figure of several panels, three in a row."""
-
-    name: str
-    title: str
-    panels: tuple[Panel, ...]
-
-    def figure(self) -> Figure:
-        rows = -(-len(self.panels) // 3)
-        columns = min(3, len(self.panels))
-        figure = new_figure(_WIDTH * columns, _HEIGHT * rows + 0.4)
-        for place, panel in enumerate(self.panels, start=1):
-            panel.draw(_axes(figure, (rows, columns, place), panel.solid))
-        figure.suptitle(self.title, fontsize=13)
-        return figure
-
-
-def _axes(figure: Figure, place: Any, solid: bool) -> Any:
-    words: dict[str, Any] = {"projection": "3d"} if solid else {}
-    return figure.add_subplot(*place, **words) if isinstance(place, tuple) else figure.add_subplot(place, **words)
 
 
 def pictures(study: Article) -> list[Picture]:
@@ -109,22 +67,6 @@ def named(figure: str, bodies: Sequence[str], kind: str) -> str:
 def _some(values: Sequence[float], count: int = 5) -> list[int]:
     """Places of at most ``count`` of the values, evenly spread, both ends among them."""
     return sorted({round(k) for k in np.linspace(0, len(values) - 1, min(count, len(values)))})
-
-
-def _finish(axes: Any, title: str, x: str, y: str, legend: int = 0) -> None:
-    axes.set_title(title, fontsize=11)
-    axes.set_xlabel(x, fontsize=10)
-    axes.set_ylabel(y, fontsize=10)
-    axes.tick_params(labelsize=9)
-    axes.grid(color=_GRID, linewidth=0.7)
-    axes.set_axisbelow(True)
-    axes.ticklabel_format(useOffset=False)
-    if legend:
-        axes.legend(fontsize=8.5, frameon=False, ncols=legend, loc="upper center", bbox_to_anchor=(0.5, -0.17))
-
-
-def _ends(values: np.ndarray) -> str:
-    return f"{values[0]:.4g} to {values[-1]:.4g}" if np.isfinite(values[[0, -1]]).all() else "not computed to the end"
 
 
 def _excitations(curves: Curves, kind: str) -> list[Picture]:
@@ -166,51 +108,19 @@ def _excitation_panel(
             steady = taken(setting, curves.values(setting, load, measure))
             known = np.isfinite(steady)
             axes.plot(w[known], steady[known], style, marker="o", markersize=3, color=colour, linewidth=width, label=name)
-        _cut(axes, [taken(s, curves.values(s, load, measure)) for s in (*lines.values(), *light.values())])
+        cut(axes, [taken(s, curves.values(s, load, measure)) for s in (*lines.values(), *light.values())])
         for pair, setting in lines.items():
             crosses = np.clip(taken(setting, curves.unstable(setting, load, measure)), *axes.get_ylim())
             axes.plot(w, crosses, "x", color=_PAIRS[pair][0], markersize=6, zorder=1, clip_on=False)
-        _finish(axes, f"{tilt}, {load:g} N", _SPEED, label, legend=2)
+        finish(axes, f"{tilt}, {load:g} N", _SPEED, label, legend=2)
 
-    words = "; ".join(f"{_PAIRS[pair][3]}: {_ends(taken(s, curves.values(s, load, measure)))}" for pair, s in lines.items())
+    words = "; ".join(f"{_PAIRS[pair][3]}: {ends(taken(s, curves.values(s, load, measure)))}" for pair, s in lines.items())
     alternative = f"{label} over w* from 0 to 1, {tilt}: {words}"
     bad = [curves.unstable(setting, load, measure) for setting in lines.values()]
     caption = "Dashed: the same with weightless balls."
     if np.isfinite(bad).any():
         caption += " Crosses: unstable motions, which a ring does not stay on; at the edge where they lie outside."
     return Panel(draw, alternative, caption)
-
-
-def _cut(axes: Any, lines: list[np.ndarray]) -> None:
-    """Limits by the steady motions: an unstable one far away must not flatten them."""
-    values = np.concatenate(lines)
-    values = values[np.isfinite(values)]
-    if values.size:
-        low, high = values.min(), values.max()
-        room = 0.07 * max(high - low, 0.01 * abs(high))
-        axes.set_ylim(low - room, high + room)
-
-
-def _colours(count: int) -> list[Any]:
-    from matplotlib import colormaps
-
-    return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.72, count)]
-
-
-def _end_labels(axes: Any, x: float, labels: list[tuple[float, str, Any]]) -> None:
-    """Names at the right ends of curves, pushed apart where they would cover each other."""
-    known = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
-    low, high = axes.get_ylim()
-    gap = 0.062 * (high - low)
-    places: list[float] = []
-    for y, *_ in known:
-        places.append(max(y, places[-1] + gap) if places else y)
-    top = high + 0.5 * gap
-    for k in reversed(range(len(places))):  # what was pushed out at the top pushes back
-        places[k] = top = min(places[k], top - gap)
-    for place, (_, text, colour) in zip(places, known, strict=True):
-        axes.annotate(text, (x, place), xytext=(5, 0), textcoords="offset points", fontsize=8.5, color=colour, va="center",
-                      annotation_clip=False)  # fmt: skip
 
 
 def _curves_of(curves: Curves, kind: str, number: int, over: str, panel: Callable[..., Panel]) -> list[Picture]:
@@ -233,7 +143,7 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
 
     def draw(axes: Any) -> None:
         ends = []
-        for place, colour in zip(places, _colours(len(places)), strict=True):
+        for place, colour in zip(places, colours(len(places)), strict=True):
             axes.plot(w, k[place], "-", color=colour, linewidth=2.0)
             axes.plot(w, light[place], "--", color=colour, linewidth=1.1)
             ends.append((float(k[place][-1]), names[place], colour))
@@ -241,10 +151,10 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
             axes.axhline(1.0, color="#8794a0", linewidth=0.8)
         axes.set_xlim(0.0, 1.2)
         axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0])
-        _finish(axes, TILT_WORDS[tilt], _SPEED, label)
-        _end_labels(axes, 1.0, ends)
+        finish(axes, TILT_WORDS[tilt], _SPEED, label)
+        end_labels(axes, 1.0, ends)
 
-    words = "; ".join(f"{names[place]}: {_ends(k[place])}" for place in places)
+    words = "; ".join(f"{names[place]}: {ends(k[place])}" for place in places)
     return Panel(draw, f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {words}", "Dashed: weightless balls.")
 
 
@@ -255,12 +165,12 @@ def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     label = _STAR if star else _STIFFNESS
 
     def draw(axes: Any) -> None:
-        for place, colour in zip(places, _colours(len(places)), strict=True):
+        for place, colour in zip(places, colours(len(places)), strict=True):
             axes.plot(loads, light[:, place], "--", color=colour, linewidth=1.1)
             axes.plot(loads, k[:, place], "-o", markersize=3, color=colour, linewidth=1.9, label=names[place])
-        _finish(axes, TILT_WORDS[tilt], _LOAD, label, legend=3)
+        finish(axes, TILT_WORDS[tilt], _LOAD, label, legend=3)
 
-    words = "; ".join(f"{names[place]}: {_ends(k[:, place])}" for place in places)
+    words = "; ".join(f"{names[place]}: {ends(k[:, place])}" for place in places)
     return Panel(draw, f"{label} over the axial load, {TILT_WORDS[tilt]}: {words}", "Dashed: weightless balls.")
 
 
@@ -294,7 +204,7 @@ def _map(curves: Curves, setting: Setting) -> Panel:
     known = np.isfinite(star)
 
     def draw(axes: Any) -> None:
-        _finish(axes, TILT_WORDS[setting.tilt], _SPEED, _LOAD)
+        finish(axes, TILT_WORDS[setting.tilt], _SPEED, _LOAD)
         axes.grid(False)
         if not known.any():
             axes.text(0.5, 0.5, "no number", transform=axes.transAxes, ha="center")
@@ -366,10 +276,10 @@ def _friction_panel(curves: Curves, tilt: str) -> Panel:
                 w[known], star[known], style, marker="o", markersize=3, color=colours[friction], linewidth=1.7, label=name
             )
         axes.axhline(1.0, color="#8794a0", linewidth=0.8)
-        _finish(axes, TILT_WORDS[tilt], _SPEED, _STAR, legend=1)
+        finish(axes, TILT_WORDS[tilt], _SPEED, _STAR, legend=1)
 
     words = "; ".join(
-        f"{load:g} N, {FRICTION_WORDS[friction]}: {_ends(curves.normalised(setting, load))}"
+        f"{load:g} N, {FRICTION_WORDS[friction]}: {ends(curves.normalised(setting, load))}"
         for (friction, load), setting in lines.items()
     )
     caption = f"Solid: {loads[0]:g} N. Dashed: {loads[1]:g} N."
@@ -382,7 +292,7 @@ def _tilt_stiffness(study: Article) -> Picture:
     shaft = study.curves.design.shaft
 
     def draw(axes: Any) -> None:
-        for (load, ratio), colour in zip(lines.items(), _colours(len(lines)), strict=True):
+        for (load, ratio), colour in zip(lines.items(), colours(len(lines)), strict=True):
             axes.semilogx(causes.STIFFNESSES, ratio, "-o", markersize=3, color=colour, linewidth=2.0, label=f"{load:g} N")
         axes.axhline(1.0, color="#8794a0", linewidth=0.8)
         axes.axvline(shaft, color="#8794a0", linewidth=0.8, linestyle="--")
@@ -392,10 +302,10 @@ def _tilt_stiffness(study: Article) -> Picture:
         axes.set_xlabel("tilt stiffness of the shaft [N m/rad]", fontsize=10)
         axes.set_ylabel("k* at w* = 1", fontsize=10)
         axes.tick_params(labelsize=9)
-        axes.grid(color=_GRID, linewidth=0.7)
+        axes.grid(color=GRID, linewidth=0.7)
         axes.legend(fontsize=9, frameon=False)
 
-    words = "; ".join(f"{load:g} N: {_ends(ratio)}" for load, ratio in lines.items())
+    words = "; ".join(f"{load:g} N: {ends(ratio)}" for load, ratio in lines.items())
     panel = Panel(draw, f"k* at the highest speed over the tilt stiffness, from next to free to next to locked: {words}", "")
     return Picture("tilt-stiffness", "What decides the trend: the tilt stiffness of the shaft", (panel,))
 
@@ -417,9 +327,9 @@ def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
 
     def draw(axes: Any) -> None:
         for (name, values), style in zip(lines.items(), ("--" if star else "-", "-"), strict=False):
-            for k, colour in zip(places, _colours(len(places)), strict=True):
+            for k, colour in zip(places, colours(len(places)), strict=True):
                 axes.plot(w, values[k], style, color=colour, linewidth=1.7, label=f"{curves.design.loads[k]:g} N{name}")
-        _finish(axes, TILT_WORDS[tilt], _SPEED, label, legend=2 if star else 3)
+        finish(axes, TILT_WORDS[tilt], _SPEED, label, legend=2 if star else 3)
 
-    words = "; ".join(f"{curves.design.loads[k]:g} N{name}: {_ends(v[k])}" for name, v in lines.items() for k in places)
+    words = "; ".join(f"{curves.design.loads[k]:g} N{name}: {ends(v[k])}" for name, v in lines.items() for k in places)
     return Panel(draw, f"{label} over w*, {TILT_WORDS[tilt]}: {words}", "")

@@ -10,7 +10,8 @@ import attrs
 from raceway.studies.article import causes, expected
 from raceway.studies.article.curves import told
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, FRICTIONS, TILT_WORDS, TILTS
-from raceway.studies.article.figures import Picture, named
+from raceway.studies.article.figures import named
+from raceway.studies.article.panel import Picture
 from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
 from raceway.studies.page import Cell, Page
 
