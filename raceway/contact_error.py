@@ -4,8 +4,8 @@ Notes
 -----
 At surface points the bodies deform and a law may leave some overlap: its share of the approach is how much too soft the
 contact is.  A law of whole contacts on rigid bodies is held against exact Hertz at the same load, in its approach and in its stiffness.  Both say what the model
-is off by, not the numbers: the entry is no part of ``total``.  Hertz's law on condensed bodies is calibrated on contacts at
-surface points; what is left of their own error is a number's, and part of ``total``.
+is off by, not the numbers: the entry is no part of ``total``.  Hertz's law on condensed and elastic bodies is calibrated on contacts at
+surface points; what is left of their own error is a number's, and part of ``total`` where there is one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def is_calibrated(model: Model) -> bool:
     """Whether contact resultants are calibrated on contacts at surface points: what that leaves is part of the total."""
     scene = model.scene
     kinds = scene.bodies.kind, scene.contact.discretisation, scene.contact.kind
-    return kinds == ("condensed", "resultant", "hertz")
+    return kinds in (("condensed", "resultant", "hertz"), ("elastic", "resultant", "hertz"))
 
 
 def contact_error(model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:

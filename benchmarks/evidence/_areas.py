@@ -13,13 +13,13 @@ AREAS = {
         core/system bodies/__init__ bodies/basis bodies/mounting bodies/rigid model pressure ring ring_section statics data/bearings""",
     "motion": """
         integrators core/advance core/changing_speed core/energy core/excitations core/friction core/identification core/integrators
-        core/lines core/orbit core/record core/start plugins/excitations plugins/identifiers motion run simulate starting
+        core/lines core/orbit core/record core/start core/states plugins/excitations plugins/identifiers motion run simulate starting
         data/forces""",
     "periodic": "core/periodic integrators/periodic steady_motion",
     "errors": "contact_error error_estimate finer_series free_vibration misfit plausibility series_error",
     "condensed": """
         core/condensed core/half_space core/sphere core/bodies/between core/bodies/condensed_inertial core/bodies/condensed_tangential
-        core/bodies/condensed_weightless core/bodies/structural core/bodies/structural_rows bodies/condensed bodies/inertia
+        core/bodies/condensed_weightless core/bodies/structural core/bodies/structural_rows bodies/calibration_error bodies/condensed bodies/inertia
         bodies/patches bodies/patch_report""",
     "revolution": "core/revolution array_cache",
     "elastic": """

@@ -9,6 +9,7 @@ import numpy as np
 
 from raceway.bodies import rigid
 from raceway.bodies.basis import Basis, Built, seat_of
+from raceway.bodies.calibration_error import calibration_error
 from raceway.bodies.inertia import inertia_table
 from raceway.bodies.mounting import place_ring
 from raceway.core.bodies import ring
@@ -186,24 +187,7 @@ class Condensed:
 
     def calibration_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         """Relative error of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
-        at_inner, at_outer = self.compliances.calibrations
-        if at_inner is None or at_outer is None:
-            return (
-                None,
-                "compliances are matched at depth: no contact at surface points was found to calibrate them on",
-            )
-        z = model.system.ball_count
-        force = equilibrium.contact_force
-        loaded = (force[:z] > 0.0) & (force[z:] > 0.0)
-        if not loaded.any():
-            return None, "no ball carries anything"
-        inner, outer = force[:z][loaded], force[z:][loaded]
-        give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
-        give += sum(self.compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * self.compliances.ball_opposite
-        return float(((at_inner.error(inner) + at_outer.error(outer)) / give).max()), (
-            "calibrated on contacts at surface points: their own error and the change of compliance with the load, over a ball's "
-            "compliance"
-        )
+        return calibration_error(self.compliances, model, equilibrium)
 
     def ring_section(self, model: Model, inner: bool) -> Profile:
         """The mesh of a ring's section that its compliance was computed on, for pictures."""

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, Built, made_by, make_basis
+from raceway.bodies.condensed import elastic_bodies
 from raceway.bodies.elastic_points import ElasticPoints
 from raceway.bodies.elastic_resultants import ElasticResultants
 from raceway.bodies.mounting import place_ring
@@ -51,15 +52,19 @@ def build(scene: Scene, plan: Plan) -> Built:
     setup = _setup(scene, basis, rigid)
     if whole:
         params = rigid.law_params
-        setup = attrs.evolve(setup, angles=_angles(scene, plan, rigid, guess), params=lambda pair, area: params[pair])
+        angles = _angles(scene, plan, rigid, guess)
+        # Of the bearing's own rings and balls, whatever mesh stands for them: the calibration is local.
+        compliances = elastic_bodies(attrs.evolve(scene, mesh=None), basis)
+        beyond = np.concatenate([compliances.beyond(race, of) for race, of in enumerate(np.split(angles, 2))])
+        setup = attrs.evolve(setup, angles=angles, beyond=beyond, params=lambda pair, area: params[pair])
     bodies = ElasticBearing(mesh_scene(scene), setup)
     if whole:
         _refuse_stiff_law(scene, basis, bodies)
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
     held_by = scene.load.axial if scene.supports.axial == "displacement" else None
     system = ElasticRing(**fields, bodies=bodies, held_by=held_by)
-    report = ElasticResultants if whole else ElasticPoints
-    return Built(basis, system, guess, report(bodies, rigid, guess))
+    known = ElasticResultants(bodies, rigid, guess, compliances) if whole else ElasticPoints(bodies, rigid, guess)
+    return Built(basis, system, guess, known)
 
 
 def _angles(scene: Scene, plan: Plan, rigid: System, guess: np.ndarray) -> np.ndarray:

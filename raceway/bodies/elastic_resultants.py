@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import attrs
 import numpy as np
 
+from raceway.bodies.calibration_error import calibration_error
 from raceway.bodies.elastic_report import ElasticBodies
 
 if TYPE_CHECKING:
+    from raceway.core.condensed.elastic_bodies import ElasticBodies as Compliances
     from raceway.model import Model
     from raceway.statics import Equilibrium
 
@@ -19,8 +22,16 @@ _FAR_RAD = 0.05
 _UNSURE = 0.0125
 
 
+@attrs.frozen(eq=False)
 class ElasticResultants(ElasticBodies):
-    """A force for each ball and race."""
+    """A force for each ball and race.
+
+    Attributes
+    ----------
+    compliances : of the bearing's own rings and balls, which tell how contacts at surface points calibrate the law
+    """
+
+    compliances: Compliances
 
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         contact: Any = self.bearing.system.contact
@@ -32,12 +43,15 @@ class ElasticResultants(ElasticBodies):
 
     def contact_table(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         contact: Any = self.bearing.system.contact
-        z = model.system.ball_count
+        z, beyond = model.system.ball_count, self.bearing.setup.beyond
+        assert beyond is not None
         return {
             "bodies": "elastic: every node of rings and balls, contacts as resultants calibrated to Hertz",
             "mesh": {
                 "replaced_inner_m_per_n": float(contact.local[:z].mean()),
                 "replaced_outer_m_per_n": float(contact.local[z:].mean()),
+                "calibration_inner_m_per_n": float(np.mean(beyond[:z])),
+                "calibration_outer_m_per_n": float(np.mean(beyond[z:])),
                 "replaced_spread_m_per_n": float(max(one.spread for one in contact.touches)),
                 "replaced_uncertainty": self._uncertainty(model, equilibrium),
                 "largest_turn_deg": float(np.degrees(self._turned(model, equilibrium))),
@@ -60,6 +74,13 @@ class ElasticResultants(ElasticBodies):
                 "was looked at: compare with bodies.kind = 'condensed', which follows the angle"
             )
         return found + super().warnings(model, equilibrium)
+
+    def calibration_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+        """Relative error of a ball's stiffness by what the calibration leaves, and by how well the mesh knows what is taken off."""
+        contact: Any = self.bearing.system.contact
+        spread = 0.5 * max(float(one.spread) for one in contact.touches)
+        size, how = calibration_error(self.compliances, model, equilibrium, spread)
+        return size, how if size is None else how + ", with half the spread over depths of what is taken off the mesh"
 
     def _uncertainty(self, model: Model, equilibrium: Equilibrium) -> float:
         """Half the spread over depths of what is taken off, over the compliance of the most loaded contact."""

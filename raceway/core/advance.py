@@ -22,6 +22,7 @@ from raceway.core.integrators import (
     UNBOUNDED,
 )
 from raceway.core.record import Motion, OnChunk, Record, Schedule
+from raceway.core.states import check_start
 from raceway.core.stepping.protocol import SteppedSystem
 from raceway.core.system import System
 from raceway.errors import ConvergenceError, PluginError, StabilityError
@@ -54,6 +55,7 @@ def advance(
     """
     if not isinstance(system, System) or system.companion is not system:
         return _step(loop, system, start, schedule, coefficients, on_chunk)
+    check_start(system, start)
     z = system.ball_count
     rows = np.zeros((schedule.steps // schedule.stride, 16))
     probes = np.zeros((len(rows), 2 + system.ball_columns // 2, 2 * z))

@@ -26,6 +26,7 @@ from raceway.core.bodies.ring import (
 from raceway.core.changing_speed import ChangingSpeed
 from raceway.core.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.core.record import Record
+from raceway.core.states import check_state
 from raceway.errors import ConvergenceError
 
 #: Relative residual that an equilibrium is solved to.
@@ -209,7 +210,7 @@ class System:
 
         Parameters
         ----------
-        ball : (Z, 2 or 4) a first guess, and the slips that were committed last
+        ball : (Z, ``ball_columns``) a first guess, and the slips that were committed last
         ball_rate, ball_gain : the rate of a ball is ball_gain * ball + ball_rate [m/s]
         dt : step since the law's ``memory`` (2 Z, m) was committed [s]; None for ``law_state``
 
@@ -217,7 +218,10 @@ class System:
         ------
         ConvergenceError
             When the balls find no equilibrium between the races.
+        PluginError
+            An array of another shape: a compiled kernel would write beyond it.
         """
+        check_state(self, "System.evaluate()", q=q, v=v, ball=ball, ball_rate=ball_rate, memory=memory)
         z = self.ball_count
         scalars = self.scalars
         rate = np.zeros((z, self.ball_columns))
@@ -282,7 +286,10 @@ class System:
         ------
         ConvergenceError
             With the last state and its residual.
+        PluginError
+            An array of another shape.
         """
+        check_state(self, "System.settle()", q=q, ball=ball)
         base = attrs.evolve(self, kernel=self.base_kernel)
         start = None if ball is None or not self.conservative else ball
         q_now, ball_now, total = base._by_parts(settle, q, start, tolerance, base.load, (1, 4, 16))

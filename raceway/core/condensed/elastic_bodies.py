@@ -41,15 +41,22 @@ class ElasticBodies:
         -----
         The rings' tables tell how it changes over the groove, calibrations how large it is.
         """
+        return self._matched(race, angles) + self.beyond(race, angles)
+
+    def beyond(self, race: int, angles: np.ndarray) -> np.ndarray:
+        """What contacts at surface points have beyond compliances matched at depth, at contact angles [rad], in m/N."""
+        calibration = self.calibrations[race]
+        if calibration is None:
+            return np.zeros(len(angles))
+        known = calibration.compliance - self._matched(race, calibration.angles)
+        return np.asarray(np.interp(np.abs(angles), calibration.angles, known))
+
+    def _matched(self, race: int, angles: np.ndarray) -> np.ndarray:
         from scipy.interpolate import CubicSpline
 
-        one, calibration = (self.inner, self.outer)[race], self.calibrations[race]
+        one = (self.inner, self.outer)[race]
         table = CubicSpline(one.angles, one.own)
-        values = table(np.clip(angles, one.angles[0], one.angles[-1])) + self.ball_own
-        if calibration is None:
-            return np.asarray(values)
-        known = calibration.compliance - table(calibration.angles) - self.ball_own
-        return np.asarray(values + np.interp(np.abs(angles), calibration.angles, known))
+        return np.asarray(table(np.clip(angles, one.angles[0], one.angles[-1])) + self.ball_own)
 
     def at(self, angle: float) -> tuple[float, float]:
         """Compliances (inner, outer) of ring and ball together at a contact angle [rad], in m/N."""

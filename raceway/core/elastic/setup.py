@@ -35,6 +35,7 @@ class Setup:
     growth : how much larger in radius the inner raceway is than meshed [m]: fit, temperature, rotation
     caged : whether an ideal cage holds the balls at their azimuth
     angles : (2 Z,) contact angles [rad] at which whole contacts press on the meshes, inner races first; None: pressures at points
+    beyond : (2 Z,) compliance of a contact at its surface points beyond Hertz's and what is matched at depth [m/N]: its calibration
     friction : Coulomb's coefficient;  stick : stiffness of sticking points [N/m3], None: Mindlin's ratio times the penalty's
     """
 
@@ -60,6 +61,7 @@ class Setup:
     growth: float = 0.0
     caged: bool = True
     angles: np.ndarray | None = None
+    beyond: np.ndarray | None = None
     friction: float = 0.0
     stick: float | None = None
 

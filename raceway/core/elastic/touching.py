@@ -61,6 +61,7 @@ def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -
     assert s.angles is not None
     balls = [Facets(ball.points, ball.facet_nodes("surface")) for ball in meshes[2:]]
     loaded = _loaded_balls(s, meshes, assembly)
+    beyond = np.zeros(2 * s.ball_count) if s.beyond is None else s.beyond
     touches = []
     for race, word in enumerate(("inner", "outer")):
         conformity = g.conformity_inner if race == 0 else g.conformity_outer
@@ -95,7 +96,7 @@ def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -
                     _moved(on_ring, int(assembly.starts[race])),
                     middle,
                     surface,
-                    below.local + above,
+                    below.local + above - beyond[race * s.ball_count + k],
                     below.spread,
                     min(float(facets.short.mean()), _OVERLAP * g.ball_diameter),
                 )  # fmt: skip

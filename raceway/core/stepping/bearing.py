@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from raceway.core.record import Motion
+from raceway.core.states import check_start
 from raceway.core.stepping.protocol import Observation, State
 
 #: Growth of the tangent's diagonal that asks for the stable step anew.
@@ -44,6 +45,7 @@ class SteppedBearing:
         self._damping: np.ndarray = system.damping
 
     def begin(self, motion: Motion) -> State:
+        check_start(self.system, motion)
         self._ball, self._before = motion.ball.copy(), motion.ball_before.copy()
         self._memory = (self.system.law_state if motion.memory is None else motion.memory).copy()
         self.rollback()

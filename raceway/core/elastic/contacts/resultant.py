@@ -29,7 +29,7 @@ class Touch:
     ball, race : Footprint; node numbers are the assembly's
     centre : (3,) of the ball [m]
     surface : (8,) on which that centre lies at a gap of zero (``raceway.core.elastic.contacts.gap``): the groove, its tube smaller by the ball
-    local : compliance of both meshes that the law's replaces [m/N];  spread : how well they know it [m/N]
+    local : compliance of both meshes that the law's replaces, less what calibrates it [m/N];  spread : how well they know it [m/N]
     size : largest overlap of undeformed bodies [m]
     """
 
