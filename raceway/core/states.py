@@ -34,5 +34,11 @@ def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
         wanted = (5,) if name in ("q", "v", "a", "rest") else system.law_state.shape if name == "memory" else balls
         found = np.shape(values) if values is not None else wanted
         if found != wanted:
-            rows = "a row for each ball" if wanted is balls else "a row for each contact" if name == "memory" else "x, y, z, tilts"
+            rows = (
+                "a row for each ball"
+                if wanted is balls
+                else "a row for each contact"
+                if name == "memory"
+                else "x, y, z, tilts"
+            )
             raise PluginError(f"{who}: `{name}` has the shape {found}; that of this system is {wanted}: {rows}")

@@ -8,6 +8,7 @@ from typing import Any
 from raceway.errors import SceneError
 from raceway.registry import Registry
 from raceway.studies.stability.case import Case
+from raceway.studies.stability.elastic import elastic_cases
 from raceway.studies.stability.extremes import CONDENSED, PENALTIES, REFUSALS, SCENES, WARNINGS, Changes, force
 from raceway.studies.stability.surface import surface_cases
 from raceway.studies.stability.systems import BASE, pair_laws, transient
@@ -32,7 +33,13 @@ def catalogue(registry: Registry, tables: Mapping[str, Any] | None = None) -> tu
     cases = [*_limits(base, registry), *_orbits(base, registry, tables is None), *_energy(base, registry, tables is None)]
     cases += _penalties(base, registry, "orbit" if tables is None else "any")
     if tables is None:
-        cases += [*_scenes(base, registry), *surface_cases(base, registry), *_refusals(base), *_elements()]
+        cases += [
+            *_scenes(base, registry),
+            *surface_cases(base, registry),
+            *elastic_cases(base, registry),
+            *_refusals(base),
+            *_elements(),
+        ]
     return tuple(cases)
 
 

@@ -21,6 +21,7 @@ _B7206C = {
     "bearing.conformity_inner": 0.522, "bearing.conformity_outer": 0.522, "bearing.contact_angle_deg": 15.0,
 }  # fmt: skip
 RUBBER, CERAMIC = {"young": 1e7, "poisson": 0.49, "density": 1100.0}, {"young": 310e9, "poisson": 0.26, "density": 3200.0}
+NEARLY_INCOMPRESSIBLE: Changes = {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}
 STATIC: Changes = {"kinematics.ball_inertia": False}
 #: The whole force from the first step on: while a force grows, energy is not balanced.
 SUDDEN: Changes = {"integrator.start": "static"}
@@ -61,7 +62,7 @@ SCENES: tuple[tuple[str, Changes, bool, str], ...] = (
     ),
     ("interference 5 um", {"kinematics.radial_expansion": 5e-6, **force(100.0)}, False, "orbit"),
     ("interference 20 um", {"kinematics.radial_expansion": 20e-6, **force(100.0)}, False, "orbit"),
-    ("Poisson's ratio 0.4999", {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}, True, "orbit"),
+    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, True, "orbit"),
     ("rubber balls in ceramic rings", {"bearing.rings": CERAMIC, "bearing.balls": RUBBER, "load.axial": 10.0, **force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
     ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}, True, "orbit"),
     ("friction 0.3", {"contact.friction": 0.3, **force(100.0)}, True, "finer"),

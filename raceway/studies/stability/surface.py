@@ -1,7 +1,6 @@
-"""Contacts at surface points, of condensed and of elastic bodies: cases, and what they measure.
+"""Contacts at surface points of condensed bodies: cases, and what they measure.
 
-An equilibrium takes a second and a step a tenth of one, so there are few steps, and elastic bodies are three balls on some
-four thousand elements: every path, no accuracy.
+An equilibrium takes a second and a step a tenth of one, so there are few steps.
 """
 
 from __future__ import annotations
@@ -9,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import attrs
 import numpy as np
 
 from raceway.planning.patches import INTEGRATORS
 from raceway.registry import Registry
-from raceway.studies.stability.case import AtMost, Case, Measured, Near, Row, judged, refused
-from raceway.studies.stability.extremes import CERAMIC, RUBBER, STATIC, Changes
+from raceway.studies.stability.case import Case, Measured, Near, Row, judged
+from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
 
 _POINTS: Changes = {
@@ -31,7 +29,6 @@ _STILL: tuple[tuple[str, Changes], ...] = (
     ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
     ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
 )
-_NEARLY_INCOMPRESSIBLE: Changes = {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}
 #: Scenes at rest that a user must be told something about.
 _WARNED: tuple[tuple[str, Changes, str, str], ...] = (
     ("axial load 100 kN", {"load.axial": 1e5}, "groove's edge", "contacts are cut off by the shoulder"),
@@ -43,41 +40,12 @@ _WARNED: tuple[tuple[str, Changes, str, str], ...] = (
         "rubber balls in ceramic rings", {"bearing.rings": CERAMIC, "bearing.balls": RUBBER, "load.axial": 10.0},
         "groove's edge", "the balls fill the grooves",
     ),
-    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE, "elements lock", "contacts are nearly twice too stiff"),
+    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, "elements lock", "contacts are nearly twice too stiff"),
 )  # fmt: skip
-
-_TINY: dict[str, Any] = {
-    "title": "three balls on few elements",
-    "bearing": {"preset": "B7206C", "ball_count": 3},
-    "bodies": {"kind": "elastic", "formulation": "one_point"},
-    "mesh": {
-        "kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 12, "growth": 3.0,
-        "patch": 0.5, "ball_load": 300.0,
-    },
-    "load": {"axial": 250.0},
-    "rotor": {"mass": 0.5},
-    "contact": {"kind": "hertz", "discretisation": "nodal"},
-}  # fmt: skip
-_ELASTIC: tuple[tuple[str, Changes], ...] = (
-    ("base", {}),
-    ("axial load 1 N", {"load.axial": 1.0}),
-    ("axial load 100 kN", {"load.axial": 1e5}),
-    ("rubber balls in ceramic rings", {"bearing.rings": CERAMIC, "bearing.balls": RUBBER, "load.axial": 10.0}),
-    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
-    ("friction 1.0", {"contact.friction": 1.0}),
-    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE),
-)
-#: 15 000 r/min, a force that acts at once.
-_EXCITED: Changes = {
-    "excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, "excitation.amplitude": "constant",
-    "excitation.force": 60.0,
-}  # fmt: skip
-#: Steps of implicit methods, each of a time in which an explicit one takes ``_EXPLICIT`` at 0.9 of its limit.
-_IMPLICIT, _EXPLICIT = 20, 20
 
 
 def surface_cases(base: Changes, registry: Registry) -> Iterator[Case]:
-    """Condensed bodies with every law that surface points can have, elastic bodies with those that penetrate."""
+    """Condensed bodies with every law that surface points can have."""
     entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
     laws = [entry for entry in entries if "nodal" in entry.plugin.discretisations]
     for law in (entry.name for entry in laws):
@@ -93,14 +61,6 @@ def surface_cases(base: Changes, registry: Registry) -> Iterator[Case]:
             yield Case(f"surface points: {name}", "scenes:warning", arguments, 3.0)
         for name in transient(registry):
             yield _moving(base, law, name)
-    for law in (entry.name for entry in laws if "resultant" in entry.plugin.discretisations):
-        shown = {"law": law, "bodies": "elastic"}
-        for name, changes in _ELASTIC if law == "hertz" else _ELASTIC[:1]:
-            arguments = {"tables": _TINY, "changes": {**changes, "contact.kind": law}, "shown": shown}
-            yield Case(f"elastic bodies: {name}", "surface:elastic_at_rest", arguments, 6.0)
-    for name in transient(registry):
-        arguments = {"tables": _TINY, "changes": _EXCITED, "integrator": name, "shown": {"bodies": "elastic"}}
-        yield Case("elastic bodies: a force acts at once", "surface:elastic_motion", arguments, 15.0)
 
 
 def _moving(base: Changes, law: str, name: str) -> Case:
@@ -163,55 +123,3 @@ def turn(case: Case, registry: Registry) -> list[Row]:
     close = Near(0.05, "two points along a semi-axis are off by percents; converged ones differ by 1 %")
     words = "|Z| [N/m], predicted by Hertz on these bodies"
     return [judged(case.name, a["shown"], words, close, abs(known.dynamic_stiffness), motion)]
-
-
-def elastic_at_rest(case: Case, registry: Registry) -> list[Row]:
-    """What the outer seat carries against the load."""
-    from raceway.run import run
-
-    a = case.arguments
-    scene = scene_at(a["tables"], a["changes"], registry)
-
-    def reaction() -> Measured:
-        told = run(scene, registry).as_dict()["model"]
-        return -float(told["reaction_n"]["x"]), None
-
-    balance = Near(1e-5, "an equilibrium of all nodes is solved to 1e-7 of its forces")
-    return [judged(case.name, a["shown"], "axial force on the outer seat [N]", balance, scene.load.axial, reaction)]
-
-
-def elastic_motion(case: Case, registry: Registry) -> list[Row]:
-    """Elastic bodies that a force meets at rest: a balance of energies; a step above the stable limit is refused."""
-    from raceway.core.record import Schedule
-    from raceway.core.start import at_rest
-    from raceway.core.stepping.energy import drift
-    from raceway.model import build_model
-    from raceway.plan import make_plan
-    from raceway.statics import settle
-
-    a = case.arguments
-    model = build_model(scene := scene_at(a["tables"], a["changes"], registry), make_plan(scene))
-    still = settle(model)
-    ring: Any = model.system
-    start = at_rest(ring, still.displacement, still.ball, False)
-    limit = float(ring.critical_time_step(still.stiffness))
-    method: Any = registry.find("integrator", a["integrator"]).plugin()
-    if "tolerance" in {field.name for field in attrs.fields(type(method))}:
-        method = attrs.evolve(method, tolerance=1e-6)
-    step = (_EXPLICIT if method.implicit else 1.0) * 0.9 * limit
-    steps = _IMPLICIT if method.implicit else _IMPLICIT * _EXPLICIT
-    setting = {**a["shown"], "integrator": a["integrator"], "steps": steps, "step/limit": step / limit}
-
-    def balance() -> Measured:
-        record = method.advance(ring, start, Schedule(step, steps, 1))
-        worst = drift(record.energies) or 0.0
-        return worst, worst
-
-    small = AtMost(1e-3, "steps of nanoseconds follow all but the waves of single elements, which carry little")
-    rows = [judged(case.name, setting, "energy not balanced by the work", small, 0.0, balance)]
-    if not method.implicit:
-        above = {**setting, "steps": 1, "step/limit": 1.02}
-        far = Schedule(1.02 * limit, 10, 1)
-        why = "it is refused before it blows up"
-        rows.append(refused(case.name, above, "above the stable limit", why, lambda: method.advance(ring, start, far)))
-    return rows
