@@ -16,7 +16,7 @@ from raceway.model import build_model
 from raceway.plan import make_plan
 from raceway.registry import default_registry
 from raceway.statics import settle
-from raceway.studies.stability import scenes
+from raceway.studies.stability import elastic, scenes
 from raceway.studies.stability import study as study_module
 from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
 from raceway.studies.stability.catalogue import SCENES, catalogue
@@ -136,6 +136,29 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
     balls = found[1e5]
     along = balls.contact_force[:12] * np.sin(balls.angle_inner)
     assert along.sum() / 1e5 - 1.0 > 0.02
+
+
+def test_elastic_bodies_of_another_stiffness_fail(monkeypatch):
+    """Deliberate fault: rings 10 % stiffer than those of the condensed bodies that they are held against."""
+    wanted = {"shown": {"law": "hertz", "bodies": "elastic, resultants"}}
+    assert {row.verdict for row in rows_named("elastic bodies: axial load 1 N", **wanted)} == {AS_EXPECTED}
+    monkeypatch.setattr(elastic, "_COARSE", {**elastic._COARSE, "bearing.rings": {"young": 233.2e9}})
+    found = {row.quantity.split(" [")[0]: row.verdict for row in rows_named("elastic bodies: axial load 1 N", **wanted)}
+    # The seat carries the load all the same.
+    assert found == {"axial displacement": FAILED, "radial stiffness": FAILED, "axial force on the outer seat": AS_EXPECTED}
+
+
+def test_elastic_bodies_that_forget_the_energy_of_their_contacts_fail(monkeypatch):
+    name = "elastic bodies: rubber balls in ceramic rings"
+    assert {row.verdict for row in rows_named(name)} == {AS_EXPECTED}
+    monkeypatch.setattr("raceway.core.elastic.contacts.contact.Contact.energy", lambda self: 0.0)
+    found = {row.quantity.split(" [")[0]: row.verdict for row in rows_named(name)}
+    assert found == {"axial force on the outer seat": AS_EXPECTED, "change of the stored energy over the axial way": FAILED}
+
+
+def test_friction_is_judged_where_it_acts():
+    """Equilibria know none: with it they are what they are without it, which no row of theirs could fail."""
+    assert not any("friction" in one.name for one in CASES if one.measure in ("elastic:points_at_rest", "elastic:calibrated_at_rest"))
 
 
 def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
