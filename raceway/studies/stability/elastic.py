@@ -13,7 +13,7 @@ from typing import Any
 import attrs
 
 from raceway.registry import Registry
-from raceway.studies.stability.case import AtMost, Case, Measured, Near, Row, judged, refused
+from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
 
@@ -58,6 +58,8 @@ _EXCITED: Changes = {
 }  # fmt: skip
 #: Steps of implicit methods, each of a time in which an explicit one takes ``_EXPLICIT`` at 0.9 of its limit.
 _IMPLICIT, _EXPLICIT = 20, 20
+#: Step [s] and steps of a motion with friction: a third of a period of the ring on its contacts.
+_RUBBING = 1e-5, 15
 #: How much larger the second of two loads is between which stored energies are compared.
 _MORE = 0.02
 
@@ -87,6 +89,12 @@ def elastic_cases(base: Changes, registry: Registry) -> Iterator[Case]:
         "words": "is stiffer than the mesh below it", "reason": "what the mesh gives way under a contact is more than Hertz's compliance",
     }  # fmt: skip
     yield Case("elastic bodies: axial load 100 kN", "scenes:refusal", heavy, 3.0)
+    rubbed: Changes = {
+        "tables": _TINY,
+        "changes": {**_EXCITED, "contact.friction": 1.0},
+        "shown": {"bodies": "elastic, points"},
+    }
+    yield Case("elastic bodies: friction 1.0, a force acts at once", "elastic:rubbing", rubbed, 30.0)
     for name in transient(registry):
         arguments = {"tables": _TINY, "changes": _EXCITED, "integrator": name, "shown": {"bodies": "elastic, points"}}
         yield Case("elastic bodies: a force acts at once", "elastic:motion", arguments, 15.0)
@@ -101,11 +109,15 @@ def calibrated_at_rest(case: Case, registry: Registry) -> list[Row]:
     found = run(scene_at(a["tables"], {**_COARSE, **a["changes"]}, registry), registry)
     close = Near(0.02, "elements of 3.2 mm, two through a wall, bend too little: 1 % as a rule; twice that")
     rows = []
-    for words, place in (("axial displacement [m]", lambda e: e.displacement[0]), ("radial stiffness [N/m]", _radial)):
+    for words, place in (("axial displacement [m]", _axial), ("radial stiffness [N/m]", _radial)):
         wanted, value = (float(place(one.equilibrium)) for one in (known, found))
         words += ", predicted by condensed bodies"
         rows.append(judged(case.name, a["shown"], words, close, wanted, lambda value=value: (value, None)))
     return [*rows, _carried(case, found.model.scene.load.axial, lambda: found)]
+
+
+def _axial(equilibrium: Any) -> float:
+    return float(equilibrium.displacement[0])
 
 
 def _radial(equilibrium: Any) -> float:
@@ -182,3 +194,31 @@ def motion(case: Case, registry: Registry) -> list[Row]:
         why = "it is refused before it blows up"
         rows.append(refused(case.name, above, "above the stable limit", why, lambda: method.advance(ring, start, far)))
     return rows
+
+
+def rubbing(case: Case, registry: Registry) -> list[Row]:
+    """A force that meets contacts with friction at rest: the balance of energies, and that friction takes part."""
+    from raceway.core.record import Schedule
+    from raceway.core.start import at_rest
+    from raceway.core.stepping.energy import drift
+    from raceway.integrators.newmark import Newmark
+    from raceway.model import build_model
+    from raceway.plan import make_plan
+    from raceway.statics import settle
+
+    a = case.arguments
+    model = build_model(scene := scene_at(a["tables"], a["changes"], registry), make_plan(scene))
+    still = settle(model)
+    start = at_rest(model.system, still.displacement, still.ball, False)
+    step, steps = _RUBBING
+    energies = Newmark(tolerance=1e-6).advance(model.system, start, Schedule(step, steps, 1)).energies
+    setting = {**a["shown"], "integrator": "newmark", "steps": steps, "step_s": step}
+    worst = drift(energies) or 0.0
+    small = AtMost(1e-3, "a period of the ring takes forty of these steps; waves of single elements carry little")
+    given = float(energies["external"][-1] - energies["external"][0])
+    share = float(energies["friction"][-1]) / given
+    slips = AtLeast(1e-6, "the rims of contacts slip at any force; rounding is 1e-12, and without friction it is nothing")
+    return [
+        judged(case.name, setting, "energy not balanced by the work", small, 0.0, lambda: (worst, worst)),
+        judged(case.name, setting, "energy that friction took over the work", slips, None, lambda: (share, worst)),
+    ]
