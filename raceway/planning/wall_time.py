@@ -6,6 +6,8 @@ for its error beside its answer: `python -m benchmarks.plan_time` holds whole ru
 
 from __future__ import annotations
 
+import attrs
+
 from raceway.planning.decisions import Balls, Motion
 from raceway.planning.elastic import ElasticCost
 from raceway.planning.patches import PatchCost
@@ -42,6 +44,8 @@ def predicted_work(
     steps = motion.turns * motion.steps_per_turn
     if elastic is not None:
         before = elastic.equilibrium_s + (elastic.start_s if motion.recorded else 0.0)
+        if scene.contact.discretisation == "resultant":  # calibrated as the bearing's own condensed rings
+            before += section_cost(attrs.evolve(scene, mesh=None)).seconds
         return START_S + before + steps * elastic.step_s
     work = START_S + _before(scene, patches)
     if not motion.recorded:

@@ -8,6 +8,7 @@ the load.  Equilibria know no friction; motions do.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import attrs
@@ -112,8 +113,12 @@ def calibrated_at_rest(case: Case, registry: Registry) -> list[Row]:
     for words, place in (("axial displacement [m]", _axial), ("radial stiffness [N/m]", _radial)):
         wanted, value = (float(place(one.equilibrium)) for one in (known, found))
         words += ", predicted by condensed bodies"
-        rows.append(judged(case.name, a["shown"], words, close, wanted, lambda value=value: (value, None)))
+        rows.append(judged(case.name, a["shown"], words, close, wanted, partial(_known, value)))
     return [*rows, _carried(case, found.model.scene.load.axial, lambda: found)]
+
+
+def _known(value: float) -> Measured:
+    return value, None
 
 
 def _axial(equilibrium: Any) -> float:
