@@ -35,7 +35,7 @@ AREAS = {
     "article": "studies/article data/article",
     "compare": "studies/compare",
     "map": "studies/map data/map",
-    "measured": "studies/measured",
+    "measured": "studies/measured number_table",
     "precision": "studies/precision studies/measured_run",
     "rig": "studies/rig rig",
     "ross": "studies/ross",
@@ -46,7 +46,7 @@ AREAS = {
     "pages": "studies/page studies/view plugins/reports data/page data/view data/view_stage",
     "no report": """
         __init__ __main__ cache_folder cli commands contracts data/templates errors files hookspecs plugin_sources plugins/__init__
-        plugins/system_libraries registry result scaffold schema studies/__init__ studies/axes testing trust""",
+        plugins/system_libraries registry result scaffold schema studies/__init__ studies/axes testing trust user_files""",
 }
 
 #: Areas by report; words with a slash are files or folders outside the package.
