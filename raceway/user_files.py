@@ -1,9 +1,16 @@
-"""Files that a user names: what has no end or would fill the memory is refused before it is read."""
+"""Files that a user names: what has no end or would fill the memory is refused before it does."""
 
 from __future__ import annotations
 
+import resource
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+#: Memory in which a file of other programs must be read: so many times its size, and so many bytes more.  Text takes 5 to 10
+#: times its size while it is parsed, packed arrays of few different values inflate to 20 times theirs.
+_TIMES, _MORE = 40, 2**29
 
 
 def size_of(path: str | Path, most: int) -> int:
@@ -35,3 +42,28 @@ def told(size: float) -> str:
             return f"{size:.3g} {unit}"
         size /= 1024.0
     return f"{size:.3g} GiB"
+
+
+@contextmanager
+def memory_for(size: int) -> Iterator[None]:
+    """While entered, this process takes no more memory than a file of so many bytes is worth: ``MemoryError`` beyond.
+
+    Notes
+    -----
+    A limit of the operating system on address space: what C libraries inflate or allocate counts, too.  Where the system does
+    not tell how much is taken (it is no Linux), there is no limit.
+    """
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except OSError:
+        yield
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    limit = pages * resource.getpagesize() + _TIMES * size + _MORE
+    if soft != resource.RLIM_INFINITY:
+        limit = min(limit, soft)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))

@@ -30,7 +30,7 @@ AREAS = {
     "mesh": """
         core/meshing core/mesh core/mesh_quality core/mesh_summary meshing mesh_fit plugins/meshers plugins/formats data/meshes""",
     "kernels": "core/jit core/kernel_files core/plugin_kernel core/signatures",
-    "plan": "plan planning estimate probe",
+    "plan": "plan planning estimate probe allowance",
     "scene": "scene scene_file structure requires options catalogue implausible unused",
     "article": "studies/article data/article",
     "compare": "studies/compare",

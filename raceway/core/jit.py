@@ -37,6 +37,11 @@ def working_clock() -> float:
     return time.perf_counter() - clock["compile_s"]
 
 
+def working_processor_time() -> float:
+    """Processor time of this thread [s] without what kernels take to compile, which other programs may lengthen."""
+    return time.thread_time() - clock["compile_s"]
+
+
 def take_compile_seconds() -> float:
     """Seconds of compiling since the last call: each is billed to one run."""
     seconds, clock["compile_s"] = clock["compile_s"], 0.0

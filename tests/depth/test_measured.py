@@ -87,7 +87,7 @@ GOOD = "\n".join(f"{k * 1e-4:.6f},{k % 3}.5" for k in range(12))
     ("text", "words"),
     [
         (None, "No such file"),
-        ("", "the first line must name t and some of Fx"),
+        ("", "is empty: a header line and samples are needed"),
         ("time,Fy\n" + GOOD, "the first line must name t"),
         ("t,force\n" + GOOD, "the first line must name t and some of Fx"),
         ("t,Fy,Fq\n" + GOOD, "unknown columns Fq"),
