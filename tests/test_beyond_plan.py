@@ -91,3 +91,13 @@ def test_short_plans_count_as_three_seconds(monkeypatch):
 def test_the_command_and_the_function_have_one_patience():
     option = next(p for p in main.commands["run"].params if p.name == "patience")
     assert option.default == inspect.signature(run).parameters["patience"].default == PATIENCE
+
+
+def test_a_search_for_steady_motions_is_stopped_between_their_points(tmp_path):
+    """What the search makes of being stopped, it tries elsewhere, is not the answer."""
+    words = ["--set", "excitation.kind=unidirectional", "--set", "supports.tilt=free", "--set", "integrator.kind=periodic"]
+    found = invoke(
+        "run", ARTICLE, *words, "--set", "excitation.unbalance=2e-3", "--patience", "0", "--out", tmp_path, "--json"
+    )
+    assert found.exit_code == 1, found.output
+    assert "stopped far beyond the plan, in periodic" in json.loads(found.stdout)["errors"][0]["message"]

@@ -12,9 +12,10 @@ import zlib
 import numpy as np
 import pytest
 
-from raceway import number_table, scene_from_dict
+from raceway import number_table, plugin_sources, scene_from_dict
 from raceway.errors import MeshError, RacewayError, SceneError
 from raceway.number_table import read_numbers
+from raceway.plugin_sources import import_file
 from raceway.plugins.formats import _exchange
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.formats.msh import Msh
@@ -22,6 +23,8 @@ from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.studies.measured.recording import read_recording
+from raceway.studies.sweep import design
+from raceway.studies.sweep.design import point_list
 from raceway.user_files import memory_for, told
 from tests.conftest import b7206c
 from tests.mesh.cubes import block
@@ -51,6 +54,8 @@ READERS = {
     "vtu": (".vtu", Vtu().read),
     "inp": (".inp", Abaqus().read),
     "msh": (".msh", Msh().read),
+    "points of a sweep": (".csv", point_list),
+    "plug-in": (".py", import_file),
     "step": (".step", lambda path: Gmsh(ball=str(path)).mesh(BEARING)),
 }
 
@@ -72,6 +77,8 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_read(reader, tmp_path,
     suffix, read = READERS[reader]
     monkeypatch.setattr(number_table, "LARGEST", 1000)
     monkeypatch.setattr(_exchange, "LARGEST", 1000)
+    monkeypatch.setattr(design, "_LONGEST", 1000)
+    monkeypatch.setattr(plugin_sources, "_LONGEST", 1000)
     path = tmp_path / f"file{suffix}"
     path.write_text("x" * 2048)
     with pytest.raises(RacewayError, match="has 2 KiB; at most 1e.03 bytes are read"):

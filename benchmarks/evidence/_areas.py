@@ -71,6 +71,7 @@ MEASURES = {
     "error_estimate": "rigid motion errors",
     "error_starts": "rigid motion errors",
     "expected_values": "rigid motion",
+    "fuzz": "rigid motion periodic errors mesh plan scene",
     "hexahedron": "solids",
     "identified_stiffness": "rigid motion",
     "identify": "measured rig shaft",
