@@ -45,7 +45,7 @@ class NumberTable:
             raise ValueError(f"line {line}: {gap}: cut the record there")
 
 
-def read_numbers(path: Path, judge: Callable[[list[str]], None]) -> NumberTable:
+def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTable:
     """The table of a file; empty lines are left out.
 
     Parameters
