@@ -68,6 +68,10 @@ def main() -> None:
 @on_scene
 @out_folder
 @click.option("--pictures", is_flag=True, help="Also write orbit, spectrum and ball loads as PNG.")
+@click.option(
+    "--patience", type=click.FloatRange(min=0.0), default=20.0, show_default=True, metavar="FACTOR",
+    help="Stop a run that takes this many times its planned time; inf: never.",
+)  # fmt: skip
 @programs
 @plugin_files
 @common
@@ -76,6 +80,7 @@ def run(
     changes: tuple[str, ...],
     out: Path | None,
     pictures: bool,
+    patience: float,
     plugins: tuple[Path, ...],
     as_json: bool,
 ) -> int:
@@ -97,7 +102,7 @@ def run(
         from raceway.run import run as compute
 
         try:
-            result = compute(loaded, registry, progress)
+            result = compute(loaded, registry, progress, patience=patience)
         except ConvergenceError as error:
             _keep_state(error, loaded, folder)
             raise

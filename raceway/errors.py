@@ -86,5 +86,9 @@ class ConvergenceError(RacewayError):
         self.state = state or {}
 
 
+class BeyondPlanError(ConvergenceError):
+    """A run that was stopped because it took many times its plan."""
+
+
 class StabilityError(ConvergenceError):
     """A step above the stable limit, or a motion that grew without bound."""

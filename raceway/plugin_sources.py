@@ -16,6 +16,10 @@ from typing import Any
 
 from raceway.errors import PluginError
 from raceway.options import nearest
+from raceway.user_files import size_of
+
+#: Bytes of a plug-in file at most.
+_LONGEST = 2**24
 
 
 def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
@@ -74,9 +78,12 @@ def import_file(path: Path) -> tuple[Any, str]:
         A file that is missing or fails to import.
     """
     try:
+        size_of(path, _LONGEST)
         content = path.read_bytes()
     except OSError as why:
         raise PluginError(f"plug-in file `{path}`: {why.strerror or why}") from None
+    except ValueError as why:
+        raise PluginError(f"plug-in file `{path}` {why}") from None
     if path.suffix != ".py":
         raise PluginError(f"plug-in file `{path}`: must be a Python file (.py)")
     version = hashlib.sha256(content).hexdigest()[:12]

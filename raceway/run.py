@@ -10,6 +10,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.allowance import PATIENCE, Allowance
 from raceway.contact_error import contact_error
 from raceway.core.bodies.ring import GYROSCOPIC
 from raceway.core.energy import energy_balance
@@ -34,7 +35,11 @@ from raceway.unused import unused
 
 
 def run(
-    scene: Scene, registry: Registry | None = None, on_progress: OnProgress | None = None, near: Result | None = None
+    scene: Scene,
+    registry: Registry | None = None,
+    on_progress: OnProgress | None = None,
+    near: Result | None = None,
+    patience: float = PATIENCE,
 ) -> Result:
     """Compute one scene.
 
@@ -43,19 +48,20 @@ def run(
     on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
     near : of a similar scene: what is dear to search for (equilibria of contacts at surface points, steady motions that are
         nearly linear) is searched for from its own, which changes the result within the tolerances of the search only
+    patience : times the planned time, of processor time, after which a run is stopped between its steps
 
     Raises
     ------
     SceneError
         A combination that cannot run.
-    ConvergenceError, StabilityError
-        No solution; ``error.state`` holds the last good arrays.
+    ConvergenceError, StabilityError, BeyondPlanError
+        No solution, or none in the time allowed; ``error.state`` holds the last good arrays.
     """
     registry = registry or default_registry()
     wall = working_clock()
     try:
         try:
-            return _run(scene, registry, on_progress, wall, near)
+            return _run(scene, registry, on_progress, wall, near, patience)
         except (ArithmeticError, np.linalg.LinAlgError) as why:
             raise ConvergenceError(
                 f"the numbers of this scene leave what can be computed with ({why}): check its units"
@@ -68,8 +74,11 @@ def run(
         raise
 
 
-def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall: float, near: Result | None) -> Result:
+def _run(
+    scene: Scene, registry: Registry, on_progress: OnProgress | None, wall: float, near: Result | None, patience: float
+) -> Result:
     plan = make_plan(scene)
+    allowance, warned = Allowance.of(plan, patience), []
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
     built = working_clock()
@@ -78,6 +87,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
         registry.notify("raceway_chunk_done", done=done, total=total)
         if on_progress is not None:
             on_progress(what, done, total)
+        allowance.check(what, done, total)
 
     equilibrium = settle(model, progress, None if near is None else near.equilibrium.displacement)
     simulation: Simulation | None = None
@@ -91,18 +101,27 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
     else:
         method = scene.identifier.method
         records = []
-        if "speeds" in method.needs:
-            motions = simulate_speeds(model, progress)
-            simulation, records = motions[-1][1], [one.record for _, one in motions]
-        elif "record" in method.needs:
-            simulation = simulate(model, equilibrium, progress, near=_followed(scene, near))
-            motions, records = [(model, simulation)], [simulation.record]
+        try:
+            if "speeds" in method.needs:
+                motions = simulate_speeds(model, progress)
+                simulation, records = motions[-1][1], [one.record for _, one in motions]
+            elif "record" in method.needs:
+                simulation = simulate(model, equilibrium, progress, near=_followed(scene, near))
+                motions, records = [(model, simulation)], [simulation.record]
+        except ConvergenceError as why:
+            allowance.confirm(why)
+            raise
+        allowance.confirm()
         for one, motion in motions:
             refuse_impossible(one, equilibrium, motion.whole)
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
         identified = working_clock()
-        error = error_table(model, equilibrium, motions, identification)
+        if allowance.spent:  # what is computed is kept
+            warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
+            error = no_error("the run went far beyond its plan")
+        else:
+            error = error_table(model, equilibrium, motions, identification)
         identification = with_series_error(model, identification, error)
         error_s = working_clock() - identified
     done = working_clock()
@@ -123,6 +142,7 @@ def _run(scene: Scene, registry: Registry, on_progress: OnProgress | None, wall:
             dict.fromkeys(
                 # A mesh too coarse for its answer comes first, keys without effect last.
                 [
+                    *warned,
                     *_unresolved(error),
                     *misfit_warnings(model, error),
                     *series_warnings(identification),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import difflib
 import json
-import stat
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -21,6 +20,7 @@ from raceway.requires import check_requires
 from raceway.rig import Rig
 from raceway.scene import TABLES, Scene
 from raceway.structure import structure
+from raceway.user_files import size_of
 
 #: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
 PLUGIN_TABLES = {
@@ -94,11 +94,10 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 
 def _text(path: Path) -> str:
     """Text of a scene; a byte order mark is left out.  ``OSError``, ``SceneError`` or ``UnicodeDecodeError`` where there is none."""
-    status = path.stat()
-    if not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
-        raise SceneError.at(str(path), None, "is no file: a pipe or a device has no end that can be waited for")
-    if status.st_size > _LONGEST:
-        raise SceneError.at(str(path), None, f"is no scene: it has {status.st_size} bytes, a scene has at most {_LONGEST}")
+    try:
+        size_of(path, _LONGEST)
+    except ValueError as why:
+        raise SceneError.at(str(path), None, str(why)) from None
     return path.read_bytes().decode("utf-8-sig")
 
 

@@ -30,12 +30,12 @@ AREAS = {
     "mesh": """
         core/meshing core/mesh core/mesh_quality core/mesh_summary meshing mesh_fit plugins/meshers plugins/formats data/meshes""",
     "kernels": "core/jit core/kernel_files core/plugin_kernel core/signatures",
-    "plan": "plan planning estimate probe",
+    "plan": "plan planning estimate probe allowance",
     "scene": "scene scene_file structure requires options catalogue implausible unused",
     "article": "studies/article data/article",
     "compare": "studies/compare",
     "map": "studies/map data/map",
-    "measured": "studies/measured",
+    "measured": "studies/measured number_table",
     "precision": "studies/precision studies/measured_run",
     "rig": "studies/rig rig",
     "ross": "studies/ross",
@@ -46,7 +46,7 @@ AREAS = {
     "pages": "studies/page studies/view plugins/reports data/page data/view data/view_stage",
     "no report": """
         __init__ __main__ cache_folder cli commands contracts data/templates errors files hookspecs plugin_sources plugins/__init__
-        plugins/system_libraries registry result scaffold schema studies/__init__ studies/axes testing trust""",
+        plugins/system_libraries registry result scaffold schema studies/__init__ studies/axes testing trust user_files""",
 }
 
 #: Areas by report; words with a slash are files or folders outside the package.
@@ -71,6 +71,7 @@ MEASURES = {
     "error_estimate": "rigid motion errors",
     "error_starts": "rigid motion errors",
     "expected_values": "rigid motion",
+    "fuzz": "rigid motion periodic errors mesh plan scene",
     "hexahedron": "solids",
     "identified_stiffness": "rigid motion",
     "identify": "measured rig shaft",

@@ -24,7 +24,8 @@ Tables = dict[str, Any]
 FINISHED, REFUSED, FAILED, PLANNED = "finished", "refused, exit code 2", "failed, exit code 1", "planned only"
 #: Longer runs are planned and not run: steps, seconds beyond start-up, and natural frequencies over the force's for steady orbits.
 _STEPS, _SECONDS, _ORDER = 3000, 0.5, 200.0
-_GARBAGE: tuple[Any, ...] = (
+#: What stands where something else belongs.
+GARBAGE: tuple[Any, ...] = (
     float("nan"), float("inf"), -float("inf"), -1.0, 0.0, 1e300, -(10**30), "", "free", "42", True, None, [], [1.0], {}, {"a": 1},
     [[1.0, float("nan")], [2.0, 3.0]], 0.5, 3, "\x00", "../../etc", 1e-300,
 )  # fmt: skip
@@ -147,11 +148,11 @@ def scenes(draw: st.DrawFn) -> Tables:
         table = tables[name]
         way = draw(st.integers(0, 3))
         if way == 0 or not isinstance(table, dict) or not table:
-            tables[name] = draw(st.sampled_from(_GARBAGE))
+            tables[name] = draw(st.sampled_from(GARBAGE))
         elif way == 1:
-            table[draw(st.text(max_size=8))] = draw(st.sampled_from(_GARBAGE))
+            table[draw(st.text(max_size=8))] = draw(st.sampled_from(GARBAGE))
         else:
-            table[draw(st.sampled_from(sorted(table)))] = draw(st.sampled_from(_GARBAGE))
+            table[draw(st.sampled_from(sorted(table)))] = draw(st.sampled_from(GARBAGE))
     return tables
 
 

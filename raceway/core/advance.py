@@ -82,7 +82,11 @@ def advance(
         if taken < count:
             raise _failure(system, schedule, done, motion, ball, counters)
         if on_chunk is not None and (longest == _CHUNK or done == last or done % _CHUNK == 0):
-            on_chunk(done - schedule.first, schedule.steps)
+            try:
+                on_chunk(done - schedule.first, schedule.steps)
+            except ConvergenceError as why:
+                why.state = {**_state(schedule, done, motion, ball), **why.state}
+                raise
     kept = int(counters[ROWS])
     rows, probes = rows[:kept], probes[:kept]
     places = [part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
@@ -136,12 +140,23 @@ def _step(
     )
 
 
+def _state(schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray) -> dict[str, Any]:
+    """What a run that ends early leaves, by name."""
+    return {
+        "t": done * schedule.dt,
+        "q": motion[0].copy(),
+        "v": motion[1].copy(),
+        "a": motion[2].copy(),
+        "ball": ball.copy(),
+    }
+
+
 def _failure(
     system: System, schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
 ) -> ConvergenceError:
     turn = done // schedule.steps_per_turn + 1
     when = f"after {done - schedule.first} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
-    state = {"t": done * schedule.dt, "q": motion[0].copy(), "v": motion[1].copy(), "a": motion[2].copy(), "ball": ball}
+    state = _state(schedule, done, motion, ball)
     if counters[REASON] == UNBOUNDED:
         limit = system.critical_time_step(system.evaluate(motion[0]).stiffness) if np.isfinite(motion).all() else None
         hint = f"; stable limit of explicit steps there {limit:.3g} s" if limit else ""

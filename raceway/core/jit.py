@@ -29,12 +29,17 @@ if getattr(numba.config, "DISABLE_JIT", 0):
         "NUMBA_DISABLE_JIT is set: loops of hundreds of thousands of steps are compiled here, or take hours. Unset it."
     )
 #: Seconds spent in compiling (until a run takes them) and in reading the cache, and how many kernels of each.
-clock: dict[str, float] = {"compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0}
+clock: dict[str, float] = {"compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0, "compile_processor_s": 0.0}
 
 
 def working_clock() -> float:
     """Seconds of a clock that stands still while kernels compile; it jumps when compile seconds are taken."""
     return time.perf_counter() - clock["compile_s"]
+
+
+def working_processor_time() -> float:
+    """Processor time of this thread [s] without what its kernels took to compile."""
+    return time.thread_time() - clock["compile_processor_s"]
 
 
 def take_compile_seconds() -> float:
@@ -114,7 +119,7 @@ def jit(
         options["nogil"] = True
 
     def decorate(function: Callable[..., Any]) -> Any:
-        start = time.perf_counter()
+        start, processor = time.perf_counter(), time.thread_time()
         try:
             kernel = _compile(function, signature, options)
         except (numba.core.errors.NumbaError, TypeError) as why:  # TypeError: another number of arguments
@@ -125,6 +130,7 @@ def jit(
             ) from why
         hit = sum(kernel.stats.cache_hits.values()) > 0
         clock["load_s" if hit else "compile_s"] += time.perf_counter() - start
+        clock["compile_processor_s"] += 0.0 if hit else time.thread_time() - processor
         clock["loaded" if hit else "compiled"] += 1
         return kernel
 

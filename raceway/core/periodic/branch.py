@@ -113,6 +113,7 @@ class Branch:
         n = len(here.solved.problem.free)
         path, dp = here.solved.path, size * here.tangent[-1] * self.unit
         problem = self.problem_at(here.parameter)
+        problem.watch()
         # Predictor: the linearised problem carries the tangent at the start through the span.
         linear = self._linearise(problem, path, here.parameter, True)
         if linear is None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import attrs
 import numpy as np
 
@@ -40,6 +42,7 @@ class Problem:
     free : (n,) numbers of the unknown coordinates
     weight : (5,) makes moments forces; lengths of tilts are tilts over it
     closing : (2 n, 2 n) rotation of an unknown state (q, v) by the span
+    watch : called between the points of a branch that is followed; what it raises ends the search
     """
 
     system: System
@@ -48,6 +51,7 @@ class Problem:
     share: float = 1.0
     clock: float = attrs.field()
     rule: Rule = attrs.field(factory=rule)
+    watch: Callable[[], None] = lambda: None
 
     free: np.ndarray = attrs.field(init=False)
     weight: np.ndarray = attrs.field(init=False)

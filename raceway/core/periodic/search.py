@@ -329,7 +329,7 @@ def _detour(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: flo
     wanted = problem.speed
 
     def at(speed: float) -> Problem:
-        return Problem(problem.system, speed, problem.symmetry, problem.share, wanted)
+        return attrs.evolve(problem, speed=speed, clock=wanted)
 
     far = at(ratio * wanted)
     try:

@@ -54,6 +54,8 @@ def steady(
             "force that turns over equal balls without a radial load has one (integrator.symmetry = 'auto'). Use 'newmark'"
         )
         raise SceneError.at("integrator.kind", "periodic", why)
+    if on_chunk is not None:
+        problem = attrs.evolve(problem, watch=lambda: on_chunk(0, schedule.steps))
     found = find(problem, q, tangent, tolerance, start.near)
     refined, told = found.refined, orbits(found.all)
     counts = {

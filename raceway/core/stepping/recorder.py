@@ -80,7 +80,11 @@ class Recorder:
         now = time.perf_counter()
         if self._on_chunk is not None and (now - self._reported > _REPORT_S or self._done == schedule.steps):
             self._reported = now
-            self._on_chunk(self._done, schedule.steps)
+            try:
+                self._on_chunk(self._done, schedule.steps)
+            except ConvergenceError as why:
+                why.state = {**self._last_good(), **why.state}
+                raise
 
     def record(self) -> Record:
         """The whole ``Record``."""

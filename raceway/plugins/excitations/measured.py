@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from functools import lru_cache
 from pathlib import Path
@@ -10,13 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
+from raceway.number_table import read_numbers
 from raceway.options import inside, option
 
 if TYPE_CHECKING:
     import numpy as np
 
-#: Longest interval that is bridged, over the usual one.
-_GAP = 5.0
+#: Samples at least, and samples that are fitted at once.
+_LEAST, _AT_ONCE = 8, 2**16
 _COLUMNS = ("Fx", "Fy", "Fz", "My", "Mz")
 
 
@@ -63,7 +63,8 @@ class Measured:
     @property
     def _length(self) -> float:
         time, _ = _read(self.file)
-        return time[-1] - time[0] + ((time[-1] - time[0]) / (len(time) - 1) if self.repeats else 0.0)
+        length = float(time[-1] - time[0])
+        return length + (length / (len(time) - 1) if self.repeats else 0.0)
 
     @property
     def amplitude_n(self) -> float:
@@ -88,28 +89,34 @@ class Measured:
         """1x phasors of F_x, F_y, F_z."""
         import numpy as np
 
-        interval, values = self._uniform()
-        time = interval * np.arange(len(values))
-        wt = 2.0 * np.pi * self.frequency_hz * time
-        basis = np.column_stack([np.ones_like(time), np.cos(wt), np.sin(wt)])
-        solution, *_ = np.linalg.lstsq(basis, values[:, :3], rcond=None)
+        time, _ = _read(self.file)
+        grid = np.linspace(time[0], time[-1], len(time))
+        square, right = np.zeros((3, 3)), np.zeros((3, 3))
+        for first in range(0, len(grid), _AT_ONCE):
+            t = grid[first : first + _AT_ONCE]
+            wt = 2.0 * np.pi * self.frequency_hz * (t - grid[0])
+            basis = np.column_stack([np.ones_like(t), np.cos(wt), np.sin(wt)])
+            square += basis.T @ basis
+            right += basis.T @ self._at(t)[:, :3]
+        solution, *_ = np.linalg.lstsq(square, right, rcond=None)
         return solution[1] - 1j * solution[2]
 
-    def _uniform(self) -> tuple[float, np.ndarray]:
+    def _at(self, t: np.ndarray) -> np.ndarray:
+        """(n, 5) forces and moments at times (n,) [s]."""
         import numpy as np
 
         time, columns = _read(self.file)
-        grid = np.linspace(time[0], time[-1], len(time))
-        values = np.zeros((len(time), 5))
+        values = np.zeros((len(t), 5))
         for name, column in columns.items():
-            values[:, _COLUMNS.index(name)] = np.interp(grid, time, column)
-        return float(grid[1] - grid[0]), values
+            values[:, _COLUMNS.index(name)] = np.interp(t, time, column)
+        return values
 
     def parameters(self) -> np.ndarray:
         import numpy as np
 
-        interval, values = self._uniform()
-        return np.concatenate([[interval, float(self.repeats)], values.reshape(-1)])
+        time, _ = _read(self.file)
+        grid = np.linspace(time[0], time[-1], len(time))
+        return np.concatenate([[grid[1] - grid[0], float(self.repeats)], self._at(grid).reshape(-1)])
 
     def kernel(self) -> Any:
         from raceway.core.excitations.samples import samples
@@ -117,49 +124,33 @@ class Measured:
         return samples
 
 
-def _read(path: str) -> tuple[tuple[float, ...], dict[str, tuple[float, ...]]]:
-    """Times and columns of a file; ``ValueError`` says what is wrong with it and where."""
+def _read(path: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Times and columns (n,) of a file; ``ValueError`` says what is wrong with it and where."""
     try:
         stamp = Path(path).stat()
+        return _parse(path, stamp.st_mtime_ns, stamp.st_size)
     except OSError as why:
         raise ValueError(f"`file` = '{path}': {why.strerror or why}") from None
-    return _parse(path, stamp.st_mtime_ns, stamp.st_size)
+    except ValueError as why:
+        raise ValueError(f"`file` = '{path}': {why}") from None
 
 
 @lru_cache(maxsize=8)
-def _parse(path: str, _time: int, _size: int) -> tuple[tuple[float, ...], dict[str, tuple[float, ...]]]:
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as stream:
-            rows = list(csv.reader(stream))
-    except (OSError, UnicodeDecodeError, csv.Error) as why:
-        raise ValueError(f"`file` = '{path}' cannot be read as CSV: {why}") from None
-    header = [word.strip() for word in rows[0]] if rows else []
-    if "t" not in header or not set(header) & set(_COLUMNS):
-        raise ValueError(f"`file` = '{path}': the first line must name t and some of {', '.join(_COLUMNS)}, not {header}")
-    if unknown := [word for word in header if word not in (*_COLUMNS, "t")]:
-        raise ValueError(f"`file` = '{path}': unknown columns {', '.join(unknown)}; known: t, {', '.join(_COLUMNS)}")
-    if twice := sorted({word for word in header if header.count(word) > 1}):
-        raise ValueError(f"`file` = '{path}': columns {', '.join(twice)} stand there twice")
-    table: list[list[float]] = []
-    for number, row in enumerate(rows[1:], start=2):
-        if not row:
-            continue
-        try:
-            values = [float(word) for word in row]
-        except ValueError:
-            values = []
-        if len(values) != len(header) or not all(math.isfinite(v) for v in values):
-            raise ValueError(f"`file` = '{path}', line {number}: {len(header)} finite numbers are needed, found {row}")
-        table.append(values)
-    if len(table) < 8:
-        raise ValueError(f"`file` = '{path}': {len(table)} samples; at least 8 are needed")
-    columns = dict(zip(header, (tuple(c) for c in zip(*table, strict=True)), strict=True))
+def _parse(path: str, _time: int, _size: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    table = read_numbers(Path(path), _judge)
+    if len(table.values) < _LEAST:
+        raise ValueError(f"{len(table.values)} samples; at least {_LEAST} are needed")
+    table.values.setflags(write=False)
+    columns = dict(zip(table.header, table.values.T, strict=True))
     time = columns.pop("t")
-    usual = sorted(b - a for a, b in zip(time, time[1:], strict=False))[len(time) // 2]
-    for number, (before, after) in enumerate(zip(time, time[1:], strict=False), start=3):
-        if after <= before:
-            raise ValueError(f"`file` = '{path}', line {number}: time must grow, {after:g} s follows {before:g} s")
-        if after - before > _GAP * usual:
-            where = f"`file` = '{path}', line {number}: a gap of {after - before:g} s"
-            raise ValueError(f"{where} where samples are usually {usual:g} s apart: cut the record there")
+    table.refuse_uneven(time)
     return time, columns
+
+
+def _judge(header: list[str]) -> None:
+    if "t" not in header or not set(header) & set(_COLUMNS):
+        raise ValueError(f"the first line must name t and some of {', '.join(_COLUMNS)}, not {header}")
+    if unknown := [word for word in header if word not in (*_COLUMNS, "t")]:
+        raise ValueError(f"unknown columns {', '.join(unknown)}; known: t, {', '.join(_COLUMNS)}")
+    if twice := sorted({word for word in header if header.count(word) > 1}):
+        raise ValueError(f"columns {', '.join(twice)} stand there twice")

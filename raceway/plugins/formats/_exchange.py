@@ -10,7 +10,10 @@ import numpy as np
 
 from raceway.core.mesh import FACES, HexMesh
 from raceway.errors import MeshError, extra
+from raceway.user_files import memory_for, size_of, told
 
+#: Bytes of the largest mesh file.
+LARGEST = 2**32
 #: Solids that meshio knows and the kernels do not.
 _SOLIDS = ("tetra", "wedge", "pyramid", "hexahedron2", "polyhedron", "voxel")
 
@@ -30,20 +33,40 @@ def load(path: Any, reader: Callable[[Any], Any]) -> Any:
     Raises
     ------
     MeshError
-        A file that is missing, empty, or cannot be read, by name.
+        A file that is missing, empty, unpacks without end, or cannot be read, by name.
     """
     path = Path(path)
-    if not path.is_file():
-        raise MeshError(f"'{path}' does not exist")
-    if not path.stat().st_size:
+    size = readable(path)
+    if not size:
         raise MeshError(f"'{path}' is empty")
     try:
-        return reader(path)
+        with memory_for(size):
+            return reader(path)
+    except MemoryError:
+        raise MeshError(
+            f"'{path}' cannot be read: its {told(size)} unpack to more memory than any mesh of that size takes (compressed "
+            "blocks, generated sets): write it again, plainly"
+        ) from None
     except OSError as why:
         raise MeshError(f"'{path}' cannot be read: {why.strerror or why}") from why
     except Exception as why:  # meshio raises whatever its parsers stumble over
-        told = f" ({type(why).__name__}: {why})" if str(why) else ""
-        raise MeshError(f"'{path}' cannot be read: it is damaged, cut short, or not what its ending says{told}") from why
+        cause = f" ({type(why).__name__}: {why})" if str(why) else ""
+        raise MeshError(f"'{path}' cannot be read: it is damaged, cut short, or not what its ending says{cause}") from why
+
+
+def readable(path: Any) -> int:
+    """Bytes of a mesh file; ``MeshError`` names one that is missing, a pipe, a device or too large."""
+    try:
+        size = size_of(path, LARGEST)
+    except ValueError as why:
+        raise MeshError(f"'{path}' {why}") from None
+    except FileNotFoundError:
+        raise MeshError(f"'{path}' does not exist") from None
+    except OSError as why:
+        raise MeshError(f"'{path}' cannot be read: {why.strerror or why}") from None
+    if not Path(path).is_file():
+        raise MeshError(f"'{path}' is a folder")
+    return size
 
 
 def store(path: Any, writer: Callable[[Any, Any], Any], content: Any) -> None:

@@ -15,6 +15,7 @@ from raceway.core.mesh import HexMesh
 from raceway.errors import MeshError
 from raceway.options import one_of, option
 from raceway.plugins.formats import _exchange as exchange
+from raceway.user_files import memory_for
 
 #: Element types that both programs know, by this program's word for the hexahedron.
 _TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}
@@ -42,6 +43,8 @@ class Abaqus:
 
     def read(self, path: Any) -> HexMesh:
         """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
+        exchange.readable(path)
+        _refuse_other_files(path)
         content = exchange.load(path, exchange.meshio().abaqus.read)
         cells, first = exchange.hexahedra(path, content)
         members = {name.lower(): _members(blocks, first) for name, blocks in content.cell_sets.items()}
@@ -77,6 +80,16 @@ class Abaqus:
 
     def example_content(self) -> HexMesh:
         return exchange.example()
+
+
+def _refuse_other_files(path: Any) -> None:
+    """A mesh is one file: what *INCLUDE names may be anything, a device without end too."""
+    with open(path, encoding="utf-8", errors="replace") as stream, memory_for(0):
+        for number, line in enumerate(stream, 1):
+            if "INCLUDE" in line.upper() and line.partition(",")[0].strip().replace("*", "").upper() == "INCLUDE":
+                raise MeshError(
+                    f"'{path}', line {number}: *INCLUDE names another file, which is not read: put its lines in the place of this one"
+                )
 
 
 def _entries(numbers: np.ndarray) -> Iterator[str]:

@@ -19,6 +19,7 @@ import numpy as np
 
 from raceway.errors import MeshError, extra
 from raceway.options import one_of, option, positive
+from raceway.plugins.formats._exchange import readable
 from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
 from raceway.plugins.meshers._geo import is_script, mesh_of_script
 from raceway.plugins.system_libraries import remedy
@@ -246,8 +247,7 @@ def _refuse_file(path: str) -> None:
     suffix = Path(path).suffix.lower()
     if suffix not in _SUFFIXES:
         raise MeshError(f"'{path}': mesh.kind = 'gmsh' reads {', '.join(_SUFFIXES)}, not '{suffix}'")
-    if not Path(path).is_file():
-        raise MeshError(f"'{path}' does not exist")
+    readable(path)
     if _READERS.get(suffix) == "step":
         with Path(path).open("rb") as file:
             if b"ISO-10303-21" not in file.read(4096):

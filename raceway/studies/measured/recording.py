@@ -6,7 +6,6 @@ per-turn probe, in any unit) or ``speed_rpm``, or both.
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import numpy as np
 
 from raceway.errors import SceneError
 from raceway.files import write_whole
+from raceway.number_table import NumberTable, read_numbers
 from raceway.options import nearest
 
 _UNITS = {
@@ -26,8 +26,6 @@ _UNITS = {
 #: Columns by name: quantity and factor to SI.
 COLUMNS = {f"{name}_{unit}": (name, factor) for name, units in _UNITS.items() for unit, factor in units.items()}
 COLUMNS["key"] = ("key", 1.0)
-#: Longest interval that is bridged, over the usual one.
-_GAP = 5.0
 _LEAST = 32
 #: Samples that may lie at one end of the range beyond those of a sine of the same resolution, of all.
 _AT_THE_END = 0.02
@@ -62,23 +60,15 @@ def read_recording(path: Path) -> Recording:
     SceneError
         What is wrong with the file, with the line.
     """
-    header, rows, numbers = _rows(path)
-    names = _names(path, header)
-    table = np.empty((len(rows), len(header)))
-    for place, (row, number) in enumerate(zip(rows, numbers, strict=True)):
-        try:
-            table[place] = [float(word) for word in row]
-        except ValueError:  # a word, an empty cell, or too few of them
-            raise _wrong(path, f"line {number}: {len(header)} numbers are needed, found {','.join(row)[:60]!r}") from None
-    bad = np.flatnonzero(~np.isfinite(table).all(axis=1))
-    if bad.size:
-        more = f" (and {bad.size - 1} more lines)" if bad.size > 1 else ""
-        what = f"line {numbers[bad[0]]}: a sample is missing ({','.join(rows[bad[0]])[:60]}){more}: cut the record there"
-        raise _wrong(path, what)
-    if len(table) < _LEAST:
-        raise _wrong(path, f"{len(table)} samples; at least {_LEAST} are needed")
-    columns = {name: table[:, place] * factor for place, (name, factor) in enumerate(names)}
-    _refuse_gaps(path, columns["time"], numbers)
+    table = _table(path)
+    names = _names(table.header)
+    if len(table.values) < _LEAST:
+        raise _wrong(path, f"{len(table.values)} samples; at least {_LEAST} are needed")
+    columns = {name: table.values[:, place] * factor for place, (name, factor) in enumerate(names)}
+    try:
+        table.refuse_uneven(columns["time"])
+    except ValueError as why:
+        raise _wrong(path, str(why)) from None
     for name in ("y", "z"):
         _refuse_clipped(path, name, columns[name])
     return Recording(columns["time"], columns["y"], columns["z"], columns.get("key"), columns.get("speed"))
@@ -110,41 +100,37 @@ def _wrong(path: Path, message: str) -> SceneError:
     return SceneError.at(str(path), None, message)
 
 
-def _rows(path: Path) -> tuple[list[str], list[list[str]], list[int]]:
-    """Header, rows, and the number of each row's line."""
+def _table(path: Path) -> NumberTable:
+    """The file's table; ``SceneError`` says what is wrong with it."""
     try:
-        with open(path, newline="", encoding="utf-8-sig") as stream:
-            reader = csv.reader(stream)
-            lines = [(reader.line_num, row) for row in reader if row]
+        return read_numbers(path, _names)
     except FileNotFoundError:
         near = sorted(p.name for p in path.parent.glob("*.csv")) if path.parent.is_dir() else []
         raise _wrong(path, f"no such file{nearest(path.name, near)}") from None
-    except (OSError, UnicodeDecodeError, csv.Error) as why:
-        reason = why.strerror if isinstance(why, OSError) else "it is not a text file of comma-separated values"
-        raise _wrong(path, f"cannot be read: {reason}") from None
-    if not lines:
-        raise _wrong(path, "is empty: a header line and samples are needed")
-    header = [word.strip().lower() for word in lines[0][1]]
-    return header, [row for _, row in lines[1:]], [number for number, _ in lines[1:]]
+    except OSError as why:
+        raise _wrong(path, f"cannot be read: {why.strerror or why}") from None
+    except ValueError as why:
+        raise _wrong(path, str(why)) from None
 
 
-def _names(path: Path, header: list[str]) -> list[tuple[str, float]]:
-    """Quantity and factor of each column."""
+def _names(header: list[str]) -> list[tuple[str, float]]:
+    """Quantity and factor of each column; ``ValueError`` for columns that are unknown or missing."""
+    header = [word.lower() for word in header]
     example = "for instance time_s,y_um,z_um,key"
     if all(_is_number(word) for word in header):
-        raise _wrong(path, f"line 1 must name the columns, {example}")
+        raise ValueError(f"line 1 must name the columns, {example}")
     for word in header:
         if word not in COLUMNS:
             hint = nearest(word, COLUMNS) if len(word) < 30 else ""
-            raise _wrong(path, f"line 1: unknown column {word[:40]!r}{hint}; known: {', '.join(COLUMNS)} ({example})")
+            raise ValueError(f"line 1: unknown column {word[:40]!r}{hint}; known: {', '.join(COLUMNS)} ({example})")
     names = [COLUMNS[word] for word in header]
     given = [name for name, _ in names]
     if twice := sorted({name for name in given if given.count(name) > 1}):
-        raise _wrong(path, f"line 1: {', '.join(twice)} stands there twice")
+        raise ValueError(f"line 1: {', '.join(twice)} stands there twice")
     if missing := [name for name in ("time", "y", "z") if name not in given]:
-        raise _wrong(path, f"line 1: no column for {', '.join(missing)}; needed: time, y and z, {example}")
+        raise ValueError(f"line 1: no column for {', '.join(missing)}; needed: time, y and z, {example}")
     if not {"key", "speed"} & set(given):
-        raise _wrong(path, "line 1: no speed: a column `key` (once-per-turn probe) or `speed_rpm` is needed")
+        raise ValueError("line 1: no speed: a column `key` (once-per-turn probe) or `speed_rpm` is needed")
     return names
 
 
@@ -154,17 +140,6 @@ def _is_number(word: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _refuse_gaps(path: Path, time: np.ndarray, numbers: list[int]) -> None:
-    steps = np.diff(time)
-    usual = float(np.median(steps))
-    for place in np.flatnonzero(steps <= 0.0)[:1]:
-        before, after = time[place : place + 2]
-        raise _wrong(path, f"line {numbers[place + 1]}: time must grow, {after:g} s follows {before:g} s")
-    for place in np.flatnonzero(steps > _GAP * usual)[:1]:
-        text = f"line {numbers[place + 1]}: a gap of {steps[place]:.3g} s where samples are usually {usual:.3g} s apart"
-        raise _wrong(path, f"{text}: cut the record there")
 
 
 def _refuse_clipped(path: Path, name: str, signal: np.ndarray) -> None:

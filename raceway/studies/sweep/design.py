@@ -15,9 +15,12 @@ import attrs
 from raceway.errors import Mistake, SceneError
 from raceway.scene_file import parse_value, read_toml
 from raceway.studies.axes import Axis, parse_axes, shown
+from raceway.user_files import size_of
 
 #: Most points of a sweep: beyond it, files of results are no longer something to open.
 MOST_POINTS = 1_000_000
+#: Bytes of a list of them at most: 256 for each.
+_LONGEST = 256 * MOST_POINTS
 #: Values of an axis that a message names one by one.
 _MOST_SHOWN = 9
 _FORM = 'must be a TOML file with a table [grid], for instance "load.axial" = [400, 1000], or with tables [[points]]'
@@ -208,6 +211,12 @@ def _json_points(path: Path) -> Any:
 
 
 def _text(path: Path) -> str:
+    try:
+        size_of(path, _LONGEST)
+    except ValueError as why:
+        raise SceneError.at(str(path), None, str(why)) from None
+    except OSError as why:
+        raise SceneError.at(str(path), None, f"cannot be read: {why.strerror or why}") from None
     try:
         return path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as why:

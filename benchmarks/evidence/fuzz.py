@@ -1,0 +1,99 @@
+"""Ten thousand random scenes through check and plan, and fifteen hundred of them through run, each watched."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from benchmarks.evidence import Row
+from benchmarks.evidence._fuzz import ASLEEP_S, CHECK_S, RUN_S
+
+TITLE = "Fuzz: random scenes through check, plan and run"
+COMMAND = "python -m benchmarks.evidence fuzz"
+#: Scenes, runs and processes of a whole report; the environment may ask for fewer scenes, and the report says how many there were.
+SCENES = int(os.environ.get("RACEWAY_FUZZ_SCENES", "10000"))
+RUNS, PROCESSES = 3 * SCENES // 20, 2
+WANTED_SCENES, WANTED_RUNS = 10_000, 1500
+_ROOT = Path(__file__).parents[2]
+#: Faults by the word that a worker gives them.
+_FAULTS = {
+    "traceback": "tracebacks: anything but a result or a message with exit code 1 or 2",
+    "hang": f"hangs: beyond {CHECK_S:g} s of processor time in check and plan, {RUN_S:g} s in run, or {ASLEEP_S:g} s in all",
+    "died": "processes that ended by a signal",
+    "nan": "NaN or infinity in a result, or a failure that tells them",
+    "memory": "memory above twice the plan's: what was there, the record, the meshes",
+    "left": "files written and processes started by check and plan",
+}
+
+
+def tries(scenes: int = SCENES, runs: int = RUNS) -> list[dict[str, Any]]:
+    """What became of every scene, by processes of which one goes on where another ended."""
+    with tempfile.TemporaryDirectory() as folder:
+        share = -(-scenes // PROCESSES)
+        places = [(k * share, min((k + 1) * share, scenes), Path(folder) / f"{k}.jsonl") for k in range(PROCESSES)]
+        workers = [_worker(first, last, runs // PROCESSES, out) for first, last, out in places]
+        found: list[dict[str, Any]] = []
+        for (_, last, out), worker in zip(places, workers, strict=True):
+            code = worker.wait()
+            while code:
+                found.append({"seed": _begun(out), "faults": [[_word(code), "", f"exit code {code}"]]})
+                quota = runs // PROCESSES - sum("run" in one for one in _done(out))
+                code = _worker(_begun(out) + 1, last, quota, out).wait()
+            found += _done(out)
+    return found
+
+
+def _worker(first: int, last: int, quota: int, out: Path) -> subprocess.Popen[bytes]:
+    words = [sys.executable, "-m", "benchmarks.evidence._fuzz", str(first), str(last), str(quota), str(out)]
+    return subprocess.Popen(words, cwd=_ROOT, stdin=subprocess.DEVNULL)
+
+
+def _lines(out: Path) -> Iterator[dict[str, Any]]:
+    return map(json.loads, out.read_text().splitlines()) if out.is_file() else iter(())
+
+
+def _done(out: Path) -> list[dict[str, Any]]:
+    return [line for line in _lines(out) if "begun" not in line]
+
+
+def _begun(out: Path) -> int:
+    """The scene at which a process ended.
+
+    Raises
+    ------
+    RuntimeError
+        It ended before the first one, or between two.
+    """
+    lines = list(_lines(out))
+    if not lines or "begun" not in lines[-1]:
+        raise RuntimeError("a process of the fuzz ended outside its scenes: see what it wrote on standard error")
+    return int(lines[-1]["begun"])
+
+
+def _word(code: int) -> str:
+    return "hang" if -code in (signal.SIGPROF, signal.SIGALRM) else "died"
+
+
+def rows() -> list[Row]:
+    found = tries()
+    ends = Counter(f"check: {one['check']}" for one in found if "check" in one)
+    ends += Counter(f"run, {one['bodies']} bodies: {one['run']}" for one in found if "run" in one)
+    ran = sum("run" in one for one in found)
+    out = [
+        Row("scenes through check and plan", len(found), f"at least {WANTED_SCENES}", len(found) >= WANTED_SCENES, COMMAND),
+        Row("scenes through run", ran, f"at least {WANTED_RUNS}", ran >= WANTED_RUNS, COMMAND),
+    ]
+    for word, quantity in _FAULTS.items():
+        bad = [(one["seed"], fault) for one in found for fault in one["faults"] if fault[0] == word]
+        note = "; ".join(f"scene {seed}: {fault[2][-300:]}" for seed, fault in bad[:3])
+        out.append(Row(quantity, len(bad), "0", not bad, COMMAND, note))
+    out += [Row(f"scenes, {word}", count, "reported", True, COMMAND) for word, count in sorted(ends.items())]
+    return out

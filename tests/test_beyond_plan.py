@@ -1,0 +1,103 @@
+"""Runs far beyond their plan are stopped, say so, and leave what they have."""
+
+from __future__ import annotations
+
+import inspect
+import json
+
+import numpy as np
+import pytest
+
+from raceway import load_scene
+from raceway.allowance import PATIENCE, Allowance
+from raceway.cli import main
+from raceway.errors import BeyondPlanError
+from raceway.run import run
+from tests.command_line import ARTICLE, invoke
+from tests.test_elastic_scene import QUICK
+from tests.test_elastic_scene import scene as elastic_scene
+
+LONG = ("--set", "integrator.turns=120")  # 43 200 steps: more than one chunk
+
+
+class Clock:
+    """Processor time that passes when it is told to."""
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr("raceway.allowance.working_processor_time", lambda: self.now)
+
+
+def test_a_run_far_beyond_its_plan_is_stopped_and_keeps_its_state(tmp_path):
+    """No time is measured: no run takes less than nothing."""
+    found = invoke("run", ARTICLE, *LONG, "--patience", "0", "--out", tmp_path, "--json")
+    assert found.exit_code == 1
+    content = json.loads(found.stdout)
+    message = content["errors"][0]["message"]
+    assert "stopped far beyond the plan, in newmark, 43200 steps, 20000 of 43200 done" in message
+    assert "over 0 times the planned" in message and "`raceway run --patience`" in message
+    with np.load(content["last_good_state"]) as state:
+        assert set(state) == {"t", "q", "v", "a", "ball"}
+        assert all(np.isfinite(state[name]).all() for name in state)
+        assert state["t"] > 0.0
+    assert json.loads((tmp_path / "failure.json").read_text())["error"]["kind"] == "BeyondPlanError"
+
+
+def test_a_motion_that_is_complete_is_kept_without_its_error():
+    """Beyond the plan when the last step is done, or in a search that no step interrupts: Z is there."""
+    scene = load_scene(ARTICLE)
+    whole, late = run(scene), run(scene, patience=0.0)
+    assert late.identification.dynamic_stiffness == whole.identification.dynamic_stiffness
+    assert late.error["total"] is None
+    assert late.warnings[0].startswith("the error is not estimated, because this run went far beyond its plan: ")
+    assert not any("beyond its plan" in text for text in whole.warnings)
+
+
+def test_a_stepped_motion_keeps_its_state(monkeypatch):
+    """Elastic bodies are stepped from Python; the allowance is spent at the first report after the equilibrium."""
+    monkeypatch.setattr("raceway.core.stepping.recorder._REPORT_S", 0.0)
+    monkeypatch.setattr(Allowance, "spent", False)
+
+    def progress(what, done, total):
+        if total and done == 3:
+            monkeypatch.setattr(Allowance, "spent", True)
+
+    with pytest.raises(BeyondPlanError, match="3 of [0-9]+ done") as caught:
+        run(elastic_scene(**QUICK), on_progress=progress)
+    assert {"t", "q", "v", "a", "ball"} <= set(caught.value.state)
+
+
+def test_only_many_times_the_plan_is_beyond_it(monkeypatch):
+    clock = Clock(monkeypatch)
+    allowance = Allowance(planned=10.0, patience=PATIENCE)
+    clock.now = 10.0 * PATIENCE
+    allowance.check("steps", 1, 2)
+    clock.now += 1.0
+    with pytest.raises(BeyondPlanError):
+        allowance.check("steps", 1, 2)
+    allowance.check("steps", 2, 2)
+
+
+def test_short_plans_count_as_three_seconds(monkeypatch):
+    clock = Clock(monkeypatch)
+    plan = type("Plan", (), {"predicted_wall_s": 0.01})()
+    allowance = Allowance.of(plan, PATIENCE)
+    clock.now = 59.0
+    assert not allowance.spent
+    clock.now = 61.0
+    assert allowance.spent
+
+
+def test_the_command_and_the_function_have_one_patience():
+    option = next(p for p in main.commands["run"].params if p.name == "patience")
+    assert option.default == inspect.signature(run).parameters["patience"].default == PATIENCE
+
+
+def test_a_search_for_steady_motions_is_stopped_between_their_points(tmp_path):
+    """What the search makes of being stopped, it tries elsewhere, is not the answer."""
+    words = ["--set", "excitation.kind=unidirectional", "--set", "supports.tilt=free", "--set", "integrator.kind=periodic"]
+    found = invoke(
+        "run", ARTICLE, *words, "--set", "excitation.unbalance=2e-3", "--patience", "0", "--out", tmp_path, "--json"
+    )
+    assert found.exit_code == 1, found.output
+    assert "stopped far beyond the plan, in periodic" in json.loads(found.stdout)["errors"][0]["message"]
