@@ -8,7 +8,8 @@ the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
 A series of equilibria has no order: see ``finer_series``.
 
 What a transient leaves is the distance from the steady motion (``steady_motion``) where that can be solved for and the
-motion did not start on it, and else what ``free_vibration`` sees.  Step errors are taken from values without it: leakage has no order.
+motion did not start on it, and else what ``free_vibration`` sees; with friction at least the distance from ``other_start``.
+Step errors are taken from values without a transient: leakage has no order.
 
 References
 ----------
@@ -26,12 +27,13 @@ import numpy as np
 from raceway.contact_error import contact_error, is_calibrated
 from raceway.core.identification import Identification
 from raceway.core.system import TOLERANCE
-from raceway.errors import ConvergenceError
+from raceway.errors import ConvergenceError, StabilityError
 from raceway.finer_series import finer_value, more_equilibria
 from raceway.free_vibration import without_free_vibration
 from raceway.misfit import largest_misfit
 from raceway.model import Model
-from raceway.planning.modules import compares_with_steady_motion
+from raceway.other_start import Run, other_start
+from raceway.planning.modules import compares_with_steady_motion, remembers_its_start
 from raceway.planning.recording import fits
 from raceway.simulate import Simulation, simulate
 from raceway.statics import Equilibrium, settle
@@ -85,10 +87,13 @@ def error_table(
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
     else:
-        step = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
+        step, run = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
+        transient = _transient(model, equilibrium, motions, found, step)
+        if remembers_its_start(model.scene) and transient.size is not None:
+            transient = _from_other_start(model, equilibrium, motions[-1][1], run, transient)
         parts = {
             "time_step": step,
-            "transient": _transient(model, equilibrium, motions, found, step),
+            "transient": transient,
             "identification": _identification(model, equilibrium, found),
         }
     parts["mesh"] = Part(mesh, how["mesh"])
@@ -147,41 +152,46 @@ def _identification(model: Model, equilibrium: Equilibrium, found: Identificatio
     return Part(max(size, found.window), f"largest misfit of K - m w^2 + j w C, over |Z| there: at {rpm:.6g} r/min")
 
 
-def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex) -> Part:
-    """By a second run with other steps."""
+def _time_step(
+    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex
+) -> tuple[Part, Run]:
+    """By a second run with other steps; that one, or the first where it is no cheaper, to compare other starts with."""
     method, first = model.scene.integrator.method, motions[-1][1]
-    if getattr(method, "steady", False):
-        return Part(first.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude")
-    if model.scene.bodies.kind == "elastic":
-        return Part(None, "not estimated: a second run of all nodes would cost as much as the first")
-    if not method.inertial:
-        return _sampling(motions, equilibrium, model, value)
     steps = first.whole.schedule.steps_per_turn
+    run = Run(value, steps)
+    if getattr(method, "steady", False):
+        own = first.whole.counts.get("error")
+        return Part(own, "the method's own estimate, of the displacement over its amplitude"), run
+    if model.scene.bodies.kind == "elastic":
+        return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), run
+    if not method.inertial:
+        return _sampling(motions, equilibrium, model, value), run
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
     bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
     other = other_steps(steps, bound)
     turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, other, model.system.ball_count):
-        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit")
+        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), run
     try:
         again = [
             simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, begun=m) for one, m in motions
         ]
     except ConvergenceError as why:
-        return Part(None, f"the run with {other} steps a turn failed: {why}")
-    fine, coarse = value, 0j
+        return Part(None, f"the run with {other} steps a turn failed: {why}"), run
+    found = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
+    if other < steps:
+        run = Run(found, other)
+    fine, coarse = value, found
     # Several speeds are told apart by the identifier alone.
     clean = [without_free_vibration(model, equilibrium, one) if len(motions) == 1 else None for one in (first, again[-1])]
     if clean[0] is not None and clean[1] is not None:
         fine, coarse = clean[0].value, clean[1].value
-    else:
-        coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
     shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
     if not np.isfinite(abs(shift)):
-        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness")
+        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness"), run
     words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
-    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift)
+    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift), run
 
 
 def _sampling(motions: list[tuple[Model, Simulation]], equilibrium: Equilibrium, model: Model, value: complex) -> Part:
@@ -247,6 +257,19 @@ def _transient(
         # What began on no stable orbit may be on its way from one motion to another.
         return by_turns
     return Part(float(abs(shift)), clean.how, shift)
+
+
+def _from_other_start(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, own: Part) -> Part:
+    """With friction at least the distance from what another start gives."""
+    try:
+        size, kind = other_start(model, equilibrium, first, run)
+    except (ConvergenceError, StabilityError) as why:
+        return Part(None, f"friction remembers how the motion began, and a run from another start failed: {why}")
+    if not np.isfinite(size):
+        return Part(None, f"friction remembers how the motion began, and start '{kind}' gives no dynamic stiffness")
+    if own.size is not None and own.size >= size:
+        return own
+    return Part(float(size), f"friction remembers how the motion began: distance from a run that begins with start '{kind}'")
 
 
 def _from_steady(settled: complex, value: complex, step: Part) -> Part:
