@@ -29,10 +29,10 @@ from raceway.core.identification import Identification
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.finer_series import finer_value, more_equilibria
-from raceway.free_vibration import without_free_vibration
+from raceway.free_vibration import Clean, without_free_vibration
 from raceway.misfit import largest_misfit
 from raceway.model import Model
-from raceway.other_start import Run, other_start
+from raceway.other_start import Run, distance
 from raceway.planning.modules import compares_with_steady_motion, remembers_its_start
 from raceway.planning.recording import fits
 from raceway.simulate import Simulation, simulate
@@ -49,6 +49,8 @@ _LEAST_TURNS = 4
 
 #: Largest deviation of a turn from all turns over |Z| up to which turns repeat.
 _REPEATS = 1e-2
+#: What an estimate is good to: a factor of so much.
+_RIGHT = 3.0
 
 _NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
 
@@ -87,10 +89,11 @@ def error_table(
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
     else:
-        step, run = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
+        step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
         transient = _transient(model, equilibrium, motions, found, step)
         if remembers_its_start(model.scene) and transient.size is not None:
-            transient = _from_other_start(model, equilibrium, motions[-1][1], run, transient)
+            first = motions[-1][1]
+            transient = _from_other_start(model, equilibrium, first, second or Run.of(model, equilibrium, first), transient)
         parts = {
             "time_step": step,
             "transient": transient,
@@ -154,44 +157,43 @@ def _identification(model: Model, equilibrium: Equilibrium, found: Identificatio
 
 def _time_step(
     model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex
-) -> tuple[Part, Run]:
-    """By a second run with other steps; that one, or the first where it is no cheaper, to compare other starts with."""
+) -> tuple[Part, Run | None]:
+    """By a second run with other steps; that one, where other starts are compared with it because it is cheaper than the first."""
     method, first = model.scene.integrator.method, motions[-1][1]
-    steps = first.whole.schedule.steps_per_turn
-    run = Run(value, steps)
     if getattr(method, "steady", False):
         own = first.whole.counts.get("error")
-        return Part(own, "the method's own estimate, of the displacement over its amplitude"), run
+        return Part(own, "the method's own estimate, of the displacement over its amplitude"), None
     if model.scene.bodies.kind == "elastic":
-        return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), run
+        return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), None
     if not method.inertial:
-        return _sampling(motions, equilibrium, model, value), run
+        return _sampling(motions, equilibrium, model, value), None
+    steps = first.whole.schedule.steps_per_turn
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
     bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
     other = other_steps(steps, bound)
     turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, other, model.system.ball_count):
-        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), run
+        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), None
     try:
         again = [
             simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, begun=m) for one, m in motions
         ]
     except ConvergenceError as why:
-        return Part(None, f"the run with {other} steps a turn failed: {why}"), run
-    found = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
-    if other < steps:
-        run = Run(found, other)
-    fine, coarse = value, found
+        return Part(None, f"the run with {other} steps a turn failed: {why}"), None
+    second = Run.of(model, equilibrium, again[-1]) if other < steps and remembers_its_start(model.scene) else None
+    fine, coarse = value, 0j
     # Several speeds are told apart by the identifier alone.
     clean = [without_free_vibration(model, equilibrium, one) if len(motions) == 1 else None for one in (first, again[-1])]
     if clean[0] is not None and clean[1] is not None:
         fine, coarse = clean[0].value, clean[1].value
+    else:
+        coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
     shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
     if not np.isfinite(abs(shift)):
-        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness"), run
+        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness"), second
     words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
-    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift), run
+    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift), second
 
 
 def _sampling(motions: list[tuple[Model, Simulation]], equilibrium: Equilibrium, model: Model, value: complex) -> Part:
@@ -253,23 +255,46 @@ def _transient(
     if clean is None:
         return Part(None, "a single turn tells nothing of a transient") if found.spread is None else by_turns
     shift = (value - clean.value + clean.lasting) / abs(value)
-    if not simulation.start.settled and (found.spread or 0.0) > abs(shift):
-        # What began on no stable orbit may be on its way from one motion to another.
+    if (found.spread or 0.0) > abs(shift) and _unresolved(model, simulation, clean, abs(shift * value)):
         return by_turns
     return Part(float(abs(shift)), clean.how, shift)
 
 
+def _unresolved(model: Model, simulation: Simulation, clean: Clean, seen: float) -> bool:
+    """Whether the window over the turns may miss a part of the transient.
+
+    Parameters
+    ----------
+    seen : what the window sees [N/m]
+
+    Notes
+    -----
+    What began on no stable orbit may be on its way from one motion to another.  What began on none at all may beat with 1x:
+    then the halves of the turns are further apart than the whole window accounts for.
+    """
+    if not simulation.start.settled:
+        return True
+    if (
+        simulation.start.orbit is not None
+        and model.scene.contact.friction == 0.0
+        and model.scene.contact.law.state_size == 0
+    ):
+        return False
+    if not model.scene.integrator.method.inertial:
+        return False
+    return clean.halves is None or clean.halves > _RIGHT * seen
+
+
 def _from_other_start(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, own: Part) -> Part:
-    """With friction at least the distance from what another start gives."""
+    """With friction the transient, and how far away another start leads."""
+    words = "friction remembers how the motion began"
     try:
-        size, kind = other_start(model, equilibrium, first, run)
+        size, kind = distance(model, equilibrium, first, run)
     except (ConvergenceError, StabilityError) as why:
-        return Part(None, f"friction remembers how the motion began, and a run from another start failed: {why}")
+        return Part(None, f"{words}, and runs from other starts failed: {why}")
     if not np.isfinite(size):
-        return Part(None, f"friction remembers how the motion began, and start '{kind}' gives no dynamic stiffness")
-    if own.size is not None and own.size >= size:
-        return own
-    return Part(float(size), f"friction remembers how the motion began: distance from a run that begins with start '{kind}'")
+        return Part(None, f"{words}, and start '{kind}' gives no dynamic stiffness")
+    return Part(float((own.size or 0.0) + size), f"{words}: {size:.2g} between this start and '{kind}'; and {own.how}")
 
 
 def _from_steady(settled: complex, value: complex, step: Part) -> Part:

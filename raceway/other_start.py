@@ -3,10 +3,11 @@
 Notes
 -----
 Where a contact sticks follows from the slip before, which no damping takes back: two starts under one force end on two steady
-motions.  Their distance is no transient that dies out, and no window over the turns sees it in one of them.  A second run
-begins otherwise, with the steps of the run that is there already for the error of the time step: equal steps err alike.
+motions.  Their distance is no transient that dies out, and no window over the turns of one of them sees it.  A further run
+begins otherwise, with the steps of the one that is made for the error of the time step: equal steps err alike.  Free vibrations,
+which each run states as its own error, are taken from both.
 
-The orbit without friction and the motions from rest differ most; under a growing force the contacts slip least.
+The orbit without friction and the motions from rest are furthest apart; a growing force leaves the least free vibration.
 """
 
 from __future__ import annotations
@@ -16,54 +17,61 @@ from typing import Any
 import attrs
 
 from raceway.errors import ConvergenceError, StabilityError
+from raceway.free_vibration import without_free_vibration
 from raceway.model import Model
 from raceway.planning.modules import remembers_its_start
 from raceway.simulate import Simulation, simulate
 from raceway.statics import Equilibrium
 
 #: Other starts in the order in which they are tried.
-_OTHERS = {"orbit": ("ramp", "static"), "ramp": ("orbit", "static"), "static": ("orbit", "ramp")}
+_OTHERS: dict[str, tuple[str, ...]] = {"orbit": ("ramp", "static"), "ramp": ("orbit", "static"), "static": ("orbit", "ramp")}
 #: A series of equilibria knows no velocities: it begins under the force or under one that grows.
-_SERIES = {"orbit": ("ramp",), "ramp": ("static",), "static": ("ramp",)}
+_SERIES: dict[str, tuple[str, ...]] = {"orbit": ("ramp",), "ramp": ("static",), "static": ("ramp",)}
 
 
 @attrs.frozen
 class Run:
-    """A run to compare with: Z [N/m], steps a turn."""
+    """Z [N/m] of a run without what its free vibration leaks into the 1x line, and its steps a turn."""
 
     value: complex
     steps: int
 
+    @classmethod
+    def of(cls, model: Model, equilibrium: Equilibrium, motion: Simulation) -> Run:
+        clean = without_free_vibration(model, equilibrium, motion)
+        if clean is not None:
+            return cls(clean.value, motion.whole.schedule.steps_per_turn)
+        found = model.scene.identifier.method.identify([motion.record], equilibrium, model)
+        return cls(found.dynamic_stiffness, motion.whole.schedule.steps_per_turn)
 
-def other_start(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run) -> tuple[float, str]:
-    """Distance of Z from another start over the smaller Z, and the name of that start.
+
+def distance(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run) -> tuple[float, str]:
+    """Distance of Z from that of another start, over the smaller Z, and the name of that start.
 
     Parameters
     ----------
-    first : the motion of the scene's own start
-    run : over all turns of the plan, from that start
+    first : the motion from the scene's own start;  run : from the same start, over as many turns
 
     Raises
     ------
     ConvergenceError, StabilityError
         No other start gives a motion.
     """
-    begun, why = first.start, ConvergenceError("the run began on no orbit, and under no other force")
-    failed: ConvergenceError | StabilityError = why
-    for kind in (_OTHERS if model.scene.integrator.method.inertial else _SERIES)[begun.kind]:
-        if kind == "orbit" and not begun.settled:
-            continue  # searched for in vain
+    kinds = (_OTHERS if model.scene.integrator.method.inertial else _SERIES)[first.start.kind]
+    if not first.start.settled:
+        kinds = tuple(kind for kind in kinds if kind != "orbit")  # searched for in vain
+    failed: ConvergenceError | StabilityError | None = None
+    for kind in kinds:
         one = _begun_by(model, kind)
         try:
             motion = simulate(one, equilibrium, steps_per_turn=run.steps)
         except (ConvergenceError, StabilityError) as error:
             failed = error
             continue
-        if motion.start.kind == begun.kind:
-            continue
-        value = model.scene.identifier.method.identify([motion.record], equilibrium, one).dynamic_stiffness
-        return abs(run.value - value) / min(abs(run.value), abs(value)), kind
-    raise failed
+        if motion.start.kind == kind:
+            other = Run.of(one, equilibrium, motion).value
+            return abs(run.value - other) / min(abs(run.value), abs(other)), kind
+    raise failed or ConvergenceError("no orbit was found to start on")
 
 
 def _begun_by(model: Model, kind: str) -> Model:
