@@ -136,7 +136,7 @@ def test_with_friction_orbits_are_no_motions_of_the_scene():
 
 
 def _pair(apart, friction=0.0, told=False):
-    return Pair(1, friction, "newmark against newmark", ({}, {}), (None, None), apart, told)
+    return Pair(1, friction, "newmark against newmark", apart, told)
 
 
 def test_the_cross_counts_what_is_apart_and_not_told():

@@ -35,8 +35,6 @@ class Pair:
     number: int
     friction: float
     words: str
-    tables: tuple[Tables, Tables]
-    results: tuple[Result | None, Result | None]
     apart: float | None
     told: bool
     why: str = ""
@@ -103,14 +101,14 @@ def compared(number: int) -> Pair:
             why = why or f"{_words(one)}: {error}"
     first, second = results
     if first is None or second is None:
-        return Pair(number, friction, words, tables, (first, second), None, False, why)
+        return Pair(number, friction, words, None, False, why)
     totals = [found.error["total"] for found in (first, second)]
     told = _told(first, second)
     if None in totals:
-        return Pair(number, friction, words, tables, (first, second), None, told, "no error is stated")
+        return Pair(number, friction, words, None, told, "no error is stated")
     z = [found.identification.dynamic_stiffness for found in (first, second)]
     apart = abs(z[0] - z[1]) / sum(total * abs(value) for total, value in zip(totals, z, strict=True))
-    return Pair(number, friction, words, tables, (first, second), apart, told)
+    return Pair(number, friction, words, apart, told)
 
 
 def _words(tables: Tables) -> str:
