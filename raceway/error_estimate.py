@@ -44,6 +44,8 @@ _LEAST_STEPS = 8
 _MOST_OF_LIMIT = 0.95
 #: A second run whose step differs by less than this tells nothing.
 _LEAST_RATIO = 1.1
+#: Steps of a run instead of the second one where that one's free vibration hides what the steps change, over those of the first.
+_CLOSER = 2.0 / 3.0
 #: Turns of a second run with more steps, which is shorter so that it costs no more than the first.
 _LEAST_TURNS = 4
 
@@ -156,9 +158,18 @@ def _identification(model: Model, equilibrium: Equilibrium, found: Identificatio
 
 
 def _time_step(
-    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    value: complex,
+    given: int | None = None,
 ) -> tuple[Part, Run | None]:
-    """By a second run with other steps; that one, where other starts are compared with it because it is cheaper than the first."""
+    """By a second run with other steps; that one, where other starts are compared with it because it is cheaper than the first.
+
+    Parameters
+    ----------
+    given : steps a turn of the second run
+    """
     method, first = model.scene.integrator.method, motions[-1][1]
     if getattr(method, "steady", False):
         own = first.whole.counts.get("error")
@@ -171,7 +182,7 @@ def _time_step(
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
     bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
-    other = other_steps(steps, bound)
+    other = given or other_steps(steps, bound)
     turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, other, model.system.ball_count):
         return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), None
@@ -187,6 +198,10 @@ def _time_step(
     clean = [without_free_vibration(model, equilibrium, one) if len(motions) == 1 else None for one in (first, again[-1])]
     if clean[0] is not None and clean[1] is not None:
         fine, coarse = clean[0].value, clean[1].value
+        closer = max(ceil(_CLOSER * steps), ceil(bound))
+        further = given is None and _LEAST_RATIO * other <= closer <= steps / _LEAST_RATIO
+        if further and _hidden(clean[1], fine - coarse, (steps / other) ** method.order - 1.0, value - fine):
+            return _time_step(model, equilibrium, motions, value, closer)
     else:
         coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
     shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
@@ -194,6 +209,21 @@ def _time_step(
         return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness"), second
     words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
     return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift), second
+
+
+def _hidden(clean: Clean, change: complex, powers: float, leakage: complex) -> bool:
+    """Whether the free vibration of a second run hides what its steps change, and that would be the largest error.
+
+    Parameters
+    ----------
+    clean : of the second run;  change : of Z from it to the first [N/m], ``powers`` times the error of the first
+    leakage : in Z of the first [N/m]
+
+    Notes
+    -----
+    Coarse steps leave their orbit by more than their order tells, and vibrate freely about another one.
+    """
+    return clean.halves is not None and clean.halves > abs(change) > powers * abs(leakage)
 
 
 def _sampling(motions: list[tuple[Model, Simulation]], equilibrium: Equilibrium, model: Model, value: complex) -> Part:

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from benchmarks.evidence import error_estimate as single
 from benchmarks.evidence import error_starts as evidence
 from benchmarks.evidence._scenes import rotating
 from benchmarks.evidence.error_estimate import right
@@ -155,3 +156,11 @@ def test_without_a_steady_motion_a_free_vibration_that_a_window_sees_states_no_m
     found, true = _with_and_without_the_steady_motion(monkeypatch, tables)
     assert right(found.error["total"], true), (found.error["total"], true)
     assert found.identification.spread > 5.0 * true
+
+
+def test_a_second_run_that_vibrates_by_more_than_its_steps_change_is_made_with_closer_steps():
+    """Lift-off under 100 N: 180 steps a turn leave the orbit and differ by 150 times what 240 steps do."""
+    (case,) = (one for one in single.CASES if one.name == "lift-off, 100 N, tilt free")
+    estimate, true, _ = single.judge(case)
+    assert right(estimate, true), (estimate, true)
+    assert "240 instead of 360 steps" in run(scene_from_dict(case.tables)).error["how"]["time_step"]
