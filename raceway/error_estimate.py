@@ -8,7 +8,8 @@ the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
 A series of equilibria has no order: see ``finer_series``.
 
 What a transient leaves is the distance from the steady motion (``steady_motion``) where that can be solved for and the
-motion did not start on it, and else what ``free_vibration`` sees.  Step errors are taken from values without it: leakage has no order.
+motion did not start on it, and else what ``free_vibration`` sees; with friction at least the distance from ``other_start``.
+Step errors are taken from values without a transient: leakage has no order.
 
 References
 ----------
@@ -26,12 +27,13 @@ import numpy as np
 from raceway.contact_error import contact_error, is_calibrated
 from raceway.core.identification import Identification
 from raceway.core.system import TOLERANCE
-from raceway.errors import ConvergenceError
+from raceway.errors import ConvergenceError, StabilityError
 from raceway.finer_series import finer_value, more_equilibria
-from raceway.free_vibration import without_free_vibration
+from raceway.free_vibration import Clean, without_free_vibration
 from raceway.misfit import largest_misfit
 from raceway.model import Model
-from raceway.planning.modules import compares_with_steady_motion
+from raceway.other_start import Run, distance
+from raceway.planning.modules import compares_with_steady_motion, remembers_its_start
 from raceway.planning.recording import fits
 from raceway.simulate import Simulation, simulate
 from raceway.statics import Equilibrium, settle
@@ -42,11 +44,15 @@ _LEAST_STEPS = 8
 _MOST_OF_LIMIT = 0.95
 #: A second run whose step differs by less than this tells nothing.
 _LEAST_RATIO = 1.1
+#: Steps of a run instead of the second one where that one's free vibration hides what the steps change, over those of the first.
+_CLOSER = 2.0 / 3.0
 #: Turns of a second run with more steps, which is shorter so that it costs no more than the first.
 _LEAST_TURNS = 4
 
 #: Largest deviation of a turn from all turns over |Z| up to which turns repeat.
 _REPEATS = 1e-2
+#: What an estimate is good to: a factor of so much.
+_RIGHT = 3.0
 
 _NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
 
@@ -85,10 +91,14 @@ def error_table(
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
     else:
-        step = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
+        step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
+        transient = _transient(model, equilibrium, motions, found, step)
+        if remembers_its_start(model.scene) and transient.size is not None:
+            first = motions[-1][1]
+            transient = _from_other_start(model, equilibrium, first, second or Run.of(model, equilibrium, first), transient)
         parts = {
             "time_step": step,
-            "transient": _transient(model, equilibrium, motions, found, step),
+            "transient": transient,
             "identification": _identification(model, equilibrium, found),
         }
     parts["mesh"] = Part(mesh, how["mesh"])
@@ -147,41 +157,73 @@ def _identification(model: Model, equilibrium: Equilibrium, found: Identificatio
     return Part(max(size, found.window), f"largest misfit of K - m w^2 + j w C, over |Z| there: at {rpm:.6g} r/min")
 
 
-def _time_step(model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex) -> Part:
-    """By a second run with other steps."""
+def _time_step(
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    value: complex,
+    given: int | None = None,
+) -> tuple[Part, Run | None]:
+    """By a second run with other steps; that one, where other starts are compared with it because it is cheaper than the first.
+
+    Parameters
+    ----------
+    given : steps a turn of the second run
+    """
     method, first = model.scene.integrator.method, motions[-1][1]
     if getattr(method, "steady", False):
-        return Part(first.whole.counts.get("error"), "the method's own estimate, of the displacement over its amplitude")
+        own = first.whole.counts.get("error")
+        return Part(own, "the method's own estimate, of the displacement over its amplitude"), None
     if model.scene.bodies.kind == "elastic":
-        return Part(None, "not estimated: a second run of all nodes would cost as much as the first")
+        return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), None
     if not method.inertial:
-        return _sampling(motions, equilibrium, model, value)
+        return _sampling(motions, equilibrium, model, value), None
     steps = first.whole.schedule.steps_per_turn
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
     bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
-    other = other_steps(steps, bound)
+    other = given or other_steps(steps, bound)
     turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, other, model.system.ball_count):
-        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit")
+        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), None
     try:
         again = [
             simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, begun=m) for one, m in motions
         ]
     except ConvergenceError as why:
-        return Part(None, f"the run with {other} steps a turn failed: {why}")
+        return Part(None, f"the run with {other} steps a turn failed: {why}"), None
+    second = Run.of(model, equilibrium, again[-1]) if other < steps and remembers_its_start(model.scene) else None
     fine, coarse = value, 0j
     # Several speeds are told apart by the identifier alone.
     clean = [without_free_vibration(model, equilibrium, one) if len(motions) == 1 else None for one in (first, again[-1])]
     if clean[0] is not None and clean[1] is not None:
         fine, coarse = clean[0].value, clean[1].value
+        closer = max(ceil(_CLOSER * steps), ceil(bound))
+        further = given is None and _LEAST_RATIO * other <= closer <= steps / _LEAST_RATIO
+        if further and _hidden(clean[1], fine - coarse, (steps / other) ** method.order - 1.0, value - fine):
+            return _time_step(model, equilibrium, motions, value, closer)
     else:
         coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
     shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
     if not np.isfinite(abs(shift)):
-        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness")
+        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness"), second
     words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
-    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift)
+    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift), second
+
+
+def _hidden(clean: Clean, change: complex, powers: float, leakage: complex) -> bool:
+    """Whether the free vibration of a second run hides what its steps change, and that would be the largest error.
+
+    Parameters
+    ----------
+    clean : of the second run;  change : of Z from it to the first [N/m], ``powers`` times the error of the first
+    leakage : in Z of the first [N/m]
+
+    Notes
+    -----
+    Coarse steps leave their orbit by more than their order tells, and vibrate freely about another one.
+    """
+    return clean.halves is not None and clean.halves > abs(change) > powers * abs(leakage)
 
 
 def _sampling(motions: list[tuple[Model, Simulation]], equilibrium: Equilibrium, model: Model, value: complex) -> Part:
@@ -243,10 +285,46 @@ def _transient(
     if clean is None:
         return Part(None, "a single turn tells nothing of a transient") if found.spread is None else by_turns
     shift = (value - clean.value + clean.lasting) / abs(value)
-    if not simulation.start.settled and (found.spread or 0.0) > abs(shift):
-        # What began on no stable orbit may be on its way from one motion to another.
+    if (found.spread or 0.0) > abs(shift) and _unresolved(model, simulation, clean, abs(shift * value)):
         return by_turns
     return Part(float(abs(shift)), clean.how, shift)
+
+
+def _unresolved(model: Model, simulation: Simulation, clean: Clean, seen: float) -> bool:
+    """Whether the window over the turns may miss a part of the transient.
+
+    Parameters
+    ----------
+    seen : what the window sees [N/m]
+
+    Notes
+    -----
+    What began on no stable orbit may be on its way from one motion to another.  What began on none at all may beat with 1x:
+    then the halves of the turns are further apart than the whole window accounts for.
+    """
+    if not simulation.start.settled:
+        return True
+    if (
+        simulation.start.orbit is not None
+        and model.scene.contact.friction == 0.0
+        and model.scene.contact.law.state_size == 0
+    ):
+        return False
+    if not model.scene.integrator.method.inertial:
+        return False
+    return clean.halves is None or clean.halves > _RIGHT * seen
+
+
+def _from_other_start(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, own: Part) -> Part:
+    """With friction the transient, and how far away another start leads."""
+    words = "friction remembers how the motion began"
+    try:
+        size, kind = distance(model, equilibrium, first, run)
+    except (ConvergenceError, StabilityError) as why:
+        return Part(None, f"{words}, and runs from other starts failed: {why}")
+    if not np.isfinite(size):
+        return Part(None, f"{words}, and start '{kind}' gives no dynamic stiffness")
+    return Part(float((own.size or 0.0) + size), f"{words}: {size:.2g} between this start and '{kind}'; and {own.how}")
 
 
 def _from_steady(settled: complex, value: complex, step: Part) -> Part:

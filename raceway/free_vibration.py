@@ -9,6 +9,9 @@ both is the leakage of the plain one.
 Over a single turn of period T a free vibration f'' = -n^2 f leaves (2 / T) [f' + j w f] / (w^2 - n^2) in the 1x line, the
 bracket being what the turn does not close by.
 
+A free vibration within two lines of 1x, of 1 / turns each, is not told from it by the window: the response beats, and both
+halves of the turns have different lines under it.
+
 A free vibration that goes on shifts the secant stiffness itself.  A force k r (1 + c |r|^2) with a forced circle a and a
 free vibration of mean square b^2 answers at 1x with k (1 + c (a^2 + 2 b^2)) (no other term of |r|^2 r has this frequency):
 with s = 2 b^2 / a^2 the free vibration makes s / (1 + s) of the difference between this secant stiffness and the tangent.
@@ -37,11 +40,17 @@ _LEAST_FREE = 1e-10
 
 @attrs.frozen
 class Clean:
-    """Z without leakage [N/m]; what the free vibration shifts it by, still in it [N/m]; how both were found."""
+    """Z without leakage [N/m]; what the free vibration shifts it by, still in it [N/m]; how both were found.
+
+    Attributes
+    ----------
+    halves : distance of Z of both halves of the turns [N/m]; None below four turns, whose halves are too short for the window
+    """
 
     value: complex
     lasting: complex
     how: str
+    halves: float | None = None
 
 
 def without_free_vibration(model: Model, equilibrium: Equilibrium, simulation: Simulation) -> Clean | None:
@@ -51,14 +60,22 @@ def without_free_vibration(model: Model, equilibrium: Equilibrium, simulation: S
     record, whole = whole_turns(simulation.record), simulation.whole
     per_turn = whole.schedule.steps_per_turn // whole.schedule.stride
     if len(record.time) >= 2 * per_turn:
-        lines = hann_line(record.time, np.hstack([record.force, record.displacement]), model.excitation.frequency_hz)
-        value = stiffness(lines[:5], lines[5:])
+        frequency, samples = model.excitation.frequency_hz, len(record.time)
+        value, half = _windowed(record, slice(None), frequency), samples // per_turn // 2 * per_turn
+        ends = (slice(half), slice(samples - half, None))
+        parts = [_windowed(record, one, frequency) for one in ends] if half >= 2 * per_turn else []
         how = "free vibration: its leakage, a plain against Hann's window over all turns that are used, and its shift of Z"
-        return Clean(value, _lasting(model, equilibrium, record, value), how)
+        return Clean(value, _lasting(model, equilibrium, record, value), how, abs(parts[0] - parts[1]) if parts else None)
     if len(whole.time) <= per_turn or not model.scene.integrator.method.inertial:
         return None
     value = _closed(model, equilibrium, whole, per_turn)
     return Clean(value, 0j, "free vibration that does not close the turn, in the natural modes of the equilibrium")
+
+
+def _windowed(record: Record, part: slice, frequency_hz: float) -> complex:
+    """Z [N/m] of some whole turns under Hann's window."""
+    lines = hann_line(record.time[part], np.hstack([record.force, record.displacement])[part], frequency_hz)
+    return stiffness(lines[:5], lines[5:])
 
 
 def _closed(model: Model, equilibrium: Equilibrium, whole: Record, per_turn: int) -> complex:

@@ -23,6 +23,7 @@ from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.implausible import implausible
 from raceway.misfit import misfit_warnings
 from raceway.model import Model, build_model
+from raceway.other_start import start_warnings
 from raceway.plan import make_plan
 from raceway.plausibility import inertia_warnings, motion_warnings, refuse_impossible
 from raceway.registry import Registry, default_registry
@@ -145,6 +146,7 @@ def _run(
                     *warned,
                     *_unresolved(error),
                     *misfit_warnings(model, error),
+                    *start_warnings(model, error),
                     *series_warnings(identification),
                     *_bodies_warnings(model, equilibrium),
                     *([] if identification is None else inertia_warnings(bodies, error["total"])),

@@ -46,7 +46,7 @@ def chosen_start(model: Model, equilibrium: Equilibrium) -> Start:
     if getattr(method, "steady", False):
         return Start("static")
     kind = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
-    if method.inertial and scene.contact.friction > 0.0:
+    if scene.contact.friction > 0.0:
         begun = _begun(model, equilibrium, kind)
         return attrs.evolve(begun, warnings=(*begun.warnings, _STICKS))
     return _begun(model, equilibrium, kind)

@@ -7,10 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from benchmarks.evidence import error_estimate as single
 from benchmarks.evidence import error_starts as evidence
 from benchmarks.evidence._scenes import rotating
 from benchmarks.evidence.error_estimate import right
-from raceway import scene_from_dict
+from raceway import error_estimate, scene_from_dict
 from raceway.commands.screen.text import number_within
 from raceway.finer_series import more_equilibria
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
@@ -123,3 +124,43 @@ def test_the_error_of_k_is_that_of_z_where_the_inertia_cancels_it():
     k, z = found["identification"], found["identification"]["dynamic_stiffness"]
     assert k["equivalent_stiffness_error"] == pytest.approx(found["error"]["total"] * z["abs"])
     assert k["equivalent_stiffness_error"] > 5.0 * found["error"]["total"] * k["equivalent_stiffness"]
+
+
+def _with_and_without_the_steady_motion(monkeypatch, tables):
+    """A result that knows no steady motion, and its true error."""
+    wanted = run(scene_from_dict({**tables, "integrator": {"kind": "periodic"}})).identification.dynamic_stiffness
+    monkeypatch.setattr(error_estimate, "settled_value", lambda *_: None)
+    found = run(scene_from_dict(tables))
+    return found, abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
+
+
+def test_without_a_steady_motion_a_beat_that_no_window_tells_from_1x_states_what_turns_differ_by(monkeypatch):
+    """33 100 r/min lie within a line of the radial natural frequency: Hann's window sees 0.05 of an error of 0.3."""
+    tables = {
+        "bearing": {"preset": "7206A"},
+        "rotor": {"mass": 0.4},
+        "load": {"axial": 140.0},
+        "contact": {"damping": 300.0},
+        "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 5.7, "speed_rpm": 33100.0},
+        "integrator": {"kind": "newmark", "start": "ramp"},
+    }
+    found, true = _with_and_without_the_steady_motion(monkeypatch, tables)
+    assert true > 0.2 and right(found.error["total"], true), (found.error["total"], true)
+    assert found.error["transient"] >= found.identification.spread
+
+
+def test_without_a_steady_motion_a_free_vibration_that_a_window_sees_states_no_more_than_that(monkeypatch):
+    """The single turns differ by many times what all of them are off by."""
+    tables = rotating(1000.0, "locked", 12000.0, False, "newmark")
+    tables["integrator"] |= {"steps_per_turn": 180, "start": "static", "turns": 60}
+    found, true = _with_and_without_the_steady_motion(monkeypatch, tables)
+    assert right(found.error["total"], true), (found.error["total"], true)
+    assert found.identification.spread > 5.0 * true
+
+
+def test_a_second_run_that_vibrates_by_more_than_its_steps_change_is_made_with_closer_steps():
+    """Lift-off under 100 N: 180 steps a turn leave the orbit and differ by 150 times what 240 steps do."""
+    (case,) = (one for one in single.CASES if one.name == "lift-off, 100 N, tilt free")
+    estimate, true, _ = single.judge(case)
+    assert right(estimate, true), (estimate, true)
+    assert "240 instead of 360 steps" in run(scene_from_dict(case.tables)).error["how"]["time_step"]

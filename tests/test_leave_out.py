@@ -45,6 +45,7 @@ SCENES = {
     "inertial balls, Newmark": (),
     "weightless balls, explicit": ("kinematics.spin_speed_rpm=0", "integrator.kind=central_difference"),
     "friction": ("contact.friction=0.1", "integrator.turns=2"),
+    "friction under a growing force": ("contact.friction=0.1", "integrator.turns=3", "integrator.start=ramp"),
     "equilibria with friction": ("contact.friction=0.1", "integrator.kind=quasi_static", "integrator.turns=1"),
     "equilibria, penalty": ("contact.kind=penalty", "integrator.kind=quasi_static"),
     "steady orbit": ("integrator.kind=periodic",),

@@ -16,7 +16,7 @@ AREAS = {
         core/lines core/orbit core/record core/start core/states plugins/excitations plugins/identifiers motion run simulate starting
         data/forces""",
     "periodic": "core/periodic integrators/periodic steady_motion",
-    "errors": "contact_error error_estimate finer_series free_vibration misfit plausibility series_error",
+    "errors": "contact_error error_estimate finer_series free_vibration misfit other_start plausibility series_error",
     "condensed": """
         core/condensed core/half_space core/sphere core/bodies/between core/bodies/condensed_inertial core/bodies/condensed_tangential
         core/bodies/condensed_weightless core/bodies/structural core/bodies/structural_rows bodies/calibration_error bodies/condensed bodies/inertia

@@ -7,6 +7,7 @@ from math import pi
 import attrs
 
 from raceway.planning.elastic import ElasticCost, words
+from raceway.planning.modules import remembers_its_start
 from raceway.planning.parts import Decisions
 from raceway.planning.patches import PatchCost
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
@@ -149,6 +150,9 @@ def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -
         what = "the steady motion" if steady else "a series of equilibria without memory"
         parts.leave_out(f"{turns - 1} of {turns} turns", f"{what} repeats itself every turn")
         turns = 1
+    why = "friction: the answer depends on how the motion began, the error is how far"
+    why_not = "contact.friction is 0" if not friction else "the transient of this scene is not estimated"
+    parts.decide(remembers_its_start(scene), "run from another start", why, why_not)
     return Motion(True, turns, predicted_steps_per_turn(scene))
 
 

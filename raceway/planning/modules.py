@@ -108,6 +108,7 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
         rubs = integrates and method == "quasi_static" and balls == "tangential"
         decide(rubs, f"{_LOOPS}.quasi_static_tangential", no_potential, f"{unused}, the balls are {balls}")
     searched = method == "periodic" or searches_orbits(scene) or compares_with_steady_motion(scene)
+    searched = searched or (remembers_its_start(scene) and _has_orbits(scene))
     unused = unused if not integrates else f"{unused}, no steady orbit is searched for"
     decide(integrates and searched, "raceway.core.periodic", "steady orbits and their multipliers", unused)
     mesher = getattr(scene.mesh, "name", None) if kind != "rigid" else None
@@ -120,13 +121,32 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
 
 def searches_orbits(scene: Scene) -> bool:
     """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
-    integrator, excitation, contact = scene.integrator, scene.excitation, scene.contact
-    if excitation is None or getattr(integrator.method, "steady", False) or not integrator.method.inertial:
+    ramped = getattr(scene.excitation, "ramp_turns", 0.0) > 0.0
+    return scene.integrator.start == "orbit" and not ramped and _has_orbits(scene)
+
+
+def _has_orbits(scene: Scene) -> bool:
+    """Whether steady orbits of a transient, or of it without friction, can be searched for."""
+    method, excitation, contact = scene.integrator.method, scene.excitation, scene.contact
+    if excitation is None or getattr(method, "steady", False) or not method.inertial:
         return False
-    on_orbit = integrator.start == "orbit" and not getattr(excitation, "ramp_turns", 0.0) > 0.0
     repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
     compiled = scene.bodies.kind != "elastic" and contact.discretisation != "nodal"
-    return on_orbit and repeats and compiled and contact.law.state_size == 0
+    return repeats and compiled and contact.law.state_size == 0
+
+
+def remembers_its_start(scene: Scene) -> bool:
+    """Whether the answer depends on how the motion began, and a second run tells how far.
+
+    Notes
+    -----
+    With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
+    fits over several speeds no transient is estimated: a second run of them would tell nothing more.
+    """
+    if scene.excitation is None or scene.contact.friction == 0.0 or scene.bodies.kind == "elastic":
+        return False
+    needs = scene.identifier.method.needs
+    return "record" in needs and "speeds" not in needs
 
 
 def compares_with_steady_motion(scene: Scene) -> bool:

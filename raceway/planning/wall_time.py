@@ -10,6 +10,7 @@ import attrs
 
 from raceway.planning.decisions import Balls, Motion
 from raceway.planning.elastic import ElasticCost
+from raceway.planning.modules import remembers_its_start
 from raceway.planning.patches import PatchCost
 from raceway.planning.recording import recorded_per_turn
 from raceway.planning.sections import section_cost
@@ -23,6 +24,8 @@ _CONDENSED_STEP_S = {"weightless": 10.0e-6, "inertial": 11.0e-6, "tangential": 2
 _BETWEEN_S = 40.0e-6
 #: An equilibrium of a series, over a step in time.
 _EQUILIBRIUM = 6.0
+#: Steps of a run and its second one with half as many, and those with a third one from another start, over the first two.
+_WITH_HALF, _FROM_ANOTHER_START = 1.5, 4.0 / 3.0
 #: A sample of the record: lines, energies and extremes of 12 balls.
 _SAMPLE_S, _CONDENSED_SAMPLE_S = 8.0e-6, 14.0e-6
 #: A step in which the speed changes: one call from Python each.
@@ -42,6 +45,7 @@ def predicted_work(
     """Processor time of a run on the reference machine [s], compiled kernels in the cache, deforming bodies not."""
     count = scene.bearing.ball_count * len(scene.bearing.rows)
     steps = motion.turns * motion.steps_per_turn
+    again = _FROM_ANOTHER_START if motion.recorded and remembers_its_start(scene) else 1.0
     if elastic is not None:
         before = elastic.equilibrium_s + (elastic.start_s if motion.recorded else 0.0)
         if scene.contact.discretisation == "resultant":  # calibrated as the bearing's own condensed rings
@@ -52,10 +56,10 @@ def predicted_work(
         return work
     method, condensed = scene.integrator.method, scene.bodies.kind == "condensed"
     if patches is not None:
-        return work + 1.5 * steps * patches.step_s
+        return work + _WITH_HALF * again * steps * patches.step_s
     each = (_CONDENSED_STEP_S if condensed else _STEP_S)[balls.kind]
     each += _BETWEEN_S * (scene.bearing.ball_count / 12.0) ** 2 if condensed and coupled else 0.0
-    each *= count / 12.0 * (1.0 if method.implicit else _EXPLICIT) * (1.0 if method.inertial else _EQUILIBRIUM)
+    each *= again * count / 12.0 * (1.0 if method.implicit else _EXPLICIT) * (1.0 if method.inertial else _EQUILIBRIUM)
     if getattr(scene.excitation, "first_speed_rpm", None) is not None:
         each += _CHANGING_S
     sample = count / 12.0 * (_CONDENSED_SAMPLE_S if condensed else _SAMPLE_S)
@@ -69,7 +73,7 @@ def _orbits(scene: Scene) -> float:
     if excitation is None or not scene.integrator.method.inertial:
         return 0.0
     searched = scene.supports.tilt != "locked" and excitation.sense == 0
-    searched = searched and excitation.amplitude_n > _SEARCH_FROM * load and scene.contact.friction == 0.0
+    searched = searched and excitation.amplitude_n > _SEARCH_FROM * load
     factor = _CONDENSED_SEARCH if scene.bodies.kind == "condensed" else 1.0
     return factor * (_SEARCH_S if searched else _ORBIT_S)
 

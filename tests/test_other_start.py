@@ -1,0 +1,118 @@
+"""With friction an answer depends on how the motion began: the stated error covers what another start gives."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from types import SimpleNamespace
+
+import attrs
+import pytest
+
+from raceway import other_start, scene_from_dict
+from raceway.error_estimate import _unresolved
+from raceway.errors import ConvergenceError
+from raceway.free_vibration import Clean
+from raceway.plan import make_plan
+from raceway.run import run
+
+
+def rubbing(start="ramp", friction=0.3, kind="newmark", **tables):
+    """B7206C, 1000 N and a rig's unbalance, tilt free: contacts that stick carry a share of the force."""
+    return {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": 1000.0},
+        "supports": {"tilt": "free"},
+        "rotor": {"mass": 2.0, "transverse_inertia": 1e-3},
+        "excitation": {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3.2e-4},
+        "contact": {"damping": 10.0, "friction": friction},
+        "integrator": {"kind": kind, "start": start, "turns": 20, "steps_per_turn": 180},
+        **tables,
+    }
+
+
+def solved(*words, **tables):
+    return run(scene_from_dict(rubbing(*words, **tables)))
+
+
+@pytest.mark.parametrize(("kind", "friction"), [("newmark", 0.3), ("newmark", 0.03), ("quasi_static", 0.3)])
+def test_the_stated_errors_cover_what_another_start_gives(kind, friction):
+    """At 0.3 the ramp's turns repeat to 1e-9 and its step is good to 1e-6; the orbit's K is 1 % higher."""
+    found = {start: solved(start, friction, kind) for start in ("orbit", "ramp", "static")}
+    z = {start: one.identification.dynamic_stiffness for start, one in found.items()}
+    error = {start: one.error["total"] * abs(z[start]) for start, one in found.items()}
+    assert max(abs(z[a] - z[b]) for a, b in combinations(z, 2)) > 1e-3 * abs(z["ramp"])
+    for a, b in combinations(z, 2):
+        assert abs(z[a] - z[b]) <= 1.01 * (error[a] + error[b]), (a, b)
+    # Not the free vibration of the other run, which is its own error.
+    assert found["ramp"].error["total"] < 0.05
+    for one in found.values():
+        assert "remembers how the motion began" in one.error["how"]["transient"]
+        assert any("depends on how the motion began" in text for text in one.warnings)
+
+
+def test_without_another_start_no_error_is_stated(monkeypatch):
+    def none(*_, **__):
+        raise ConvergenceError("no step is found")
+
+    monkeypatch.setattr(other_start, "simulate", none)
+    found = solved()
+    assert found.error["transient"] is None and found.error["total"] is None
+    assert any("how far the answer depends on the motion's start is not known" in text for text in found.warnings)
+    assert any("no step is found" in text for text in found.warnings)
+
+
+def test_the_next_start_stands_in_for_one_that_fails(monkeypatch):
+    tried = []
+
+    def some(model, *args, **words):
+        tried.append(model.scene.integrator.start)
+        if tried[-1] == "orbit":
+            raise ConvergenceError("no step is found")
+        return simulate(model, *args, **words)
+
+    simulate = other_start.simulate
+    monkeypatch.setattr(other_start, "simulate", some)
+    assert solved().error["total"] > 1e-3 and tried == ["orbit", "static"]
+
+
+def test_a_force_that_grows_by_itself_is_compared_with_the_orbit():
+    tables = rubbing("orbit")
+    tables["excitation"] |= {"ramp_turns": 10.0}
+    found = run(scene_from_dict(tables))
+    assert found.simulation.start.kind == "ramp" and "and 'orbit'" in found.error["how"]["transient"]
+    assert found.error["total"] > 1e-3
+
+
+def test_the_plan_tells_the_run_from_another_start_and_its_time():
+    def planned(turns, **contact):
+        tables = rubbing()
+        tables["integrator"] |= {"turns": turns}
+        tables["contact"] |= contact
+        return make_plan(scene_from_dict({**tables, "kinematics": {"gyroscopic": "outer_race"}}))
+
+    part = "run from another start"
+    assert part in [one.part for one in planned(20).kept]
+    assert part in [one.part for one in planned(20, friction=0.0).left_out]
+    # Gyroscopic moments ask for the same kernels; 100 turns more, without what is the same for all.
+    each = [planned(120, friction=mu).predicted_work_s - planned(20, friction=mu).predicted_work_s for mu in (0.3, 0.0)]
+    assert each[0] > 1.2 * each[1]
+
+
+def test_fits_over_speeds_do_not_ask_for_another_start():
+    tables = rubbing(identifier={"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0]})
+    assert "run from another start" in [one.part for one in make_plan(scene_from_dict(tables)).left_out]
+
+
+def test_a_window_whose_halves_differ_by_more_than_it_sees_is_not_believed():
+    """Under a free vibration within two lines of 1x the response beats, and one window sees a mean of it."""
+    scene = scene_from_dict(rubbing())
+
+    def unresolved(halves, orbit=None, settled=True, friction=0.3):
+        scene_of = attrs.evolve(scene, contact=attrs.evolve(scene.contact, friction=friction))
+        simulation = SimpleNamespace(start=SimpleNamespace(orbit=orbit, settled=settled))
+        return _unresolved(SimpleNamespace(scene=scene_of), simulation, Clean(1.0, 0j, "", halves), 1.0)
+
+    assert unresolved(4.0) and unresolved(None) and not unresolved(2.0)
+    assert unresolved(4.0, orbit=object()), "with friction the orbit of the start is none"
+    assert not unresolved(4.0, orbit=object(), friction=0.0), "it began on its steady orbit"
+    assert unresolved(0.0, orbit=object(), settled=False, friction=0.0), "an unstable one"
