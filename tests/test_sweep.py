@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import resource
 import signal
@@ -9,6 +10,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing, suppress
 from typing import Any
 
 import attrs
@@ -276,6 +278,63 @@ def test_a_damaged_row_is_computed_again(case, tmp_path):
         assert swept(tmp_path / "s", design, resume=True) == whole
 
 
+def test_a_damaged_row_inside_a_chain_of_neighbours_has_the_same_bits_again(tmp_path):
+    """Computed alone it would begin from the equilibrium, not from its neighbour's motion."""
+    design = grid(["excitation.speed_rpm=10980:15000:48"])
+    whole = swept(tmp_path / "s", design)
+    with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
+        file.execute("UPDATE points SET content = replace(content, '1', '2') WHERE number % 3 = 1")
+    with pytest.warns(UserWarning, match="16 rows of the store are damaged"):
+        assert swept(tmp_path / "s", design, resume=True) == whole
+
+
+def test_a_missing_row_does_not_move_the_values_of_the_others(tmp_path):
+    """Values are labelled by their place among the rows."""
+    swept(tmp_path / "s", grid(["load.axial=500,600,700,800"]))
+    with open_store(tmp_path / "s") as store:
+        whole = store.to_xarray()["z_real"].values
+    with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
+        file.execute("DELETE FROM points WHERE number = 1")
+    with open_store(tmp_path / "s") as store:
+        found = store.to_xarray()["z_real"].values
+    assert np.isnan(found[1]) and (found[[0, 2, 3]] == whole[[0, 2, 3]]).all()
+
+
+def test_pages_that_were_swapped_are_told(tmp_path):
+    """Each row is sound, but found at another place, or by one way and not by another."""
+    design = grid(["excitation.speed_rpm=12000:13000:12"])
+    swept(tmp_path / "s", design)
+    with open_store(tmp_path / "s") as store:
+        whole = store.to_xarray()["z_real"].values
+    path = tmp_path / "s" / "points.sqlite"
+    content, seen = path.read_bytes(), 0
+    pages = [content[k : k + 4096] for k in range(0, len(content), 4096)]
+    for i, j in itertools.combinations(range(3, len(pages)), 2):
+        swapped = list(pages)
+        swapped[i], swapped[j] = pages[j], pages[i]
+        path.write_bytes(b"".join(swapped))
+        with pytest.raises(RacewayError, match="Begin again|choose another folder"):
+            swept(tmp_path / "s", design, resume=True)
+        with suppress(RacewayError), open_store(tmp_path / "s") as store:
+            found = store.to_xarray()["z_real"].values
+            assert (np.isnan(found) | (found == whole)).all()
+            seen += 1
+    assert seen > 3
+
+
+def test_rows_of_another_store_are_computed_again(tmp_path):
+    """Whole, each at its number, with its digest: they are another load's."""
+    design = grid(["excitation.speed_rpm=12000,13000"])
+    whole = swept(tmp_path / "s", design)
+    swept(tmp_path / "other", design, tables={**SCENE, "load": {"axial": 900.0}})
+    with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
+        file.execute("ATTACH ? AS other", (str(tmp_path / "other" / "points.sqlite"),))
+        file.execute("UPDATE points SET (content, key, cost, digest) = "
+                     "(SELECT content, key, cost, digest FROM other.points AS there WHERE there.number = points.number)")  # fmt: skip
+    with pytest.warns(UserWarning, match="2 rows of the store are damaged"):
+        assert swept(tmp_path / "s", design, resume=True) == whole
+
+
 def test_damaged_facts_are_refused(tmp_path):
     design = grid(["load.axial=500,600"])
     swept(tmp_path / "s", design)
@@ -330,6 +389,7 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
         prepare(SCENE, grid(["load.axial=500,600,700"]), tmp_path / "s", resume=True)
     with pytest.raises(RacewayError, match=r"another sweep \(rotor.mass = 2, 3 here, no axis there\)"):
         prepare(SCENE, grid(["load.axial=500,600", "rotor.mass=2,3"]), tmp_path / "s", resume=True)
+    assert rows_of(tmp_path / "s") == whole
     file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
     with file:
         (text,) = file.execute("SELECT value FROM facts WHERE name = 'identity'").fetchone()
@@ -338,9 +398,10 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
         texts = dict(file.execute("SELECT name, value FROM facts").fetchall())
         file.execute("UPDATE facts SET value = ? WHERE name = 'digest'", (json.dumps(facts_digest(texts)),))
     file.close()
+    before = (tmp_path / "s" / "points.sqlite").read_bytes()
     with pytest.raises(RacewayError, match=r"another version \(raceway 0.1.0 instead of 0.0.9\)"):
         prepare(SCENE, design, tmp_path / "s", resume=True)
-    assert rows_of(tmp_path / "s") == whole
+    assert (tmp_path / "s" / "points.sqlite").read_bytes() == before
     (tmp_path / "strange").mkdir()
     (tmp_path / "strange" / "points.sqlite").write_text("not a data base at all, " * 50)
     with pytest.raises(RacewayError, match="is not a store of a sweep"):

@@ -131,12 +131,14 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
             for number, chain in enumerate(chains):
                 left = [n for n in chain if n in waiting]
                 store.mark(left, "running")
-                yield number, [(n, design.point(n)) for n in left]
+                # Each begins from the one before it: those before the last that waits are computed too, for the same bits.
+                yield number, [(n, design.point(n)) for n in chain[: chain.index(left[-1]) + 1]]
 
         answers = executor.compute(work, batches())
         try:
             for number, answer in answers:
-                rows = _rows(answer, [n for n in chains[number] if n in waiting])
+                left = [n for n in chains[number] if n in waiting]
+                rows = [row for row in _rows(answer, left) if row["number"] in waiting]
                 store.put(rows)
                 done += len(rows)
                 if on_progress is not None:

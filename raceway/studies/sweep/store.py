@@ -25,7 +25,7 @@ from raceway.studies.sweep.design import Design
 if TYPE_CHECKING:
     import xarray
 
-SCHEMA = 3
+SCHEMA = 4
 STATES = ("waiting", "running", "done", "failed")
 #: A commit waits for the disk, twice: states of what is running are not worth more than a few of them a second.
 _MOMENT_S = 0.2
@@ -64,7 +64,8 @@ class Store:
             raise RacewayError(
                 f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
             )
-        if found and self.facts.pop("digest", None) != facts_digest(dict(found)):
+        self._origin = facts_digest(dict(found))
+        if found and self.facts.pop("digest", None) != self._origin:
             raise _damaged(path)
         self.design = Design.from_dict(self.facts["design"])
 
@@ -98,7 +99,22 @@ class Store:
         return {**{state: found.get(state, 0) for state in STATES}, "total": self.design.size}
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """``{point, status, reason, values, warnings, key, cost}`` of every point, in the order of the design."""
+        """``{point, status, reason, values, warnings, key, cost}`` of every point, in the order of the design.
+
+        One row a point, whatever the file says: readers put the values of the n-th row at the n-th point.
+        """
+        at = 0
+        for number, *rest, digest in self._lines():
+            if not at <= number < self.design.size:
+                continue
+            for missing in range(at, number):
+                yield self._row(missing, None)
+            yield self._row(number, rest if self._sound(number, rest[0], tuple(rest[1:]), digest) else None)
+            at = number + 1
+        for missing in range(at, self.design.size):
+            yield self._row(missing, None)
+
+    def _lines(self) -> Iterator[tuple[Any, ...]]:
         asked = f"SELECT number, {_CONTENT}, digest FROM points ORDER BY number"
         with self._told(), self._lock:
             cursor = self._connection.execute(asked)
@@ -107,21 +123,21 @@ class Store:
                 some = cursor.fetchmany(256)
             if not some:
                 return
-            for number, state, reason, key, content, warnings, cost, digest in some:
-                if not 0 <= number < self.design.size:
-                    continue
-                if not _sound(number, state, (reason, key, content, warnings, cost), digest):
-                    yield {**_EMPTY, "point": self.design.point(number)}
-                    continue
-                yield {
-                    "point": self.design.point(number),
-                    "status": state,
-                    "reason": reason or "",
-                    "values": json.loads(content) if content else {},
-                    "warnings": json.loads(warnings) if warnings else [],
-                    "key": key or "",
-                    "cost": json.loads(cost) if cost else {},
-                }
+            yield from some
+
+    def _row(self, number: int, stored: list[Any] | None) -> dict[str, Any]:
+        if stored is None:
+            return {**_EMPTY, "point": self.design.point(number)}
+        state, reason, key, content, warnings, cost = stored
+        return {
+            "point": self.design.point(number),
+            "status": state,
+            "reason": reason or "",
+            "values": json.loads(content) if content else {},
+            "warnings": json.loads(warnings) if warnings else [],
+            "key": key or "",
+            "cost": json.loads(cost) if cost else {},
+        }
 
     def numbers(self, state: str) -> set[int]:
         """Numbers of the points in a state."""
@@ -156,7 +172,7 @@ class Store:
         lines = []
         for row in rows:
             rest = (row["reason"], row["key"], *(_text(row[name]) for name in ("values", "warnings", "cost")))
-            lines.append((row["state"], *rest, _digest(row["number"], row["state"], rest), row["number"]))
+            lines.append((row["state"], *rest, self._digest(row["number"], row["state"], rest), row["number"]))
         asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, warnings = ?, cost = ?, digest = ? WHERE number = ?"
         with self._told(), self._lock:
             try:
@@ -167,10 +183,18 @@ class Store:
                 raise
 
     def repair(self) -> set[int]:
-        """Let points wait whose rows are missing or are not what was written; their numbers."""
+        """Let points wait whose rows are missing or are not what was written; their numbers.
+
+        Raises
+        ------
+        RacewayError
+            A file whose pages do not hang together: rows could be found by one way and not by another.
+        """
         with self._told(), self._lock:
+            if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
+                raise _damaged(self.path, "its pages do not hang together")
             found = self._connection.execute(f"SELECT number, {_CONTENT}, digest FROM points").fetchall()
-            sound = {number for number, state, *rest, digest in found if _sound(number, state, tuple(rest), digest)}
+            sound = {number for number, state, *rest, digest in found if self._sound(number, state, tuple(rest), digest)}
             bad = set(range(self.design.size)) - sound
             if bad or len(found) != self.design.size:
                 self._connection.execute("DELETE FROM points WHERE number < 0 OR number >= ?", (self.design.size,))
@@ -185,6 +209,16 @@ class Store:
             for state in states:
                 self._connection.execute("UPDATE points SET state = 'waiting', reason = NULL WHERE state = ?", (state,))
             self._commit()
+
+    def _digest(self, number: int, state: str, rest: tuple[Any, ...]) -> str:
+        """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
+        return hashlib.blake2b(repr((self._origin, number, state, *rest)).encode(), digest_size=16).hexdigest()
+
+    def _sound(self, number: int, state: Any, rest: tuple[Any, ...], digest: Any) -> bool:
+        """Whether a row says what was written: finished ones have a digest, the others a state alone."""
+        if state in ("waiting", "running"):
+            return True
+        return state in STATES and bool(digest == self._digest(number, state, rest))
 
     @contextmanager
     def _told(self) -> Iterator[None]:
@@ -308,23 +342,8 @@ def _read_facts(folder: Path, texts: Mapping[str, str]) -> dict[str, Any]:
         raise _damaged(folder) from None
 
 
-def _damaged(folder: Path) -> RacewayError:
-    return RacewayError(
-        f"`{folder / POINTS}` is damaged: what it says of its scene and design is not what was written. Begin again in another "
-        "folder with --out"
-    )
-
-
-def _digest(number: int, state: str, rest: tuple[Any, ...]) -> str:
-    """Of a finished row as it stands in the file."""
-    return hashlib.blake2b(repr((number, state, *rest)).encode(), digest_size=16).hexdigest()
-
-
-def _sound(number: int, state: Any, rest: tuple[Any, ...], digest: Any) -> bool:
-    """Whether a row says what was written: finished ones have a digest, the others a state alone."""
-    if state in ("waiting", "running"):
-        return True
-    return state in STATES and bool(digest == _digest(number, state, rest))
+def _damaged(folder: Path, how: str = "what it says of its scene and design is not what was written") -> RacewayError:
+    return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
 
 
 def _text(value: Any) -> str:
