@@ -24,6 +24,7 @@ from raceway.scene_file import load_scene, read_toml, scene_from_dict, with_valu
 from raceway.studies.points import tables_at
 from raceway.studies.sweep import grid, open_store, prepare
 from raceway.studies.sweep import sweep as study
+from tests.sessions import left
 
 SCENE = Path(__file__).parents[1] / "examples" / "b7206.toml"
 #: A machine whose processors are busier than this with other programs is not quiet.
@@ -126,7 +127,7 @@ def killed(times: int = 20, count: int = 120, seed: int = 8) -> dict[str, int]:
                 seen = _until(store, process, draw.randint(1, count - 1))
                 process.kill()
             found["killed"] += process.returncode == -signal.SIGKILL
-            found["orphans"] += _left(process.pid)
+            found["orphans"] += len(left(process.pid))
             try:
                 with open_store(store) as there:
                     found["lost"] += there.status()["done"] < seen
@@ -185,7 +186,7 @@ def interrupted(count: int = 600) -> dict[str, Any]:
             code = process.wait(120)
         there = (store / "results.nc").is_file()
         _finish([*words(count, store), "--resume"])
-        return {"code": code, "results": there, "equal": rows_of(store) == rows_of(whole), "orphans": _left(process.pid)}
+        return {"code": code, "results": there, "equal": rows_of(store) == rows_of(whole), "orphans": len(left(process.pid))}
 
 
 def continuation(count: int = 100) -> dict[str, dict[str, float]]:
@@ -256,23 +257,6 @@ def _until(store: Path, process: subprocess.Popen[bytes], wanted: int) -> int:
             except RacewayError:
                 continue  # it is being made
     return done
-
-
-def _left(group: int, patience: float = 5.0) -> int:
-    """Processes of a group that are alive after some time."""
-    end = time.monotonic() + patience
-    while True:
-        living = [p for p in Path("/proc").glob("[0-9]*") if _group_of(p) == group]
-        if not living or time.monotonic() > end:
-            return len(living)
-        time.sleep(0.2)
-
-
-def _group_of(process: Path) -> int:
-    try:
-        return int((process / "stat").read_text().rpartition(")")[2].split()[2])
-    except (OSError, ValueError, IndexError):
-        return -1
 
 
 def main(names: list[str]) -> None:

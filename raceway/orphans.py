@@ -1,10 +1,13 @@
-"""Worker processes that end when the process that they work for is gone: a kill gives it no time to end them."""
+"""Worker processes end with the process that they work for, when it is killed, and by its word alone, when it is asked to end."""
 
 from __future__ import annotations
 
 import os
+import signal
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 #: Name of the thread that looks, and how often it does [s].
 WATCH, _WATCH_S = "end with parent", 1.0
@@ -24,3 +27,18 @@ def end_with(parent: int) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, name=WATCH, daemon=True).start()
+
+
+@contextmanager
+def deaf_to_terminals() -> Iterator[None]:
+    """Threads and processes that are started meanwhile do not hear Ctrl-C and SIGHUP, which a terminal sends to all.
+
+    Notes
+    -----
+    They inherit what is blocked.  What arrives here meanwhile is delivered afterwards.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

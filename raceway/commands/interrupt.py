@@ -24,8 +24,9 @@ _AGAIN_S = 0.05
 _LEAVING_S = 3.0
 #: Time in which a supervisor that asks again is not heard [s].
 _ORDER_S = 5.0
-#: llvmlite's callbacks, finalizers, and weak references' callbacks by their file.
+#: llvmlite's callbacks, finalizers, weak references' callbacks by their file, and those of the locks of imports.
 _CALLBACKS, _FINALIZER, _WEAK = "_raw_object_cache", "__del__", "weakref.py"
+_IMPORTS = ("<frozen importlib._bootstrap>", "cb")
 #: What ends a command in order, and what Python does about it when nobody asked for anything else.
 _ENDING = {
     signal.SIGINT: signal.default_int_handler,
@@ -137,6 +138,8 @@ def drops_exceptions(frame: FrameType | None) -> bool:
     while frame is not None:
         code = frame.f_code
         if code.co_name == _FINALIZER or code.co_name.startswith(_CALLBACKS) or code.co_filename.endswith(_WEAK):
+            return True
+        if (code.co_filename, code.co_name) == _IMPORTS:
             return True
         frame = frame.f_back
     return False

@@ -15,6 +15,7 @@ import attrs
 from raceway.contracts import Lost, Refused
 from raceway.errors import PluginError, extra
 from raceway.options import between, inside, option, optional
+from raceway.orphans import deaf_to_terminals
 
 if TYPE_CHECKING:
     from raceway.contracts import Batch
@@ -61,8 +62,11 @@ class Dask:
         except ImportError as why:
             raise PluginError(f"executor 'dask' needs dask.distributed: {extra('sweep')} ({why})") from None
         if self.scheduler is None:
-            options = {"processes": True, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
-            with LocalCluster(n_workers=self.workers, **options) as cluster, Client(cluster) as client:
+            # None would be a fixed port, with a warning where another cluster has it.
+            options = {"processes": True, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
+            with deaf_to_terminals():
+                local = LocalCluster(n_workers=self.workers, **options)
+            with local as cluster, Client(cluster) as client:
                 yield client
             return
         try:

@@ -12,7 +12,7 @@ import attrs
 from raceway.contracts import Lost
 from raceway.errors import PluginError, extra
 from raceway.options import between, option
-from raceway.orphans import end_with
+from raceway.orphans import deaf_to_terminals, end_with
 
 if TYPE_CHECKING:
     from raceway.contracts import Batch
@@ -35,9 +35,12 @@ class Joblib:
     def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
         try:
             from joblib.externals.loky import get_reusable_executor
+            from joblib.externals.loky.backend.resource_tracker import ensure_running
             from joblib.externals.loky.process_executor import TerminatedWorkerError
         except ImportError as why:
             raise PluginError(f"executor 'joblib' needs joblib: {extra('sweep')} ({why})") from None
+        with deaf_to_terminals():  # the process that clears up behind the workers must outlive them
+            ensure_running()
         left, flying = iter(batches), dict[int, list[Any]]()
 
         def taken() -> Iterator[Batch]:
