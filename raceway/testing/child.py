@@ -15,6 +15,8 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
+from importlib import import_module
 from typing import Any
 
 #: Time [s] that a duty may take on busy cores, compiling too, and memory [bytes] that it may take beyond what is there.
@@ -37,6 +39,7 @@ def apart(work: Callable[[], Any]) -> Any:
     Died
         It ended by a signal or an exit of its own, or was stopped.
     """
+    _import_compiler()
     sys.stdout.flush()
     sys.stderr.flush()
     reader, writer = os.pipe()
@@ -65,6 +68,13 @@ def apart(work: Callable[[], Any]) -> Any:
     if good:
         return found
     raise found
+
+
+@cache
+def _import_compiler() -> None:
+    """Once for all children, with the smallest kernels: most duties take less time than that."""
+    for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.run", "raceway.core.contact_laws.power"):
+        import_module(name)
 
 
 def _serve(work: Callable[[], Any], writer: int) -> None:
