@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-import time
 import warnings
 
 import attrs
@@ -79,10 +78,9 @@ def test_a_scheduler_that_does_not_answer(tmp_path, listens):
         address = f"tcp://127.0.0.1:{door.getsockname()[1]}"
         if listens:
             door.listen()
-        start = time.monotonic()
+        # That the patience is kept in seconds is a row of ``python -m benchmarks.evidence dask``.
         with pytest.raises(PluginError) as told:
             sweep(prepared(tmp_path / "store"), Dask(scheduler=address, patience=1.0))
-    assert time.monotonic() - start < 30.0  # a bound on a busy machine; the patience is 1 s
     assert f"no dask scheduler answers at `{address}` within 1 s" in str(told.value)
     assert "dask scheduler" in str(told.value) and ": ." not in str(told.value)  # every failure has a word
 

@@ -6,7 +6,7 @@ from collections import Counter
 
 from benchmarks.evidence._random_scenes import FAILED, FINISHED, REFUSED, try_scenes
 
-COUNT = 200
+COUNT = 100
 
 
 def test_every_scene_ends_in_a_result_or_a_message():
