@@ -9,6 +9,7 @@ import pytest
 
 from raceway import array_cache
 from raceway.bodies import condensed
+from raceway.core.condensed import calibration
 from raceway.core.revolution.body import seat_areas
 from raceway.errors import SceneError
 from raceway.model import build_model
@@ -100,9 +101,16 @@ def test_the_mesh_error_bounds_what_a_finer_mesh_changes(size, along):
     assert change < case.bodies.mesh_error(case, found)[0] < 10.0 * change
 
 
-def test_second_use_of_a_geometry_takes_compliances_from_the_cache(monkeypatch, tmp_path):
+@pytest.fixture
+def made_anew(monkeypatch):
+    """Bodies that no other test computed in this process, calibrated on few points: half of what they take otherwise."""
+    monkeypatch.setattr(condensed, "_BODIES", {})
+    monkeypatch.setattr(calibration, "POINTS", (2, 4))
+    monkeypatch.setattr(calibration, "LOADS", np.linspace(0.4, 1.6, 5))
+
+
+def test_second_use_of_a_geometry_takes_compliances_from_the_cache(made_anew, monkeypatch, tmp_path):
     made = []
-    monkeypatch.setattr(condensed, "_BODIES", {})  # what other tests computed in this process
     monkeypatch.setattr(array_cache, "folder", lambda: tmp_path)
     write = array_cache._write
     monkeypatch.setattr(array_cache, "_write", lambda *a: made.append(a[1]) or write(*a))
@@ -176,10 +184,9 @@ def test_a_bearing_without_dimensions_is_refused_by_name():
     assert {m.path for m in caught.value.mistakes} == {"bearing.bore", "bearing.outer_diameter", "bearing.width"}
 
 
-def test_an_unwritable_cache_is_said_once_and_costs_nothing_else(monkeypatch, tmp_path):
+def test_an_unwritable_cache_is_said_once_and_costs_nothing_else(made_anew, monkeypatch, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
-    monkeypatch.setattr(condensed, "_BODIES", {})  # what other tests computed in this process
     monkeypatch.setattr(array_cache, "folder", lambda: blocked / "arrays")
     array_cache._warn_unwritable.cache_clear()
     mesh = {"kind": "structured", "element_size": 2e-3, "nodes_per_semi_axis": 1}
