@@ -221,8 +221,8 @@ def history() -> Rule:
 def compliances() -> Rule:
     """Compliances made once for all balls and contacts, and once for each ball, nothing kept in memory or on disk."""
     from raceway import load_scene
-    from raceway.bodies import condensed
     from raceway.bodies.basis import make_basis
+    from raceway.bodies.compliances import _BODIES, elastic_bodies
     from raceway.core.condensed import structural
 
     scene = load_scene(SCENE, ("bodies.kind=condensed",))
@@ -234,8 +234,8 @@ def compliances() -> Rule:
         found = []
         try:
             for _ in range(times):
-                condensed._BODIES.clear()
-                bodies = condensed.elastic_bodies(scene, basis)
+                _BODIES.clear()
+                bodies = elastic_bodies(scene, basis)
                 found.append(np.concatenate([bodies.inner.own, bodies.outer.own, [bodies.ball_own]]))
         finally:
             structural.kept = kept

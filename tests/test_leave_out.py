@@ -93,7 +93,7 @@ ELASTIC = (
 )
 
 
-def test_elastic_bodies_with_whole_contacts_need_nothing_of_condensed_ones():
+def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrates_them():
     scene = load_scene(ARTICLE, ELASTIC)
     compute(scene)  # as above
     found = run(*ELASTIC)
@@ -102,8 +102,8 @@ def test_elastic_bodies_with_whole_contacts_need_nothing_of_condensed_ones():
         # A loop in Python is found by its compiled counterpart, among all of which it is looked for.
         if not module.module.startswith("raceway.core.integrators."):
             assert (module.module in found["loaded"]) == module.needed, module
-    for left_out in ("raceway.core.condensed", "raceway.core.revolution", "raceway.bodies.condensed"):
-        assert not [name for name in found["loaded"] if name.startswith(left_out)]
+    assert {"raceway.bodies.compliances", "raceway.core.revolution"} <= set(found["loaded"])
+    assert "raceway.bodies.condensed" not in found["loaded"]
     assert {"raceway.core.elastic.contacts.resultant", "raceway.core.sphere"} <= set(found["loaded"])
     assert set(found["kernels"].values()) == {1}
 
@@ -225,11 +225,11 @@ def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
 
 
 def test_compliances_that_are_kept_are_made_anew_by_the_rule_that_measures_them(monkeypatch):
-    from raceway.bodies import condensed
+    from raceway.bodies import compliances
 
     made = []
-    whole = condensed._elastic_bodies
-    monkeypatch.setattr(condensed, "_elastic_bodies", lambda *words: made.append(1) or whole(*words))
+    whole = compliances._elastic_bodies
+    monkeypatch.setattr(compliances, "_elastic_bodies", lambda *words: made.append(1) or whole(*words))
     monkeypatch.setattr(leave_out, "compared", lambda rule, scene, planned, forced, **more: (planned(), forced()))
     once, each = leave_out.compliances()
     assert len(made) == 1 + len(each) and (once == each).all()

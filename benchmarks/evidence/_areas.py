@@ -19,7 +19,7 @@ AREAS = {
     "errors": "contact_error error_estimate finer_series free_vibration misfit other_start plausibility series_error",
     "condensed": """
         core/condensed core/half_space core/sphere core/bodies/between core/bodies/condensed_inertial core/bodies/condensed_tangential
-        core/bodies/condensed_weightless core/bodies/structural core/bodies/structural_rows bodies/calibration_error bodies/condensed bodies/inertia
+        core/bodies/condensed_weightless core/bodies/structural core/bodies/structural_rows bodies/calibration_error bodies/compliances bodies/condensed bodies/inertia
         bodies/patches bodies/patch_report""",
     "revolution": "core/revolution array_cache",
     "elastic": """

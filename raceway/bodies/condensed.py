@@ -8,40 +8,29 @@ import attrs
 import numpy as np
 
 from raceway.bodies import rigid
-from raceway.bodies.basis import Basis, Built, seat_of
+from raceway.bodies.basis import Built
 from raceway.bodies.calibration_error import calibration_error
+from raceway.bodies.compliances import elastic_bodies, element_sizes, typical_load
 from raceway.bodies.inertia import inertia_table
 from raceway.bodies.mounting import place_ring
 from raceway.core.bodies import ring
-from raceway.core.condensed.calibration import calibrated
-from raceway.core.condensed.compliances import RingBody, Solid
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
-from raceway.core.condensed.structural import SURFACE, reach, ring_compliance, ring_section
+from raceway.core.condensed.structural import ring_section
 from raceway.core.meshing.ring_shape import ring_shape
-from raceway.core.sphere import ball_compliance
 from raceway.core.system import System
 from raceway.errors import ConvergenceError, SceneError
 from raceway.plan import Plan
 from raceway.scene import Scene
 
 if TYPE_CHECKING:
-    from raceway.core.meshing.ring import RingShape
     from raceway.core.revolution.profile import Profile
     from raceway.model import Model
     from raceway.statics import Equilibrium
 
-#: Peak pressure [Pa] of the contact whose length the line loads on the rings have: independent of the scene's load, so that
-#: one table serves all of them; the compliance changes by less than 0.01 nm/N with it.
-_PRESSURE = 1.5e9
-#: Size of elements far from a contact that is calibrated at its surface points, over ``reach``.
-_CALIBRATED_BULK = 0.4
 #: How much coarser the mesh is that error.mesh is estimated with.
 _COARSER = 2.0
 #: Entries of the stiffness below this part of sqrt(K_ii K_jj) are coupling that cancels out: no relative difference.
 _NOTHING = 1e-6
-#: Compliances of the last scenes: a run asks for them up to four times, a study for the same bodies again and again.
-_KEPT = 8
-_BODIES: dict[Any, ElasticBodies] = {}
 
 
 def build(scene: Scene, plan: Plan) -> Built:
@@ -55,69 +44,6 @@ def build(scene: Scene, plan: Plan) -> Built:
     system.table[:, ring.SHIFT] = 0.0
     guess = place_ring(scene, stiff.basis, system)
     return Built(stiff.basis, system, guess, Condensed(stiff, bodies, angles))
-
-
-def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
-    """Structural compliances of a scene's rings and balls; those of the last few scenes are kept.
-
-    Parameters
-    ----------
-    coarser : factor on all sizes of elements
-    """
-    seats = scene.supports.inner_seat, scene.supports.outer_seat
-    key = (scene.bearing, seats, scene.mesh, basis.ball_load, coarser)
-    found = _BODIES.pop(key, None) or _elastic_bodies(scene, basis, coarser)
-    _BODIES[key] = found  # the last in, and the last to go
-    if len(_BODIES) > _KEPT:
-        del _BODIES[next(iter(_BODIES))]
-    return found
-
-
-def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies:
-    b = scene.bearing
-    typical = _typical_load(basis)
-    rings, calibrations = [], []
-    for inner in (True, False):
-        shape = ring_shape(b, inner)
-        half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
-        bulk, fine = _sizes(scene, shape, half)
-        rings.append(
-            ring_compliance(
-                shape,
-                b.ball_diameter,
-                b.ball_count,
-                half,
-                b.rings.young,
-                b.rings.poisson,
-                seat_of(scene, inner),
-                coarser * bulk,
-                coarser * min(fine, bulk),
-                coarser * min(2.0 * fine, bulk),
-            )  # fmt: skip
-        )
-        size = _CALIBRATED_BULK * reach(shape, b.ball_diameter)
-        steel, balls = (Solid(one.young, one.poisson, bulk=size) for one in (b.rings, b.balls))
-        body = RingBody(shape, steel, seat_of(scene, inner), (0.0, 0.0))
-        both = basis.inner, basis.outer
-        calibrations.append(
-            calibrated(body, balls, both, typical, 0.5 * b.ball_diameter, b.ball_count, abs(b.contact_angle))
-        )
-    a, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
-    own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
-    return ElasticBodies(rings[0], rings[1], own, opposite, (calibrations[0], calibrations[1]))
-
-
-def _typical_load(basis: Basis) -> float:
-    """The load of ``_PRESSURE`` on the inner race [N]: p0 grows with the cube root of the load."""
-    return float((_PRESSURE / basis.inner.peak_pressure(1.0)) ** 3)
-
-
-def _sizes(scene: Scene, shape: RingShape, half: float) -> tuple[float, float]:
-    """Sizes of a ring's elements far from the groove and on it [m]; ``half``: semi-major axis of a typical contact."""
-    length = reach(shape, scene.bearing.ball_diameter)
-    if scene.mesh is None:
-        return 0.62 * length, SURFACE * length
-    return min(scene.mesh.element_size, 0.62 * length), half / scene.mesh.nodes_per_semi_axis
 
 
 @attrs.frozen(eq=False)
@@ -192,8 +118,8 @@ class Condensed:
     def ring_section(self, model: Model, inner: bool) -> Profile:
         """The mesh of a ring's section that its compliance was computed on, for pictures."""
         basis, shape = self.rigid.basis, ring_shape(model.scene.bearing, inner)
-        half = float((basis.inner if inner else basis.outer).semi_axes(_typical_load(basis))[0])
-        bulk, fine = _sizes(model.scene, shape, half)
+        half = float((basis.inner if inner else basis.outer).semi_axes(typical_load(basis))[0])
+        bulk, fine = element_sizes(model.scene, shape, half)
         return ring_section(shape, model.scene.bearing.ball_diameter, bulk, min(fine, bulk))
 
     def _nodes_per_semi_axis(self, model: Model, equilibrium: Equilibrium) -> float:

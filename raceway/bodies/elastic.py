@@ -9,7 +9,6 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, Built, made_by, make_basis
-from raceway.bodies.condensed import elastic_bodies
 from raceway.bodies.elastic_points import ElasticPoints
 from raceway.bodies.elastic_resultants import ElasticResultants
 from raceway.bodies.mounting import place_ring
@@ -51,6 +50,8 @@ def build(scene: Scene, plan: Plan) -> Built:
     guess = place_ring(as_rigid, basis, rigid)
     setup = _setup(scene, basis, rigid)
     if whole:
+        from raceway.bodies.compliances import elastic_bodies
+
         params = rigid.law_params
         angles = _angles(scene, plan, rigid, guess)
         # Of the bearing's own rings and balls, whatever mesh stands for them: the calibration is local.

@@ -83,8 +83,10 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
     for law, kinds in _LAWS.items():
         why = f"contact.kind is {scene.contact.kind}"
         decide(scene.contact.kind in kinds, f"raceway.core.contact_laws.{law}", why, why)
+    calibrates = kind == "elastic" and scene.contact.discretisation == "resultant"
+    why = "calibrates the contact resultants" if calibrates else "elastic rings and balls, reduced"
     for part in ("condensed", "revolution"):
-        decide(kind == "condensed", f"raceway.core.{part}", "elastic rings and balls, reduced", f"bodies.kind is {kind}")
+        decide(kind == "condensed" or calibrates, f"raceway.core.{part}", why, f"bodies.kind is {kind}")
     decide(kind == "elastic", "raceway.core.elastic", "every node moves", f"bodies.kind is {kind}")
     decide(kind != "rigid", "raceway.core.hexahedron", "finite elements of the bodies", "no body is meshed")
     excitation = "none" if scene.excitation is None else scene.excitation.name

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from raceway import array_cache
-from raceway.bodies import condensed
+from raceway.bodies import compliances
 from raceway.core.condensed import calibration
 from raceway.core.revolution.body import seat_areas
 from raceway.errors import SceneError
@@ -104,7 +104,7 @@ def test_the_mesh_error_bounds_what_a_finer_mesh_changes(size, along):
 @pytest.fixture
 def made_anew(monkeypatch):
     """Bodies that no other test computed in this process, calibrated on few points: half of what they take otherwise."""
-    monkeypatch.setattr(condensed, "_BODIES", {})
+    monkeypatch.setattr(compliances, "_BODIES", {})
     monkeypatch.setattr(calibration, "POINTS", (2, 4))
     monkeypatch.setattr(calibration, "LOADS", np.linspace(0.4, 1.6, 5))
 
