@@ -3,8 +3,8 @@
 Series of equilibria: the true value is a series of 4999 a turn, whose harmonics beyond the samples are below 1e-8.
 
 Starts: the true value is Z of the steady motion by ``integrator.kind = "periodic"``, and every tenth of those is computed again
-by Fourier collocation in time, which shares neither equations nor search with it.  Scenes without a steady motion are drawn
-anew: nothing is true of them.
+by Fourier collocation in time, which shares neither equations nor search with it.  Where several motions exist it may find
+another one of those that the result lists.  Scenes without a steady motion are drawn anew: nothing is true of them.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from raceway import scene_from_dict
 from raceway.core.identification import stiffness
 from raceway.core.orbit import steady_orbit
 from raceway.errors import ConvergenceError, RacewayError
+from raceway.result import Result
 from raceway.run import run
 from raceway.statics import settle
 
@@ -100,6 +101,12 @@ def fourier_value(tables: dict[str, Any]) -> complex | None:
     return stiffness(*(np.fft.fft(part, axis=0)[1] for part in (orbit.force, orbit.displacement)))
 
 
+def motions(result: Result) -> list[complex]:
+    """Z of each steady motion that a result lists."""
+    listed = [one["dynamic_stiffness"] for one in result.as_dict()["motion"]["orbits"]]
+    return [complex(one["real"], one["imag"]) for one in listed]
+
+
 def start_rows(count: int, seed: int) -> list[Row]:
     rng = np.random.default_rng(seed)
     judged: list[tuple[float, float, float]] = []
@@ -108,9 +115,10 @@ def start_rows(count: int, seed: int) -> list[Row]:
         one = draw(rng)
         drawn += 1
         try:
-            true = run(scene_from_dict({**one.tables, "integrator": {"kind": "periodic"}})).identification
+            steady = run(scene_from_dict({**one.tables, "integrator": {"kind": "periodic"}}))
         except RacewayError:
             continue
+        true = steady.identification
         result = run(scene_from_dict(one.tables))
         found, wanted = result.identification, true.dynamic_stiffness
         estimate = result.error["total"]
@@ -121,9 +129,8 @@ def start_rows(count: int, seed: int) -> list[Row]:
         if len(judged) % 10 == 0:
             other = fourier_value(one.tables)
             asked += other is not None
-            confirmed += other is not None and abs(other - wanted) < _CONFIRMED * min(error, 1.0) * abs(
-                wanted
-            ) + SMALL * abs(wanted)
+            close = (_CONFIRMED * min(error, 1.0) + SMALL) * abs(wanted)
+            confirmed += other is not None and any(abs(other - z) < close for z in motions(steady))
     estimates, errors, k_errors = np.array(judged).T
     least = (estimates >= errors / FACTOR) | ((estimates < SMALL) & (errors < SMALL))
     both = [right(*pair) for pair in zip(estimates, errors, strict=True)]
@@ -134,7 +141,7 @@ def start_rows(count: int, seed: int) -> list[Row]:
         Row("of those: estimate within a third of and three times the true error", int(sum(both)), "reported", True, COMMAND),
         Row("starts whose K is off by at most three times its stated error", int((k_errors <= FACTOR).sum()),
             f"at least {SHARE:.0%}", bool((k_errors <= FACTOR).mean() >= SHARE), COMMAND),
-        Row("steady motions that Fourier collocation finds, too: equal to a thousandth of the error", f"{confirmed} of {asked}",
+        Row("steady motions that Fourier collocation finds: equal to one of those told, to a thousandth of the error", f"{confirmed} of {asked}",
             "all", confirmed == asked, COMMAND, "every tenth is asked"),
     ]  # fmt: skip
 
