@@ -56,7 +56,7 @@ def highest_frequency(scene: Scene) -> float:
     b = scene.bearing
     _, load = axial_approach(scene)
     if scene.excitation is not None:
-        load += 5.0 * scene.excitation.amplitude_n / b.ball_count
+        load += scene.excitation.amplitude_n * (5.0 / b.ball_count)  # of any size that is a number
     normal = 1.5 * load / (load / series_factor(scene)) ** (2.0 / 3.0) if load > 0.0 else 1.0
     mass, inertia, _ = ring_inertia(scene)
     mass, inertia = mass + scene.rotor.mass, inertia + scene.rotor.transverse_inertia

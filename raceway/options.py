@@ -89,6 +89,11 @@ def inside(low: float, high: float) -> Rule:
     )
 
 
+def length() -> Rule:
+    """Of a bearing [m]; squares and cubes of such numbers are numbers, too."""
+    return inside(0.0, 1e3)
+
+
 def finite() -> Rule:
     return _rule("a finite number", lambda v: True)
 

@@ -17,6 +17,7 @@ from raceway.options import (
     between,
     finite,
     inside,
+    length,
     one_of,
     option,
     optional,
@@ -34,8 +35,8 @@ class Material:
 
 @attrs.frozen
 class Bearing:
-    ball_diameter: float = option(unit="m", help="D", rule=positive())
-    pitch_diameter: float = option(unit="m", help="d_m", rule=positive())
+    ball_diameter: float = option(unit="m", help="D", rule=length())
+    pitch_diameter: float = option(unit="m", help="d_m", rule=length())
     ball_count: int = option(help="Z", rule=at_least(1))
     conformity_inner: float = option(help="groove radius / ball diameter, inner", rule=inside(0.5, 1.0))
     conformity_outer: float = option(help="groove radius / ball diameter, outer", rule=inside(0.5, 1.0))
@@ -43,11 +44,11 @@ class Bearing:
     radial_clearance: float | None = option(
         None, unit="m", help="internal radial clearance as catalogues give it, on the diameter", rule=optional(at_least(0.0))
     )
-    bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(positive()))
-    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(positive()))
-    width: float | None = option(None, unit="m", help="width", rule=optional(positive()))
+    bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
+    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
+    width: float | None = option(None, unit="m", help="width", rule=optional(length()))
     shoulder_height: float | None = option(
-        None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(positive())
+        None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(length())
     )
     inner_profile: tuple[tuple[float, float], ...] | None = option(
         None, unit="m", help="section of the inner ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
@@ -81,7 +82,7 @@ class Bearing:
         None,
         unit="m",
         help="axial distance of a pair's rows, between the planes of their inner groove centres; default: the width of one bearing",
-        rule=optional(positive()),
+        rule=optional(length()),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
     rings: Material = attrs.field(factory=Material, metadata={"help": "material of both rings"})

@@ -36,6 +36,7 @@ SCENES = {
     "ball larger than the pitch circle": ("bearing.ball_diameter=0.05", "bearing", "must be smaller than `pitch_diameter`"),
     "preset with a typo": ("bearing.preset=B7206G", "bearing.preset", "no such preset (did you mean"),
     "preset in lower case": ("bearing.preset=b7206c", "bearing.preset", "did you mean 'B7206C'?"),
+    "length whose square is no number": ("bearing.row_distance=1e300", "bearing.row_distance", "less than 1000"),
     "force of zero": ("excitation.unbalance=0", "excitation", "leave the table out"),
     "nodal on rigid bodies": ("contact.discretisation=nodal", "contact.discretisation", "use 'resultant'"),
     "--set without =": ("load.axial", "--set load.axial", "for instance load.axial=400"),
@@ -54,6 +55,15 @@ def test_a_mistake_in_a_scene(case):
     errors = json.loads(invoke("check", ARTICLE, "--set", change, "--json").stdout)["errors"]
     assert [set(error) for error in errors] == [{"path", "value", "message"}] * len(errors)
     assert path in {error["path"] for error in errors}
+
+
+def test_the_largest_force_that_is_a_number():
+    words = ("excitation.amplitude=constant", "excitation.force=1.7e308", "integrator.kind=central_difference")
+    changes = [word for one in (*words, "integrator.steps_per_turn=96") for word in ("--set", one)]
+    found = invoke("check", ARTICLE, *changes)
+    assert found.exit_code == 2
+    assert "some " in found.stderr and "steps a turn are needed" in found.stderr
+    assert "nan" not in found.stderr
 
 
 def test_clearance_and_angle_that_contradict_each_other():

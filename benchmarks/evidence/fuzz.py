@@ -93,7 +93,8 @@ def rows() -> list[Row]:
     ]
     for word, quantity in _FAULTS.items():
         bad = [(one["seed"], fault) for one in found for fault in one["faults"] if fault[0] == word]
-        note = "; ".join(f"scene {seed}: {fault[2][-300:]}" for seed, fault in bad[:3])
+        told = [(seed, " ".join(fault[2].split())[-300:]) for seed, fault in bad[:3]]
+        note = "; ".join(f"scene {seed}: {words}" for seed, words in told)
         out.append(Row(quantity, len(bad), "0", not bad, COMMAND, note))
     out += [Row(f"scenes, {word}", count, "reported", True, COMMAND) for word, count in sorted(ends.items())]
     return out
