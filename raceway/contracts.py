@@ -112,7 +112,8 @@ class Integrator(Protocol):
        ``on_chunk(done, total)`` now and then, whose exceptions pass through; on failure raise ``ConvergenceError`` or
        ``StabilityError`` with the last good state.
     5. ``start.near``, if it is not None, is the ``solution`` that the same integrator left in the record of a similar motion:
-       it may be started from, and must not change the answer beyond the method's tolerance.
+       it may be started from, and must not change the answer beyond the method's tolerance; unless ``start.stay`` asks for
+       the continuation of that motion where several exist.
     """
 
     name: ClassVar[str]

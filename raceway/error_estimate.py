@@ -26,6 +26,7 @@ import numpy as np
 
 from raceway.contact_error import contact_error, is_calibrated
 from raceway.core.identification import Identification
+from raceway.core.record import OnProgress
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.finer_series import finer_value, more_equilibria
@@ -72,13 +73,18 @@ def no_error(how: str) -> dict[str, Any]:
 
 
 def error_table(
-    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], found: Identification
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    found: Identification,
+    on_progress: OnProgress | None = None,
 ) -> dict[str, Any]:
     """The table ``error``.
 
     Parameters
     ----------
     motions : model and motion of each speed; empty where the identifier needs no motion
+    on_progress : called in further runs and searches; the error of one that it ends is not known
     """
     table = no_error("")
     how: dict[str, str] = table["how"]
@@ -91,11 +97,12 @@ def error_table(
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
     else:
-        step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness)
-        transient = _transient(model, equilibrium, motions, found, step)
+        step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness, on_progress)
+        transient = _transient(model, equilibrium, motions, found, step, on_progress)
         if remembers_its_start(model.scene) and transient.size is not None:
             first = motions[-1][1]
-            transient = _from_other_start(model, equilibrium, first, second or Run.of(model, equilibrium, first), transient)
+            run = second or Run.of(model, equilibrium, first)
+            transient = _from_other_start(model, equilibrium, first, run, transient, on_progress)
         parts = {
             "time_step": step,
             "transient": transient,
@@ -162,6 +169,7 @@ def _time_step(
     equilibrium: Equilibrium,
     motions: list[tuple[Model, Simulation]],
     value: complex,
+    on_progress: OnProgress | None,
     given: int | None = None,
 ) -> tuple[Part, Run | None]:
     """By a second run with other steps; that one, where other starts are compared with it because it is cheaper than the first.
@@ -177,7 +185,7 @@ def _time_step(
     if model.scene.bodies.kind == "elastic":
         return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), None
     if not method.inertial:
-        return _sampling(motions, equilibrium, model, value), None
+        return _sampling(motions, equilibrium, model, value, on_progress), None
     steps = first.whole.schedule.steps_per_turn
     limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
@@ -188,7 +196,7 @@ def _time_step(
         return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), None
     try:
         again = [
-            simulate(_over(one, turns), _at(one, model, equilibrium), steps_per_turn=other, begun=m) for one, m in motions
+            simulate(_over(one, turns), _at(one, model, equilibrium), on_progress, other, begun=m) for one, m in motions
         ]
     except ConvergenceError as why:
         return Part(None, f"the run with {other} steps a turn failed: {why}"), None
@@ -201,7 +209,7 @@ def _time_step(
         closer = max(ceil(_CLOSER * steps), ceil(bound))
         further = given is None and _LEAST_RATIO * other <= closer <= steps / _LEAST_RATIO
         if further and _hidden(clean[1], fine - coarse, (steps / other) ** method.order - 1.0, value - fine):
-            return _time_step(model, equilibrium, motions, value, closer)
+            return _time_step(model, equilibrium, motions, value, on_progress, closer)
     else:
         coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
     shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
@@ -226,7 +234,13 @@ def _hidden(clean: Clean, change: complex, powers: float, leakage: complex) -> b
     return clean.halves is not None and clean.halves > abs(change) > powers * abs(leakage)
 
 
-def _sampling(motions: list[tuple[Model, Simulation]], equilibrium: Equilibrium, model: Model, value: complex) -> Part:
+def _sampling(
+    motions: list[tuple[Model, Simulation]],
+    equilibrium: Equilibrium,
+    model: Model,
+    value: complex,
+    on_progress: OnProgress | None,
+) -> Part:
     """Of a series of equilibria, by a second one with more of them."""
     tolerance = getattr(model.scene.integrator.method, "tolerance", 0.0)
     steps = motions[-1][1].whole.schedule.steps_per_turn
@@ -234,7 +248,7 @@ def _sampling(motions: list[tuple[Model, Simulation]], equilibrium: Equilibrium,
     if not fits(model.plan.turns, count, model.system.ball_count, inertial=False):
         return Part(None, f"not estimated: the record of a second series with {count} equilibria a turn would not fit")
     try:
-        shift = (value - finer_value(model, equilibrium, motions, value, count)) / abs(value)
+        shift = (value - finer_value(model, equilibrium, motions, value, count, on_progress)) / abs(value)
     except ConvergenceError as why:
         return Part(None, f"the series of {count} equilibria a turn failed: {why}")
     if abs(shift) <= tolerance:
@@ -266,7 +280,12 @@ def other_steps(steps: int, least: float = 0.0) -> int:
 
 
 def _transient(
-    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], found: Identification, step: Part
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    found: Identification,
+    step: Part,
+    on_progress: OnProgress | None,
 ) -> Part:
     method, value, simulation = model.scene.integrator.method, found.dynamic_stiffness, motions[-1][1]
     if getattr(method, "steady", False):
@@ -275,7 +294,7 @@ def _transient(
     if not method.inertial and (model.plan.turns == 1 or not memory):
         return Part(0.0, "a series of equilibria: nothing dies out")
     if compares_with_steady_motion(model.scene):
-        settled = settled_value(model, equilibrium, motions, found)
+        settled = settled_value(model, equilibrium, motions, found, on_progress)
         if settled is not None:
             return _from_steady(settled, value, step)
     if "speeds" in model.scene.identifier.method.needs:
@@ -315,11 +334,13 @@ def _unresolved(model: Model, simulation: Simulation, clean: Clean, seen: float)
     return clean.halves is None or clean.halves > _RIGHT * seen
 
 
-def _from_other_start(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, own: Part) -> Part:
+def _from_other_start(
+    model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, own: Part, on_progress: OnProgress | None
+) -> Part:
     """With friction the transient, and how far away another start leads."""
     words = "friction remembers how the motion began"
     try:
-        size, kind = distance(model, equilibrium, first, run)
+        size, kind = distance(model, equilibrium, first, run, on_progress)
     except (ConvergenceError, StabilityError) as why:
         return Part(None, f"{words}, and runs from other starts failed: {why}")
     if not np.isfinite(size):

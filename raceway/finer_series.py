@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import attrs
 
+from raceway.core.record import OnProgress
 from raceway.model import Model
 from raceway.simulate import Simulation, simulate
 from raceway.statics import Equilibrium, settle
@@ -30,7 +31,12 @@ def more_equilibria(steps: int) -> int:
 
 
 def finer_value(
-    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], value: complex, count: int
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    value: complex,
+    count: int,
+    on_progress: OnProgress | None = None,
 ) -> complex:
     """Z [N/m] of a series of ``count`` equilibria a turn, where a series of the scene's number has ``value``.
 
@@ -46,9 +52,7 @@ def finer_value(
     """
 
     def identified(models: list[Model], steps: int) -> complex:
-        records = [
-            simulate(one, equilibrium if one is model else settle(one), steps_per_turn=steps).record for one in models
-        ]
+        records = [simulate(one, equilibrium if one is model else settle(one), on_progress, steps).record for one in models]
         return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
 
     models = [one for one, _ in motions]

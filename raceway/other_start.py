@@ -16,6 +16,7 @@ from typing import Any
 
 import attrs
 
+from raceway.core.record import OnProgress
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.free_vibration import without_free_vibration
 from raceway.model import Model
@@ -45,7 +46,9 @@ class Run:
         return cls(found.dynamic_stiffness, motion.whole.schedule.steps_per_turn)
 
 
-def distance(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run) -> tuple[float, str]:
+def distance(
+    model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, on_progress: OnProgress | None = None
+) -> tuple[float, str]:
     """Distance of Z from that of another start, over the smaller Z, and the name of that start.
 
     Parameters
@@ -64,7 +67,7 @@ def distance(model: Model, equilibrium: Equilibrium, first: Simulation, run: Run
     for kind in kinds:
         one = _begun_by(model, kind)
         try:
-            motion = simulate(one, equilibrium, steps_per_turn=run.steps)
+            motion = simulate(one, equilibrium, on_progress, run.steps)
         except (ConvergenceError, StabilityError) as error:
             failed = error
             continue

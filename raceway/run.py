@@ -17,6 +17,7 @@ from raceway.core.energy import energy_balance
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.lines import Line, lines
+from raceway.core.record import OnProgress
 from raceway.core.stepping.energy import drift, friction_lost, largest_share
 from raceway.error_estimate import error_table, no_error
 from raceway.errors import ConvergenceError, PluginError, RacewayError
@@ -30,7 +31,7 @@ from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
 from raceway.series_error import series_warnings, with_series_error
-from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds
+from raceway.simulate import Simulation, simulate, simulate_speeds
 from raceway.statics import Equilibrium, settle
 from raceway.unused import unused
 
@@ -41,6 +42,7 @@ def run(
     on_progress: OnProgress | None = None,
     near: Result | None = None,
     patience: float = PATIENCE,
+    stay: bool = False,
 ) -> Result:
     """Compute one scene.
 
@@ -49,6 +51,8 @@ def run(
     on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
     near : of a similar scene: what is dear to search for (equilibria of contacts at surface points, steady motions that are
         nearly linear) is searched for from its own, which changes the result within the tolerances of the search only
+    stay : on the steady motion of ``near`` where several may exist, instead of searching for all: for scenes that are tried
+        one after another in an iteration
     patience : times the planned time, of processor time, after which a run is stopped between its steps
 
     Raises
@@ -62,7 +66,7 @@ def run(
     wall = working_clock()
     try:
         try:
-            return _run(scene, registry, on_progress, wall, near, patience)
+            return _run(scene, registry, on_progress, wall, near, patience, stay)
         except (ArithmeticError, np.linalg.LinAlgError) as why:
             raise ConvergenceError(
                 f"the numbers of this scene leave what can be computed with ({why}): check its units"
@@ -76,7 +80,13 @@ def run(
 
 
 def _run(
-    scene: Scene, registry: Registry, on_progress: OnProgress | None, wall: float, near: Result | None, patience: float
+    scene: Scene,
+    registry: Registry,
+    on_progress: OnProgress | None,
+    wall: float,
+    near: Result | None,
+    patience: float,
+    stay: bool,
 ) -> Result:
     plan = make_plan(scene)
     allowance, warned = Allowance.of(plan, patience), []
@@ -107,7 +117,7 @@ def _run(
                 motions = simulate_speeds(model, progress)
                 simulation, records = motions[-1][1], [one.record for _, one in motions]
             elif "record" in method.needs:
-                simulation = simulate(model, equilibrium, progress, near=_followed(scene, near))
+                simulation = simulate(model, equilibrium, progress, near=_followed(scene, near), stay=stay)
                 motions, records = [(model, simulation)], [simulation.record]
         except ConvergenceError as why:
             allowance.confirm(why)
@@ -122,8 +132,8 @@ def _run(
             warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
             error = no_error("the run went far beyond its plan")
         else:
-            error = error_table(model, equilibrium, motions, identification)
-        identification = with_series_error(model, identification, error)
+            error = error_table(model, equilibrium, motions, identification, allowance.check)
+        identification = with_series_error(model, identification, error, allowance.check)
         error_s = working_clock() - identified
     done = working_clock()
     compile_s = take_compile_seconds()

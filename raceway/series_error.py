@@ -15,6 +15,7 @@ from typing import Any
 import attrs
 
 from raceway.core.identification import Identification
+from raceway.core.record import OnProgress
 from raceway.model import Model
 from raceway.planning.modules import compares_with_steady_motion
 from raceway.steady_motion import value_at_speed
@@ -25,7 +26,9 @@ _MUCH = 0.05
 _GIVEN_UP = 3
 
 
-def with_series_error(model: Model, found: Identification, error: dict[str, Any]) -> Identification:
+def with_series_error(
+    model: Model, found: Identification, error: dict[str, Any], on_progress: OnProgress | None = None
+) -> Identification:
     """The same with ``series_error`` held against steady motions where the speed changes.
 
     Parameters
@@ -38,7 +41,7 @@ def with_series_error(model: Model, found: Identification, error: dict[str, Any]
     told: list[float | None] = []
     missed = 0
     for (speed, z), own in zip(found.series, found.series_error, strict=True):
-        settled = value_at_speed(model, speed) if held and missed < _GIVEN_UP else None
+        settled = value_at_speed(model, speed, on_progress) if held and missed < _GIVEN_UP else None
         missed = missed + 1 if settled is None else 0
         if settled is not None:
             told.append(abs(z - settled) / min(abs(z), abs(settled)))

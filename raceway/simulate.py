@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import ceil
 from typing import Any
 
@@ -10,7 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.core.orbit import Orbit
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.record import Motion, OnProgress, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import StabilityError
 from raceway.model import Model, build_model
@@ -19,7 +18,6 @@ from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn
 from raceway.starting import Start, chosen_start
 from raceway.statics import Equilibrium, settle
 
-OnProgress = Callable[[str, int, int], None]
 #: Part of the stable limit, taken at the stiffest tangent of the orbit, that "auto" steps take. Balls that leave and meet the
 #: races each turn pump motions up a little below the limit of the frozen tangent: one orbit at 0.885 of it grew in 49 turns.
 SAFETY = 0.8
@@ -56,6 +54,7 @@ def simulate(
     steps_per_turn: int | None = None,
     begun: Simulation | None = None,
     near: Simulation | None = None,
+    stay: bool = False,
 ) -> Simulation:
     """Integrate the plan's turns.
 
@@ -64,6 +63,7 @@ def simulate(
     steps_per_turn : instead of the scene's
     begun : of the same scene with other steps, whose start is taken
     near : of a similar scene by the same integrator, for integrators that can start from it
+    stay : on the motion of ``near`` where several may exist
 
     Raises
     ------
@@ -72,7 +72,7 @@ def simulate(
     """
     system, method, scene = model.system, model.scene.integrator.method, model.scene
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
-    begin = chosen_start(model, equilibrium) if begun is None else begun.start
+    begin = chosen_start(model, equilibrium, on_progress) if begun is None else begun.start
     start, orbit, warnings = begin.kind, begin.orbit, begin.warnings
     critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
@@ -100,7 +100,7 @@ def simulate(
     )
     motion = _motion(model, equilibrium, start, orbit, dt)
     if near is not None:
-        motion = attrs.evolve(motion, near=near.whole.solution)
+        motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
     label = f"{scene.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
     whole = method.advance(system, motion, schedule, progress)

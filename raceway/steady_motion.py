@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from math import pi
+from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.core.identification import Identification, fourier_line, stiffness
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.record import Motion, OnProgress, Record, Schedule
 from raceway.errors import RacewayError
 from raceway.model import Model, build_model
 from raceway.simulate import Simulation
@@ -21,7 +22,11 @@ _REPEATS = 0.01
 
 
 def settled_value(
-    model: Model, equilibrium: Equilibrium, motions: list[tuple[Model, Simulation]], found: Identification
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    found: Identification,
+    on_progress: OnProgress | None = None,
 ) -> complex | None:
     """Z [N/m] that the scene's identifier finds in steady motions instead of the recorded ones.
 
@@ -29,6 +34,7 @@ def settled_value(
     ----------
     motions : model and motion of each speed
     found : what was identified in them; of a speed that changes, the steady motion at the speed of its Z counts
+    on_progress : called in the search, which what it raises ends
 
     Returns
     -------
@@ -37,20 +43,20 @@ def settled_value(
         not found, or is another one than the transient settles on.
     """
     if model.excitation.period_s is None:
-        return value_at_speed(model, found.speed)
+        return value_at_speed(model, found.speed, on_progress)
     records = []
     for one, motion in motions:
-        settled = steady_record(one, equilibrium if one is model else settle(one))
+        settled = steady_record(one, equilibrium if one is model else settle(one), motion, on_progress)
         if settled is None or settles_elsewhere(one, motion, settled):
             return None
         records.append(settled)
     return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
 
 
-def value_at_speed(model: Model, speed: float) -> complex | None:
+def value_at_speed(model: Model, speed: float, on_progress: OnProgress | None = None) -> complex | None:
     """Z [N/m] of the steady motion at one speed [rad/s] of an excitation that changes its own; None where there is none."""
     one = _at_speed(model, speed)
-    record = None if one is None else steady_record(one, settle(one))
+    record = None if one is None else steady_record(one, settle(one), on_progress=on_progress)
     if one is None or record is None:
         return None
     frequency = one.excitation.frequency_hz
@@ -66,17 +72,43 @@ def _at_speed(model: Model, speed: float) -> Model | None:
     return build_model(scene, model.plan)
 
 
-def steady_record(model: Model, equilibrium: Equilibrium) -> Record | None:
-    """One turn of the steady motion; None where there is none that can be solved for, or none is found."""
+def steady_record(
+    model: Model, equilibrium: Equilibrium, motion: Simulation | None = None, on_progress: OnProgress | None = None
+) -> Record | None:
+    """One turn of the steady motion; None where there is none that can be solved for, or none is found.
+
+    Parameters
+    ----------
+    motion : that settles on it: where several exist, the one near its last turn is taken
+    on_progress : called in the search, which what it raises ends
+    """
     from raceway.core.periodic.steady import steady
 
     if model.excitation.period_s is None:
         return None
-    start = Motion(equilibrium.displacement, np.zeros(5), np.zeros(5), equilibrium.ball, equilibrium.ball.copy())
+    near = None if motion is None else _last_turn(motion.whole, model.excitation.period_s)
+    q, ball = equilibrium.displacement, equilibrium.ball
+    start = Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy(), near=near, stay=near is not None)
+    schedule = Schedule(model.excitation.period_s / _SAMPLES, _SAMPLES, 1)
+    watch = None if on_progress is None else (lambda done, total: on_progress("the steady motion", done, total))
     try:
-        return steady(model.system, start, Schedule(model.excitation.period_s / _SAMPLES, _SAMPLES, 1), _TOLERANCE)
+        return steady(model.system, start, schedule, _TOLERANCE, on_chunk=watch)
     except RacewayError:
         return None
+
+
+def _last_turn(whole: Record, period: float) -> Any:
+    """The last turn of a record as ``steady`` starts from it; None where the record is no whole turns of equal samples."""
+    from raceway.core.periodic.neighbour import Recorded
+
+    steps, stride = whole.schedule.steps_per_turn, whole.schedule.stride
+    n = steps // stride
+    if n * stride != steps or len(whole.time) < n or whole.schedule.steps % steps:
+        return None
+    # Samples end each turn: the last one of a turn is the first moment of the next.
+    q, v = (np.roll(values[-n:], 1, axis=0) for values in (whole.displacement, whole.velocity))
+    lines = np.fft.rfft(v, axis=0) * (2j * pi / period * np.arange(n // 2 + 1))[:, None]
+    return Recorded(period, q, v, np.fft.irfft(lines, n, axis=0))
 
 
 def settles_elsewhere(model: Model, simulation: Simulation, settled: Record) -> bool:

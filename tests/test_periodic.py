@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import islice
 
 import attrs
 import numpy as np
@@ -14,10 +15,13 @@ from raceway import scene_from_dict
 from raceway.core.orbit import steady_orbit
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import Problem, solve
+from raceway.core.periodic.direct import highest_order, mesh_of
 from raceway.core.periodic.first_guess import guess
+from raceway.core.periodic.from_rest import from_rest
+from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.sampling import motion_at
-from raceway.core.periodic.search import find, from_rest, highest_order, mesh_of
+from raceway.core.periodic.search import find
 from raceway.core.periodic.steady import _equilibrium
 from raceway.core.periodic.symmetry import one_turn
 from raceway.core.record import Motion, Schedule
@@ -139,7 +143,7 @@ def softening():
 
 def test_a_branch_passes_its_folds(softening):
     problem, q, tangent = softening
-    points = from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
+    points = list(from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
     shares = np.array([point.parameter for point in points])
     assert points[-1].parameter >= 1.0
     assert any(point.folded for point in points)
@@ -173,9 +177,43 @@ def test_a_branch_over_the_speed(softening):
 
     branch = Branch(at, 0.1 * problem.speed, begin.size)
     wanted = 0.6 * problem.speed
-    points = branch.follow(branch.start(begin, low.speed), 0.2, lambda p: p.parameter >= wanted, 60)
-    direct = find(at(points[-1].parameter), q, tangent, 1e-8).refined.solved
-    assert points[-1].solved.path.q[0, 0] == pytest.approx(direct.path.q[0, 0], abs=1e-5 * direct.size)
+    points = branch.follow(branch.start(begin, low.speed), 0.2)
+    last = next(point for point in islice(points, 60) if point.parameter >= wanted)
+    direct = find(at(last.parameter), q, tangent, 1e-8).refined.solved
+    assert last.solved.path.q[0, 0] == pytest.approx(direct.path.q[0, 0], abs=1e-5 * direct.size)
+
+
+def test_the_slope_of_a_growing_force_is_the_difference_quotient(softening):
+    """Each point of the branch from rest with the known slope and by differences."""
+    problem, q, tangent = softening
+    nodes = mesh_of(problem, highest_order(problem, tangent))
+    first = next(from_rest(problem, q, tangent, nodes))
+
+    def followed(slope):
+        branch = Branch(lambda share: attrs.evolve(problem, share=share), 1.0, 1e-6, 1e-4, 512, slope)
+        return list(islice(branch.follow(branch.start(first.solved, 0.0), 0.1), 12))
+
+    known, by_differences = followed(lambda at, path: -at.force(path.nodes)), followed(None)
+    for one, two in zip(known, by_differences, strict=True):
+        assert one.parameter == pytest.approx(two.parameter, abs=1e-6)
+        assert one.solved.path.q[0, 0] == pytest.approx(two.solved.path.q[0, 0], abs=1e-6 * two.solved.size + 1e-15)
+
+
+def test_a_motion_is_kept_where_two_exist(softening):
+    """Down the upper branch by 3 % of the force at a time to between the folds; there the search from rest finds the lower motion."""
+    problem, q, tangent = softening
+    points = list(from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
+    turned = int(np.argmax(np.diff([point.parameter for point in points]) < 0.0))
+    high, low = points[turned].parameter, min(point.parameter for point in points[turned:])
+    near, share = neighbour_of(points[-1].solved, q, tangent), points[-1].parameter
+    while share > 0.5 * (low + high):
+        share *= 0.97
+        kept = find(attrs.evolve(problem, share=share), q, tangent, 1e-7, near, True)
+        assert not kept.others
+        near = neighbour_of(kept.refined.solved, q, tangent)
+    assert low < share < high
+    searched = find(attrs.evolve(problem, share=share), q, tangent, 1e-7, near)
+    assert searched.refined.solved.size < 0.7 * kept.refined.solved.size
 
 
 def test_newton_ends_at_its_tolerance():

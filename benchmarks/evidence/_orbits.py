@@ -17,8 +17,9 @@ from raceway.core.address import by_address
 from raceway.core.identification import stiffness
 from raceway.core.orbit import steady_orbit
 from raceway.core.periodic.branch import Point
+from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
+from raceway.core.periodic.from_rest import from_rest
 from raceway.core.periodic.sampling import motion_at
-from raceway.core.periodic.search import from_rest, highest_order, mesh_of, problem_of
 from raceway.core.periodic.symmetry import one_turn
 from raceway.errors import ConvergenceError
 from raceway.model import Model
@@ -143,7 +144,7 @@ def resonance(tables: Tables) -> Resonance:
     speed = 2.0 * np.pi / model.excitation.period_s
     tangent, q = equilibrium.stiffness, equilibrium.displacement
     problem = attrs.evolve(problem_of(system, speed, q, False), symmetry=one_turn(system))
-    points = from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
+    points = list(from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
     last = _lines(points[-1])
     order = int(np.argmax(last))
     fold = max(point.parameter for point in points)

@@ -167,8 +167,8 @@ def _failure(
         )
     if counters[REASON] == BALLS:
         return ConvergenceError(f"the balls found no equilibrium between the races {when}", state)
+    residual = counters[RESIDUAL]
+    left = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
     return ConvergenceError(
-        f"the iteration of a step did not converge {when}, residual {counters[RESIDUAL]:.3g} N. "
-        "Take more `integrator.steps_per_turn`.",
-        state,
+        f"the iteration of a step did not converge {when}, {left}. Take more `integrator.steps_per_turn`.", state
     )

@@ -177,9 +177,8 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
         step[:, chosen] = damping_factor * delta
         q = q + step
     else:
-        raise ConvergenceError(
-            f"no periodic orbit found after {iterations} iterations, relative residual {residual:.1e}", {"q": q}
-        )
+        left = f"relative residual {residual:.1e}" if np.isfinite(residual) else "forces beyond all numbers"
+        raise ConvergenceError(f"no periodic orbit found after {iterations} iterations, {left}", {"q": q})
     return Orbit(period, q, first @ q, second @ q, force, ball, K, residual, iterations)
 
 

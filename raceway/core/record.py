@@ -10,6 +10,8 @@ import numpy as np
 
 #: Called between chunks with the steps done and the steps in all.
 OnChunk = Callable[[int, int], None]
+#: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
+OnProgress = Callable[[str, int, int], None]
 
 
 @attrs.frozen(eq=False)
@@ -25,6 +27,7 @@ class Motion:
         goes on from another's final motion needs it
     whole : arrays by name, all unknowns and all memory of a system of more than the ring's five coordinates; None for others
     near : the ``solution`` in the record of a similar motion by the same method, for methods that can start from one
+    stay : whether to stay on the motion of ``near`` where several may exist
     """
 
     q: np.ndarray
@@ -36,6 +39,7 @@ class Motion:
     memory: np.ndarray | None = None
     whole: Mapping[str, np.ndarray] | None = None
     near: Any = None
+    stay: bool = False
 
 
 @attrs.frozen(eq=False)

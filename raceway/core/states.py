@@ -29,16 +29,11 @@ def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
     PluginError
         With the array, its shape, and the system's.
     """
-    balls = system.ball_count, system.ball_columns
+    coordinates = (5,), "x, y, z, tilts"
+    known: dict[str, tuple[tuple[int, ...], str]] = dict.fromkeys(("q", "v", "a", "rest"), coordinates)
+    known["memory"] = system.law_state.shape, "a row for each contact"
+    balls = (system.ball_count, system.ball_columns), "a row for each ball"
     for name, values in arrays.items():
-        wanted = (5,) if name in ("q", "v", "a", "rest") else system.law_state.shape if name == "memory" else balls
-        found = np.shape(values) if values is not None else wanted
-        if found != wanted:
-            rows = (
-                "a row for each ball"
-                if wanted is balls
-                else "a row for each contact"
-                if name == "memory"
-                else "x, y, z, tilts"
-            )
-            raise PluginError(f"{who}: `{name}` has the shape {found}; that of this system is {wanted}: {rows}")
+        wanted, rows = known.get(name, balls)
+        if values is not None and np.shape(values) != wanted:
+            raise PluginError(f"{who}: `{name}` has the shape {np.shape(values)}; that of this system is {wanted}: {rows}")

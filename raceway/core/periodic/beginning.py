@@ -8,18 +8,20 @@ motion.  Where it finds nothing, Fourier collocation (``raceway.core.orbit``) ma
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.core.address import by_address
-from raceway.core.orbit import Orbit, at_time, evaluate_many, steady_orbit
-from raceway.core.periodic.collocation import Path, Problem, solve
-from raceway.core.periodic.first_guess import standing
+from raceway.core.orbit import Orbit, evaluate_many, steady_orbit
+from raceway.core.periodic.collocation import Problem, solve
+from raceway.core.periodic.direct import HIGHEST, highest_order, mesh_of, problem_of
+from raceway.core.periodic.neighbour import Recorded
 from raceway.core.periodic.refinement import refine
 from raceway.core.periodic.sampling import states
-from raceway.core.periodic.search import HIGHEST, Found, can_follow, find, found_by, highest_order, mesh_of, problem_of
+from raceway.core.periodic.search import Found, can_follow, find, found_by
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
@@ -44,12 +46,13 @@ class Beginning:
     warnings: tuple[str, ...] = ()
 
 
-def beginning(system: System, period: float, q: np.ndarray) -> Beginning | None:
+def beginning(system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None) -> Beginning | None:
     """The motion to start on; None where it is not searched for, because each try would take seconds.
 
     Parameters
     ----------
     system : with compiled forces, without friction, memory and orbiting balls;  q : (5,) static equilibrium
+    watch : called in the search, which what it raises ends
 
     Raises
     ------
@@ -61,6 +64,8 @@ def beginning(system: System, period: float, q: np.ndarray) -> Beginning | None:
     problem = problem_of(system, 2.0 * np.pi / period, q)
     if not can_follow(problem, q, tangent):
         return None
+    if watch is not None:
+        problem = attrs.evolve(problem, watch=watch)
     try:
         found = find(problem, q, tangent, _TOLERANCE)
     except ConvergenceError:
@@ -83,20 +88,9 @@ def beginning(system: System, period: float, q: np.ndarray) -> Beginning | None:
 
 def _collocated(problem: Problem, orbit: Orbit, highest: float) -> Found:
     """The motion of Fourier collocation, solved for once more on a mesh."""
-    path = _path(problem, orbit, mesh_of(problem, highest))
+    known = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
+    path = known.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
     return found_by(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
-
-
-def _path(problem: Problem, orbit: Orbit, nodes: np.ndarray) -> Path:
-    """An orbit on a mesh."""
-    w = problem.speed
-
-    def at(values: np.ndarray, angles: np.ndarray) -> np.ndarray:
-        return np.array([at_time(values, orbit.period, angle / w) for angle in angles])
-
-    q, v, a = orbit.displacement, orbit.velocity / w, orbit.acceleration / w**2
-    still = standing(problem, np.zeros(5), nodes)
-    return attrs.evolve(still, q=at(q, nodes), v=at(v, nodes), a=at(a, problem.angles(nodes)))
 
 
 def sampled(found: Found, period: float) -> Orbit:

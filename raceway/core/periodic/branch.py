@@ -5,7 +5,8 @@ Notes
 The state y0 = (q, q') at the start of the span and the parameter p are followed together along their common arc, so that a
 fold, where p turns back, is passed like any other point.  Newton's corrector adds one row to the closing condition
 (P - T) dy0 - T_p dp = T_r: the correction stands across the predictor.  The derivative of the balance of forces by p is a
-difference quotient at the same angles.
+difference quotient at the same angles where the caller knows none.  Points are handed over one by one: each holds its
+linearised problem, and what a caller does not keep is given back.
 
 References
 ----------
@@ -15,7 +16,7 @@ Analysis, 3rd ed. (2010), chapter 4.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import attrs
 import numpy as np
@@ -63,6 +64,7 @@ class Branch:
     problem_at : parameter -> Problem; unknown coordinates, span and balls' numbers stay the same
     unit : a typical change of the parameter;  length : a typical size of the motion [m]
     tolerance : error of the motion over its size that meshes are kept fit for;  most_intervals : that they may have
+    slope : (problem, path) -> (m s, 5) derivative of the balance of forces by the parameter; None for a difference quotient
     """
 
     problem_at: Callable[[float], Problem]
@@ -70,19 +72,18 @@ class Branch:
     length: float
     tolerance: float = 1e-6
     most_intervals: int = 2048
+    slope: Callable[[Problem, Path], np.ndarray] | None = None
 
     def start(self, solved: Solved, parameter: float, sense: float = 1.0) -> Point:
         """The first point, from a motion that is known; ``sense``: the side to which the parameter goes."""
         n2 = 2 * len(solved.problem.free)
         across = np.zeros(n2 + 1)
         across[-1] = sense
-        path, _, tangent, linear = self._correct(solved.path, parameter, across, None)
-        return self._point(path, parameter, tangent, linear, False)
+        _, _, tangent, linear = self._correct(solved.path, parameter, across, None)
+        return Point(parameter, linear, estimate(linear).error, tangent, False)
 
-    def follow(
-        self, first: Point, step: float, until: Callable[[Point], bool], most: int = 400, longest: float | None = None
-    ) -> list[Point]:
-        """Points from ``first`` on until a condition holds or ``most`` are found.
+    def follow(self, first: Point, step: float, longest: float | None = None) -> Iterator[Point]:
+        """Points from ``first`` on, one by one, for as long as they are asked for.
 
         Parameters
         ----------
@@ -91,63 +92,56 @@ class Branch:
         Raises
         ------
         ConvergenceError
-            Where the branch cannot be followed further; ``state["points"]`` holds what was found.
+            Where the branch cannot be followed further.
         """
-        points = [first]
+        yield first
+        here, size = first, step
         longest = 4.0 * step if longest is None else longest
-        size = step
-        while len(points) < most and not until(points[-1]):
-            here = points[-1]
+        while True:
+            here.solved.problem.watch()
             try:
-                found, iterations = self._step(here, size)
+                here, iterations = self._step(here, size)
             except ConvergenceError as why:
                 size *= 0.5
                 if size < 1e-6 * step:
-                    raise ConvergenceError(f"the branch ends at {here.parameter:.6g}: {why}", {"points": points}) from why
+                    raise ConvergenceError(f"the branch ends at {here.parameter:.6g}: {why}") from why
                 continue
-            points.append(found)
+            yield here
             size = min(size * (1.5 if iterations <= 4 else 0.7 if iterations > 7 else 1.0), longest)
-        return points
 
     def _step(self, here: Point, size: float) -> tuple[Point, int]:
-        n = len(here.solved.problem.free)
-        path, dp = here.solved.path, size * here.tangent[-1] * self.unit
-        problem = self.problem_at(here.parameter)
-        problem.watch()
+        solved = here.solved
+        n, path, dp = len(solved.problem.free), solved.path, size * here.tangent[-1] * self.unit
         # Predictor: the linearised problem carries the tangent at the start through the span.
-        linear = self._linearise(problem, path, here.parameter, True)
-        if linear is None:
-            raise ConvergenceError("the balls find no place between the races")
         dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
-        spread(problem.free, linear[0], linear[1], size * self.length * here.tangent[: 2 * n], dp, dq, dv, da)
+        first = size * self.length * here.tangent[: 2 * n]
+        spread(solved.problem.free, solved.stages, solved.transfer, first, dp, dq, dv, da)
         moved = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da, ball=path.ball.copy(), rate=path.rate.copy())
         at = here.parameter + dp
         path, parameter, tangent, last = self._correct(moved, at, here.tangent, (moved, at))
-        error = estimate(last).error
+        found = estimate(last)
         for _ in range(4):
-            if error <= self.tolerance or 2 * path.intervals > self.most_intervals:
+            if found.error <= self.tolerance or 2 * path.intervals > self.most_intervals:
                 break
-            found = estimate(last)
             parts = np.where((found.defect > 0.1 * found.defect.max()) | (found.between > 0.1 * found.between.max()), 2, 1)
             nodes, parent = divided(path.nodes, parts)
             finer = resampled(last.problem, path, nodes, parent)
             path, parameter, tangent, last = self._correct(finer, parameter, here.tangent, (finer, parameter))
-            error = estimate(last).error
+            found = estimate(last)
         # Back where it came from: a corrector that turned round.
         if float(tangent @ here.tangent) < 0.5:
             raise ConvergenceError("the branch bends too much for the step")
-        return self._point(path, parameter, tangent, last, tangent[-1] * here.tangent[-1] < 0.0), last.sweeps
+        folded = tangent[-1] * here.tangent[-1] < 0.0
+        return Point(parameter, last, found.error, tangent, folded), last.sweeps
 
-    def _point(self, path: Path, parameter: float, tangent: np.ndarray, linear: Solved, folded: bool) -> Point:
-        return Point(parameter, linear, estimate(linear).error, tangent, folded)
-
-    def _linearise(self, problem: Problem, path: Path, parameter: float, slope: bool) -> tuple[np.ndarray, ...] | None:
+    def _linearise(self, problem: Problem, path: Path, parameter: float) -> tuple[np.ndarray, ...] | None:
         """stages, transfer, whole, report; with the derivative by the parameter."""
         system, free = problem.system, problem.free
         m, s, n = path.intervals, len(problem.rule.points), len(free)
         push = problem.push(path.nodes)
-        by = np.zeros_like(push)
-        if slope:
+        if self.slope is not None:
+            by = self.slope(problem, path)
+        else:
             h = _DIFFERENCE * self.unit
             both = [self._imbalance(self.problem_at(parameter + off), path) for off in (-h, h)]
             by = (both[1] - both[0]) / (2.0 * h)
@@ -177,11 +171,12 @@ class Branch:
     ) -> tuple[Path, float, np.ndarray, Solved]:
         """Newton across the predictor; without one, the parameter stays.  Path, parameter, tangent, last linearisation."""
         worst = np.inf
+        lagging = stiff(self.problem_at(parameter), path)
         for sweeps in range(1, _LIMIT + 1):
             problem = self.problem_at(parameter)
             free = problem.free
             n = len(free)
-            linear = self._linearise(problem, path, parameter, True)
+            linear = self._linearise(problem, path, parameter)
             if linear is None:
                 raise ConvergenceError("the balls find no place between the races")
             stages, transfer, whole, report = linear
@@ -209,7 +204,7 @@ class Branch:
             worst = report[0]
             path = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da)
             parameter += dp
-            renew(problem, path, stiff(problem, path))
+            renew(problem, path, lagging)
             size = float(np.abs(path.v / problem.weight).max())
             place = float(np.abs(path.q / problem.weight).max())
             if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * place:
@@ -217,3 +212,18 @@ class Branch:
                 solved = Solved(problem, path, stages, transfer, whole, size, True, sweeps, correction)
                 return path, parameter, tangent, solved
         raise ConvergenceError("the corrector does not converge")
+
+
+def towards(one: Point, two: Point, wanted: float) -> Path:
+    """The path at one parameter between two points, or of the second one where their meshes differ."""
+    path = two.solved.path
+    if one.solved.path.intervals == path.intervals and np.array_equal(one.solved.path.nodes, path.nodes):
+        part = (wanted - one.parameter) / (two.parameter - one.parameter)
+        path = between(one.solved.path, path, part)
+    return path
+
+
+def between(one: Path, two: Path, part: float) -> Path:
+    """The second path's part and the first one's rest; ``part`` > 1 goes on beyond the second."""
+    names = ("q", "v", "a", "ball", "rate")
+    return attrs.evolve(two, **{x: (1.0 - part) * getattr(one, x) + part * getattr(two, x) for x in names})

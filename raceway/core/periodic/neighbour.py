@@ -4,16 +4,20 @@ Notes
 -----
 The linear response of the new problem about its own equilibrium, plus the nonlinear part of its neighbour's motion, is where
 Newton's iteration begins.  Where that part is large, several motions may exist under one force, and a neighbour could lead
-to another one than the search from rest: it is left alone then, and so is what it led to when that is far from linear.
+to another one than the search from rest: it is left alone then, and so is what it led to when that is far from linear;
+unless the neighbour's own continuation is asked for.
 """
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import attrs
 import numpy as np
 
+from raceway.core.orbit import at_time
 from raceway.core.periodic.collocation import Path, Problem, Solved
-from raceway.core.periodic.first_guess import guess
+from raceway.core.periodic.first_guess import guess, standing
 from raceway.core.periodic.sampling import motion_at
 
 #: Nonlinear part over the motion's size, up to which a neighbour is followed.  A Duffing oscillator has one motion only as
@@ -37,13 +41,13 @@ class Neighbour:
     share: float
 
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path | None:
-        """Where Newton's iteration may begin on a mesh; None where this motion is no help.
+        """Where Newton's iteration may begin on a mesh; None where this motion is none of the problem's unknowns.
 
         Parameters
         ----------
         q : (5,) static equilibrium of ``problem``;  tangent : (5, 5) of its contacts
         """
-        if not self.near_linear or not self._alike(problem):
+        if not self._alike(problem):
             return None
         first = guess(problem, q, tangent, nodes)
         dq, dv, _, _, _ = motion_at(self.problem, self.excess, nodes)
@@ -59,6 +63,37 @@ class Neighbour:
         mine, other = self.problem, problem
         same = (mine.system.ball_count, mine.system.ball_columns) == (other.system.ball_count, other.system.ball_columns)
         return same and mine.symmetry.span == other.symmetry.span and np.array_equal(mine.free, other.free)
+
+
+@attrs.frozen(eq=False)
+class Recorded:
+    """A turn of a motion that was integrated, to be followed to the periodic one that it settles on.
+
+    Attributes
+    ----------
+    period : [s];  displacement, velocity, acceleration : (n, 5) at equidistant times from 0 on
+    """
+
+    period: float
+    displacement: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+
+    near_linear: ClassVar[bool] = False
+
+    def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
+        """The same motion on a mesh, by trigonometric interpolation; parameters as of ``Neighbour``'s."""
+        w, inner = problem.speed, problem.angles(nodes)
+        still = standing(problem, q, nodes)
+        return attrs.evolve(
+            still,
+            q=np.ascontiguousarray(self._at(self.displacement, nodes / w)),
+            v=np.ascontiguousarray(self._at(self.velocity, nodes / w) / w),
+            a=np.ascontiguousarray(self._at(self.acceleration, inner / w) / w**2),
+        )
+
+    def _at(self, values: np.ndarray, times: np.ndarray) -> np.ndarray:
+        return np.array([at_time(values, self.period, t) for t in times])
 
 
 def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbour:

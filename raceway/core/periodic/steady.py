@@ -10,9 +10,10 @@ import numpy as np
 
 from raceway.core.address import by_address
 from raceway.core.bodies.ring import CAGE, FRICTION
+from raceway.core.periodic.direct import problem_of
 from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.sampling import record
-from raceway.core.periodic.search import Found, find, problem_of
+from raceway.core.periodic.search import Found, find
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.system import System
@@ -34,7 +35,8 @@ def steady(
 
     Parameters
     ----------
-    start : near a static equilibrium, from which the motion is searched for; its ``near`` is the solution of a similar problem
+    start : near a static equilibrium, from which the motion is searched for; its ``near`` is the solution of a similar problem,
+        or a turn that was recorded
 
     Raises
     ------
@@ -56,7 +58,7 @@ def steady(
         raise SceneError.at("integrator.kind", "periodic", why)
     if on_chunk is not None:
         problem = attrs.evolve(problem, watch=lambda: on_chunk(0, schedule.steps))
-    found = find(problem, q, tangent, tolerance, start.near)
+    found = find(problem, q, tangent, tolerance, start.near, start.stay)
     refined, told = found.refined, orbits(found.all)
     counts = {
         "steps": refined.solved.path.intervals,

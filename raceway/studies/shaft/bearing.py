@@ -9,6 +9,7 @@ import numpy as np
 
 from raceway.errors import SceneError
 from raceway.registry import Registry
+from raceway.result import Result
 from raceway.run import run
 from raceway.scene import Identifying, Rotor, Scene
 from raceway.studies.shaft.shaft_load import shaft_load
@@ -23,12 +24,14 @@ class Bearing:
     scene : with the axial load; free to tilt and without a rotor's mass, which are the shaft's
     compliance : (2, 2) of deflection and slope by force and moment, tangent at rest [m/N, 1/N; 1/N, rad/(N m)]
     mass : of the inner ring [kg]; 0 with an integrator that knows no inertia
+    last : the last result, if there is one, from which the next one is searched for
     """
 
     scene: Scene
     registry: Registry
     compliance: np.ndarray
     mass: float
+    last: list[Result] = attrs.field(factory=list, repr=False)
 
     @property
     def coupling(self) -> float:
@@ -48,7 +51,10 @@ class Bearing:
             No steady motion.
         """
         scene = attrs.evolve(self.scene, excitation=shaft_load(speed * 30.0 / pi, force, moment))
-        simulation = run(scene, self.registry).simulation
+        # Loads that are tried one after another belong to one motion of the rig.
+        found = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
+        self.last[:] = [found]
+        simulation = found.simulation
         assert simulation is not None  # a scene with an excitation and an identifier that needs a record
         record = simulation.record
         q = record.displacement
