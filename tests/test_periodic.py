@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from itertools import islice
+from types import SimpleNamespace
 
 import attrs
 import numpy as np
@@ -11,16 +12,18 @@ import pytest
 from scipy.linalg import expm
 
 from benchmarks.evidence._scenes import model_of, rotating
+from benchmarks.evidence._several import heavy
 from raceway import scene_from_dict
+from raceway.core.address import by_address
 from raceway.core.orbit import steady_orbit
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import Problem, solve
-from raceway.core.periodic.direct import highest_order, mesh_of
+from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
 from raceway.core.periodic.first_guess import guess
 from raceway.core.periodic.from_rest import from_rest
 from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.rates import stiff
-from raceway.core.periodic.sampling import motion_at
+from raceway.core.periodic.sampling import motion_at, record
 from raceway.core.periodic.search import find
 from raceway.core.periodic.steady import _equilibrium
 from raceway.core.periodic.symmetry import one_turn
@@ -29,6 +32,7 @@ from raceway.errors import SceneError
 from raceway.integrators.periodic import Periodic
 from raceway.run import run
 from raceway.statics import settle
+from raceway.steady_motion import steady_record
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
 from tests.command_line import ARTICLE, invoke
@@ -303,3 +307,21 @@ def test_far_below_resonance_the_message_names_the_share_and_the_way_out():
     assert found.exit_code == 1
     words = " ".join(found.output.split())
     assert "ends at 0 % of the force" in words and "quasi_static" in words and "the corrector diverges" in words
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_recorded_turn_leads_to_its_own_motion(which):
+    """80 kg, two stable motions: a turn of each leads to that one, without it the first is found."""
+    model = model_of(heavy(80.0))
+    equilibrium, period = settle(model), model.excitation.period_s
+    system = by_address(model.system)
+    problem = problem_of(system, 2.0 * np.pi / period, equilibrium.displacement)
+    found = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8)
+    lasting = [one.refined.solved for one in found.all if one.fate.verdict != "unstable"]
+    assert len(lasting) == 2
+    turn = record(lasting[which], Schedule(period / 72, 72, 2), {})
+    settled = steady_record(model, equilibrium, SimpleNamespace(whole=turn))
+    there = settled.displacement[4::5] - turn.displacement[72:]
+    assert np.abs(there[:, 1:3]).max() < 1e-6 * np.ptp(turn.displacement[:, 1])
+    alone = steady_record(model, equilibrium)
+    assert (np.abs(alone.displacement - settled.displacement).max() < 1e-9) == (which == 0)

@@ -49,7 +49,9 @@ COST = {
 }
 #: No motion grows out of rest to the whole force.
 RESONANT = {
-    "1000 N, tilt free, 12 000 r/min, force of one direction": scene(tilt="free", inertia=True, excitation=ONE_WAY),
+    "600 N, tilt free, 13 500 r/min, force of one direction": scene(
+        axial=600.0, rpm=13500.0, tilt="free", inertia=True, excitation=ONE_WAY
+    ),
     "400 N, tilt locked, 15 000 r/min, ball inertia, force of one direction": scene(
         axial=400.0, rpm=15000.0, inertia=True, excitation=ONE_WAY
     ),

@@ -69,11 +69,16 @@ def _told() -> list[Row]:
         out.append(
             Row(f"80 kg, 5000 N s/m, '{kind}': stable motions told", len(lasting), "2", len(lasting) == 2, COMMAND, z)
         )
-    found = _solved(article(800.0))
+    found = _solved(article(500.0))
     told = found.simulation.orbits[0]
     warned = any("unstable" in text for text in found.warnings)
-    out.append(Row("article, 800 N, 'newmark': multiplier of the orbit that it starts on", told["multiplier"], "told with a warning",
+    out.append(Row("article, 500 N, 'newmark': multiplier of the orbit that it starts on", told["multiplier"], "told with a warning",
                    warned and not told["stable"], COMMAND))  # fmt: skip
+    closed = _solved(article(800.0, kind="periodic", tolerance=1e-9))
+    z, multiplier, gap = by_integration(closed, 0.0)
+    first = closed.simulation.orbits[0]["stable"]
+    out.append(below("article, 800 N, 'periodic': distance of a turn's end from its beginning, by integration, over the amplitude", gap,
+                     1e-10, COMMAND, f"K = {1e-6 * z.real:.5g} N/um, multiplier {multiplier:.6f}, {'' if first else 'not '}the stable one of {len(closed.simulation.orbits)} told"))  # fmt: skip
     return out
 
 

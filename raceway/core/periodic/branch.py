@@ -4,7 +4,7 @@ Notes
 -----
 The state y0 = (q, q') at the start of the span and the parameter p are followed together along their common arc, so that a
 fold, where p turns back, is passed like any other point.  Newton's corrector adds one row to the closing condition
-(P - T) dy0 - T_p dp = T_r: the correction stands across the predictor.  The derivative of the balance of forces by p is a
+(P - T) dy0 - T_p dp = T_r + y_m - P y0: the correction stands across the predictor.  The derivative of the balance of forces by p is a
 difference quotient at the same angles where the caller knows none.  Points are handed over one by one: each holds its
 linearised problem, and what a caller does not keep is given back.
 
@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterator
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved
+from raceway.core.periodic.collocation import Path, Problem, Solved, gap
 from raceway.core.periodic.floquet import Floquet, floquet
 from raceway.core.periodic.rates import renew, stiff
 from raceway.core.periodic.refinement import divided, estimate, resampled
@@ -185,7 +185,7 @@ class Branch:
             bordered[: 2 * n, 2 * n] = -whole[:, 2 * n + 1] * self.unit / self.length
             bordered[2 * n] = across
             right = np.zeros((2 * n + 1, 2))
-            right[: 2 * n, 0] = whole[:, 2 * n] / self.length
+            right[: 2 * n, 0] = (whole[:, 2 * n] + gap(problem, path)) / self.length
             right[2 * n, 1] = 1.0
             if predicted is not None:
                 off = np.concatenate([(path.q[0] - predicted[0].q[0])[free], (path.v[0] - predicted[0].v[0])[free]])

@@ -139,6 +139,12 @@ class Solved:
     correction: float
 
 
+def gap(problem: Problem, path: Path) -> np.ndarray:
+    """What a path (2 n,) ends beyond the turned state that it begins with: y_m - P y_0 of the unknown states."""
+    first, last = (np.concatenate([path.q[k, problem.free], path.v[k, problem.free]]) for k in (0, -1))
+    return np.asarray(last - problem.closing @ first)
+
+
 def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, limit: int = 40) -> Solved:
     """Newton's iteration from a first guess.
 

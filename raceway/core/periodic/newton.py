@@ -72,10 +72,12 @@ def newton(
             continue
         worst, halvings = noted[0], 0
         report[IMBALANCE] = worst
+        # A path that was put together from others may not end where it begins: that is corrected with the rest.
         for i in range(2 * n):
+            close[i, 2 * n] = whole[i, 2 * n] + (q[m, free[i]] if i < n else v[m, free[i - n]])
             for j in range(2 * n):
                 close[i, j] = closing[i, j] - whole[i, j]
-            close[i, 2 * n] = whole[i, 2 * n]
+                close[i, 2 * n] -= closing[i, j] * (q[0, free[j]] if j < n else v[0, free[j - n]])
         if not eliminate(close, 2 * n, 1):
             return SINGULAR
         for i in range(2 * n):
