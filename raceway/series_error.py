@@ -18,7 +18,7 @@ from raceway.core.identification import Identification
 from raceway.core.record import OnProgress
 from raceway.model import Model
 from raceway.planning.modules import compares_with_steady_motion
-from raceway.steady_motion import value_at_speed
+from raceway.steady_motion import Settled
 
 #: Relative error of Z in a window above which it is told.
 _MUCH = 0.05
@@ -39,9 +39,9 @@ def with_series_error(
         return found
     held = model.excitation.period_s is None and compares_with_steady_motion(model.scene)
     told: list[float | None] = []
-    missed = 0
+    missed, motions = 0, Settled(model)
     for (speed, z), own in zip(found.series, found.series_error, strict=True):
-        settled = value_at_speed(model, speed, on_progress) if held and missed < _GIVEN_UP else None
+        settled = motions.value(speed, on_progress) if held and missed < _GIVEN_UP else None
         missed = missed + 1 if settled is None else 0
         if settled is not None:
             told.append(abs(z - settled) / min(abs(z), abs(settled)))

@@ -43,7 +43,7 @@ def settled_value(
         not found, or is another one than the transient settles on.
     """
     if model.excitation.period_s is None:
-        return value_at_speed(model, found.speed, on_progress)
+        return Settled(model).value(found.speed, on_progress)
     records = []
     for one, motion in motions:
         settled = steady_record(one, equilibrium if one is model else settle(one), motion, on_progress)
@@ -53,14 +53,30 @@ def settled_value(
     return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
 
 
-def value_at_speed(model: Model, speed: float, on_progress: OnProgress | None = None) -> complex | None:
-    """Z [N/m] of the steady motion at one speed [rad/s] of an excitation that changes its own; None where there is none."""
-    one = _at_speed(model, speed)
-    record = None if one is None else steady_record(one, settle(one), on_progress=on_progress)
-    if one is None or record is None:
-        return None
-    frequency = one.excitation.frequency_hz
-    return stiffness(*(fourier_line(record.time, part, frequency) for part in (record.force, record.displacement)))
+@attrs.define
+class Settled:
+    """Steady motions of an excitation that changes its speed, speed by speed.
+
+    Attributes
+    ----------
+    last : the motion at the last speed; where several exist, the next one continues it, as the motion that is integrated does
+    """
+
+    model: Model
+    last: Record | None = None
+
+    def value(self, speed: float, on_progress: OnProgress | None = None) -> complex | None:
+        """Z [N/m] at one speed [rad/s]; None where there is no motion that can be solved for, or none is found."""
+        one = _at_speed(self.model, speed)
+        if one is None:
+            return None
+        near = None if self.last is None else self.last.solution
+        record = _steady(one, settle(one), near, on_progress)
+        if record is None:
+            return None
+        self.last = record
+        frequency = one.excitation.frequency_hz
+        return stiffness(*(fourier_line(record.time, part, frequency) for part in (record.force, record.displacement)))
 
 
 def _at_speed(model: Model, speed: float) -> Model | None:
@@ -82,11 +98,16 @@ def steady_record(
     motion : that settles on it: where several exist, the one near its last turn is taken
     on_progress : called in the search, which what it raises ends
     """
+    period = model.excitation.period_s
+    near = None if motion is None or period is None else _last_turn(motion.whole, period)
+    return _steady(model, equilibrium, near, on_progress)
+
+
+def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnProgress | None) -> Record | None:
     from raceway.core.periodic.steady import steady
 
     if model.excitation.period_s is None:
         return None
-    near = None if motion is None else _last_turn(motion.whole, model.excitation.period_s)
     q, ball = equilibrium.displacement, equilibrium.ball
     start = Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy(), near=near, stay=near is not None)
     schedule = Schedule(model.excitation.period_s / _SAMPLES, _SAMPLES, 1)

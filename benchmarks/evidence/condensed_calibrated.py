@@ -215,11 +215,11 @@ array_cache.folder = lambda: Path(sys.argv[1])
 from benchmarks.evidence._scenes import settled
 from benchmarks.evidence.condensed_calibrated import peak_bytes, tables
 
-from raceway.bodies import condensed
+from raceway.bodies import compliances
 
 rigid = {**tables(), "bodies": {"kind": "rigid"}}
 settled(rigid)
-calibrated, spent = condensed.calibrated, []
+calibrated, spent = compliances.calibrated, []
 
 def timed(*given):
     begin = time.process_time()
@@ -227,7 +227,7 @@ def timed(*given):
     spent.append(time.process_time() - begin)
     return found
 
-condensed.calibrated = timed
+compliances.calibrated = timed
 before = peak_bytes()
 found = []
 for _ in range(2):
