@@ -26,7 +26,6 @@ import numpy as np
 
 from raceway.contact_error import contact_error, is_calibrated
 from raceway.core.identification import Identification
-from raceway.core.record import OnProgress
 from raceway.core.system import TOLERANCE
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.finer_series import finer_value, more_equilibria
@@ -36,7 +35,7 @@ from raceway.model import Model
 from raceway.other_start import Run, distance
 from raceway.planning.modules import compares_with_steady_motion, remembers_its_start
 from raceway.planning.recording import fits
-from raceway.simulate import Simulation, simulate
+from raceway.simulate import OnProgress, Simulation, simulate
 from raceway.statics import Equilibrium, settle
 from raceway.steady_motion import settled_value
 

@@ -16,9 +16,8 @@ from __future__ import annotations
 
 import attrs
 
-from raceway.core.record import OnProgress
 from raceway.model import Model
-from raceway.simulate import Simulation, simulate
+from raceway.simulate import OnProgress, Simulation, simulate
 from raceway.statics import Equilibrium, settle
 
 #: Least equilibria a turn of a second series.

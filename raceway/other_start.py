@@ -16,12 +16,11 @@ from typing import Any
 
 import attrs
 
-from raceway.core.record import OnProgress
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.free_vibration import without_free_vibration
 from raceway.model import Model
 from raceway.planning.modules import remembers_its_start
-from raceway.simulate import Simulation, simulate
+from raceway.simulate import OnProgress, Simulation, simulate
 from raceway.statics import Equilibrium
 
 #: Other starts in the order in which they are tried.

@@ -17,7 +17,6 @@ from raceway.core.energy import energy_balance
 from raceway.core.identification import Identification
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.lines import Line, lines
-from raceway.core.record import OnProgress
 from raceway.core.stepping.energy import drift, friction_lost, largest_share
 from raceway.error_estimate import error_table, no_error
 from raceway.errors import ConvergenceError, PluginError, RacewayError
@@ -31,7 +30,7 @@ from raceway.registry import Registry, default_registry
 from raceway.result import Result
 from raceway.scene import Scene
 from raceway.series_error import series_warnings, with_series_error
-from raceway.simulate import Simulation, simulate, simulate_speeds
+from raceway.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.statics import Equilibrium, settle
 from raceway.unused import unused
 

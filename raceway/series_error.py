@@ -15,9 +15,9 @@ from typing import Any
 import attrs
 
 from raceway.core.identification import Identification
-from raceway.core.record import OnProgress
 from raceway.model import Model
 from raceway.planning.modules import compares_with_steady_motion
+from raceway.simulate import OnProgress
 from raceway.steady_motion import Settled
 
 #: Relative error of Z in a window above which it is told.

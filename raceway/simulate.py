@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import ceil
 from typing import Any
 
@@ -9,7 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.core.orbit import Orbit
-from raceway.core.record import Motion, OnProgress, Record, Schedule
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.start import at_rest, from_orbit, static_orbit
 from raceway.errors import StabilityError
 from raceway.model import Model, build_model
@@ -18,6 +19,8 @@ from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn
 from raceway.starting import Start, chosen_start
 from raceway.statics import Equilibrium, settle
 
+#: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
+OnProgress = Callable[[str, int, int], None]
 #: Part of the stable limit, taken at the stiffest tangent of the orbit, that "auto" steps take. Balls that leave and meet the
 #: races each turn pump motions up a little below the limit of the frozen tangent: one orbit at 0.885 of it grew in 49 turns.
 SAFETY = 0.8
@@ -72,7 +75,8 @@ def simulate(
     """
     system, method, scene = model.system, model.scene.integrator.method, model.scene
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
-    begin = chosen_start(model, equilibrium, on_progress) if begun is None else begun.start
+    watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
+    begin = chosen_start(model, equilibrium, watch) if begun is None else begun.start
     start, orbit, warnings = begin.kind, begin.orbit, begin.warnings
     critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import attrs
 
 from raceway.core.orbit import Orbit, steady_orbit
-from raceway.core.record import OnProgress
 from raceway.core.system import System
 from raceway.errors import ConvergenceError
 from raceway.model import Model
 from raceway.planning.modules import searches_orbits
 from raceway.statics import Equilibrium
 
+Watch = Callable[[], None]
 #: Slips that a start leaves in contacts which stick stay there.
 _STICKS = (
     "friction: where contacts stick depends on how the motion began, so that several steady motions exist: "
@@ -41,24 +42,24 @@ class Start:
     warnings: tuple[str, ...] = ()
 
 
-def chosen_start(model: Model, equilibrium: Equilibrium, on_progress: OnProgress | None = None) -> Start:
+def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning.
 
     Parameters
     ----------
-    on_progress : called in the search for orbits, which what it raises ends
+    watch : called in the search for orbits, which what it raises ends
     """
     scene, method = model.scene, model.scene.integrator.method
     if getattr(method, "steady", False):
         return Start("static")
     kind = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
     if scene.contact.friction > 0.0:
-        begun = _begun(model, equilibrium, kind, on_progress)
+        begun = _begun(model, equilibrium, kind, watch)
         return attrs.evolve(begun, warnings=(*begun.warnings, _STICKS))
-    return _begun(model, equilibrium, kind, on_progress)
+    return _begun(model, equilibrium, kind, watch)
 
 
-def _begun(model: Model, equilibrium: Equilibrium, kind: str, on_progress: OnProgress | None) -> Start:
+def _begun(model: Model, equilibrium: Equilibrium, kind: str, watch: Watch | None) -> Start:
     if kind != "orbit" or not model.scene.integrator.method.inertial:
         return Start(kind)
     excitation, system = model.excitation, model.system.at_speed(0.0).at_standstill()
@@ -70,19 +71,16 @@ def _begun(model: Model, equilibrium: Equilibrium, kind: str, on_progress: OnPro
             return Start("ramp", settled=False, warnings=(why,))
         excitation = steady()
         system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
-    return _on_orbit(model, equilibrium, system, excitation.period_s, on_progress)
+    return _on_orbit(model, equilibrium, system, excitation.period_s, watch)
 
 
-def _on_orbit(
-    model: Model, equilibrium: Equilibrium, system: System, period: float, on_progress: OnProgress | None
-) -> Start:
+def _on_orbit(model: Model, equilibrium: Equilibrium, system: System, period: float, watch: Watch | None) -> Start:
     """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
     q = equilibrium.displacement
     try:
         if searches_orbits(model.scene) and system.companion is system:
             from raceway.core.periodic.beginning import beginning
 
-            watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
             found = beginning(system, period, q, watch)
             if found is not None and not found.told:
                 return Start("orbit", found.orbit)

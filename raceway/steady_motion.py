@@ -9,10 +9,10 @@ import attrs
 import numpy as np
 
 from raceway.core.identification import Identification, fourier_line, stiffness
-from raceway.core.record import Motion, OnProgress, Record, Schedule
+from raceway.core.record import Motion, Record, Schedule
 from raceway.errors import RacewayError
 from raceway.model import Model, build_model
-from raceway.simulate import Simulation
+from raceway.simulate import OnProgress, Simulation
 from raceway.statics import Equilibrium, settle
 
 #: Samples of the steady turn, and the error of its displacement over its amplitude.

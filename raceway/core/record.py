@@ -10,8 +10,6 @@ import numpy as np
 
 #: Called between chunks with the steps done and the steps in all.
 OnChunk = Callable[[int, int], None]
-#: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
-OnProgress = Callable[[str, int, int], None]
 
 
 @attrs.frozen(eq=False)

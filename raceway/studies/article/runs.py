@@ -11,11 +11,11 @@ from typing import Any
 
 import attrs
 
-from raceway.core.record import OnProgress
 from raceway.errors import RacewayError
 from raceway.registry import Registry
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
+from raceway.simulate import OnProgress
 from raceway.studies.processes import in_processes
 from raceway.studies.row_store import RowStore, program_key
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import attrs
 
-from raceway.core.record import OnProgress
 from raceway.errors import RacewayError
 from raceway.registry import Registry, default_registry
 from raceway.result import without_nan
 from raceway.scene_file import scene_from_dict
+from raceway.simulate import OnProgress
 from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import verdicts
 from raceway.studies.article.curves import ROTATING, Curves

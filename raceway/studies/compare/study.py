@@ -9,11 +9,11 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from raceway.core.record import OnProgress
 from raceway.errors import RacewayError
 from raceway.registry import Registry, default_registry
 from raceway.run import run
 from raceway.scene_file import scene_from_dict
+from raceway.simulate import OnProgress
 from raceway.studies.axes import parse_axes, points
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row

@@ -11,9 +11,9 @@ from typing import Any
 
 import attrs
 
-from raceway.core.record import OnProgress
 from raceway.errors import RacewayError
 from raceway.registry import Registry, default_registry
+from raceway.simulate import OnProgress
 from raceway.studies.map.curves import LEVEL, SATURATED, curves, words
 from raceway.studies.map.design import SPEED, Design, amplitude_words
 from raceway.studies.map.workers import Numbered, in_parallel, rows_of

@@ -21,7 +21,7 @@ from raceway.studies.precision.result import Precision, words_of
 from raceway.studies.row_store import RowStore, row_key
 
 if TYPE_CHECKING:
-    from raceway.core.record import OnProgress
+    from raceway.simulate import OnProgress
 
 #: Runs of each setting, and the longest predicted run [s].
 REPEATS = 3

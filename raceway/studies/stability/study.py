@@ -25,7 +25,7 @@ from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.workers import in_parallel, rows_of
 
 if TYPE_CHECKING:
-    from raceway.core.record import OnProgress
+    from raceway.simulate import OnProgress
 
 PROCESSES = 2
 

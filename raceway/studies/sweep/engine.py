@@ -11,11 +11,11 @@ from typing import Any
 import attrs
 
 from raceway.contracts import Lost, Refused
-from raceway.core.record import OnProgress
 from raceway.errors import PluginError, RacewayError
 from raceway.plan import make_plan
 from raceway.planning.sections import section_cost
 from raceway.planning.wall_time import START_S
+from raceway.simulate import OnProgress
 from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.identity import differences, identity
 from raceway.studies.sweep.store import Store, exists, open_store, written

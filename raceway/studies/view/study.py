@@ -8,7 +8,6 @@ from typing import Any
 
 import attrs
 
-from raceway.core.record import OnProgress
 from raceway.files import write_whole
 from raceway.plugins.reports.pictures import ball_loads, orbit, save_figure
 from raceway.plugins.reports.view.animation import animate
@@ -16,6 +15,7 @@ from raceway.plugins.reports.view.bearing import Bearing, State
 from raceway.plugins.reports.view.contacts import contacts
 from raceway.plugins.reports.view.scene import overview
 from raceway.result import Result
+from raceway.simulate import OnProgress
 from raceway.studies.page import Page
 from raceway.studies.view.page import view_page
 from raceway.studies.view.states import at_peak, at_rest, last_turn
