@@ -27,7 +27,7 @@ import numpy as np
 from raceway.contact_error import contact_error, is_calibrated
 from raceway.core.identification import Identification
 from raceway.core.system import TOLERANCE
-from raceway.errors import ConvergenceError, StabilityError
+from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.finer_series import finer_value, more_equilibria
 from raceway.free_vibration import Clean, without_free_vibration
 from raceway.misfit import largest_misfit
@@ -293,7 +293,10 @@ def _transient(
     if not method.inertial and (model.plan.turns == 1 or not memory):
         return Part(0.0, "a series of equilibria: nothing dies out")
     if compares_with_steady_motion(model.scene):
-        settled = settled_value(model, equilibrium, motions, found, on_progress)
+        try:
+            settled = settled_value(model, equilibrium, motions, found, on_progress)
+        except BeyondPlanError as why:
+            return Part(None, f"the search for the steady motion was {why}")
         if settled is not None:
             return _from_steady(settled, value, step)
     if "speeds" in model.scene.identifier.method.needs:

@@ -58,7 +58,7 @@ def raceway_plan_made(plan: Any) -> None:
 
 @hookspec
 def raceway_chunk_done(done: int, total: int) -> None:
-    """A part of the time steps is done; an exception stops the run."""
+    """A part of the time steps is done, or of a search, where ``total`` is 0; an exception stops the run."""
 
 
 @hookspec

@@ -15,6 +15,7 @@ from typing import Any
 import attrs
 
 from raceway.core.identification import Identification
+from raceway.errors import BeyondPlanError
 from raceway.model import Model
 from raceway.planning.modules import compares_with_steady_motion
 from raceway.simulate import OnProgress
@@ -22,8 +23,6 @@ from raceway.steady_motion import Settled
 
 #: Relative error of Z in a window above which it is told.
 _MUCH = 0.05
-#: Windows in a row without a steady motion after which none is searched for.
-_GIVEN_UP = 3
 
 
 def with_series_error(
@@ -34,15 +33,19 @@ def with_series_error(
     Parameters
     ----------
     error : table ``error`` of the result
+    on_progress : called in searches for steady motions; of windows whose search it ends no error is stated
     """
     if not found.series_error:
         return found
     held = model.excitation.period_s is None and compares_with_steady_motion(model.scene)
     told: list[float | None] = []
-    missed, motions = 0, Settled(model)
+    motions = Settled(model)
     for (speed, z), own in zip(found.series, found.series_error, strict=True):
-        settled = motions.value(speed, on_progress) if held and missed < _GIVEN_UP else None
-        missed = missed + 1 if settled is None else 0
+        try:
+            settled = motions.value(speed, on_progress) if held else None
+        except BeyondPlanError:  # of this window and of those to come nothing is known
+            told += [None] * (len(found.series) - len(told))
+            break
         if settled is not None:
             told.append(abs(z - settled) / min(abs(z), abs(settled)))
         else:

@@ -9,7 +9,7 @@ import attrs
 
 from raceway.core.orbit import Orbit, steady_orbit
 from raceway.core.system import System
-from raceway.errors import ConvergenceError
+from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.model import Model
 from raceway.planning.modules import searches_orbits
 from raceway.statics import Equilibrium
@@ -87,6 +87,8 @@ def _on_orbit(model: Model, equilibrium: Equilibrium, system: System, period: fl
             if found is not None:
                 return _told(model, found.orbit, found.told, found.warnings)
         return Start("orbit", steady_orbit(system, period, q))
+    except BeyondPlanError:
+        raise
     except ConvergenceError as why:
         return Start("ramp", settled=False, warnings=(f"{why}: started with a ramp instead",))
 

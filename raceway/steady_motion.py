@@ -10,13 +10,15 @@ import numpy as np
 
 from raceway.core.identification import Identification, fourier_line, stiffness
 from raceway.core.record import Motion, Record, Schedule
-from raceway.errors import RacewayError
+from raceway.errors import BeyondPlanError, RacewayError
 from raceway.model import Model, build_model
 from raceway.simulate import OnProgress, Simulation
 from raceway.statics import Equilibrium, settle
 
 #: Samples of the steady turn, and the error of its displacement over its amplitude.
 _SAMPLES, _TOLERANCE = 360, 1e-8
+#: Speeds in a row without a steady motion after which none is searched for.
+_GIVEN_UP = 3
 #: Two turns that differ by less than this share of their distance from the steady motion repeat each other.
 _REPEATS = 0.01
 
@@ -43,7 +45,11 @@ def settled_value(
         not found, or is another one than the transient settles on.
     """
     if model.excitation.period_s is None:
-        return Settled(model).value(found.speed, on_progress)
+        # The windows before lead to that one's motion, where several exist.
+        steady = Settled(model)
+        for speed, _ in found.series[:-1]:
+            steady.value(speed, on_progress)
+        return steady.value(found.speed, on_progress)
     records = []
     for one, motion in motions:
         settled = steady_record(one, equilibrium if one is model else settle(one), motion, on_progress)
@@ -60,18 +66,21 @@ class Settled:
     Attributes
     ----------
     last : the motion at the last speed; where several exist, the next one continues it, as the motion that is integrated does
+    missed : speeds in a row without a motion; after some, none is searched for
     """
 
     model: Model
     last: Record | None = None
+    missed: int = 0
 
     def value(self, speed: float, on_progress: OnProgress | None = None) -> complex | None:
         """Z [N/m] at one speed [rad/s]; None where there is no motion that can be solved for, or none is found."""
         one = _at_speed(self.model, speed)
-        if one is None:
+        if one is None or self.missed >= _GIVEN_UP:
             return None
         near = None if self.last is None else self.last.solution
         record = _steady(one, settle(one), near, on_progress)
+        self.missed = self.missed + 1 if record is None else 0
         if record is None:
             return None
         self.last = record
@@ -114,6 +123,8 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnPr
     watch = None if on_progress is None else (lambda done, total: on_progress("the steady motion", done, total))
     try:
         return steady(model.system, start, schedule, _TOLERANCE, on_chunk=watch)
+    except BeyondPlanError:
+        raise
     except RacewayError:
         return None
 

@@ -8,7 +8,8 @@ import json
 import numpy as np
 import pytest
 
-from raceway import load_scene
+from benchmarks.evidence._several import article
+from raceway import load_scene, scene_from_dict
 from raceway.allowance import PATIENCE, Allowance
 from raceway.cli import main
 from raceway.errors import BeyondPlanError
@@ -65,6 +66,35 @@ def test_a_stepped_motion_keeps_its_state(monkeypatch):
     with pytest.raises(BeyondPlanError, match="3 of [0-9]+ done") as caught:
         run(elastic_scene(**QUICK), on_progress=progress)
     assert {"t", "q", "v", "a", "ball"} <= set(caught.value.state)
+
+
+def test_a_search_that_is_stopped_tells_no_error(monkeypatch):
+    """Three motions exist; the first one that a search meets is another one than the ramp settles on."""
+    check = Allowance.check
+
+    def stop(self, what, done, total):
+        if what == "the steady motion":
+            raise BeyondPlanError("stopped far beyond the plan")
+        check(self, what, done, total)
+
+    monkeypatch.setattr("raceway.steady_motion._last_turn", lambda *_: None)
+    scene = scene_from_dict(article(800.0, start="ramp", turns=24))
+    whole = run(scene)
+    monkeypatch.setattr(Allowance, "check", stop)
+    stopped = run(scene)
+    assert whole.error["transient"] > 0.0
+    assert stopped.error["transient"] is None and stopped.error["total"] is None
+    assert "the search for the steady motion was stopped far beyond the plan" in stopped.error["how"]["transient"]
+
+
+def test_a_search_for_orbits_that_is_stopped_stops_the_run(monkeypatch):
+    def stop(_self, what, done, total):
+        if what == "the search for orbits":
+            raise BeyondPlanError("stopped far beyond the plan")
+
+    monkeypatch.setattr(Allowance, "check", stop)
+    with pytest.raises(BeyondPlanError):
+        run(scene_from_dict(article(800.0)))
 
 
 def test_only_many_times_the_plan_is_beyond_it(monkeypatch):

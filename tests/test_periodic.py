@@ -19,9 +19,9 @@ from raceway.core.orbit import steady_orbit
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import Problem, solve
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
-from raceway.core.periodic.first_guess import guess
+from raceway.core.periodic.first_guess import guess, response
 from raceway.core.periodic.from_rest import from_rest
-from raceway.core.periodic.neighbour import neighbour_of
+from raceway.core.periodic.neighbour import Recorded, neighbour_of
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.sampling import motion_at, record
 from raceway.core.periodic.search import find
@@ -325,3 +325,29 @@ def test_a_recorded_turn_leads_to_its_own_motion(which):
     assert np.abs(there[:, 1:3]).max() < 1e-6 * np.ptp(turn.displacement[:, 1])
     alone = steady_record(model, equilibrium)
     assert (np.abs(alone.displacement - settled.displacement).max() < 1e-9) == (which == 0)
+
+
+@pytest.mark.parametrize("count", [8, 9])
+def test_a_recorded_turn_is_met_at_its_samples(softening, count):
+    problem, q, tangent = softening
+    values = np.random.default_rng(count).normal(size=(count, 5))
+    turn = Recorded(2.0 * np.pi / problem.speed, values, values, values)
+    nodes = 2.0 * np.pi / count * np.arange(count + 1)
+    path = turn.first_guess(problem, q, tangent, nodes)
+    assert np.abs(path.q[:-1] - values).max() < 1e-13
+    assert np.abs(path.v[:-1] * problem.speed - values).max() < 1e-13
+
+
+def test_the_linear_response_at_another_speed_has_the_lines_of_the_force():
+    """A branch over the speed keeps the bodies' clock: one turn of the force is one of its own angle."""
+    model = model_of(scene())
+    q, w = settle(model).displacement, 2.0 * np.pi / model.excitation.period_s
+    tangent = model.system.evaluate(q).stiffness
+    here = problem_of(by_address(model.system), w, q, False)
+    for ratio in (0.85, 1.15):
+        orders, lines = response(attrs.evolve(here, speed=ratio * w, clock=w), tangent)
+        assert orders.tolist() == [1]
+        at = np.linalg.inv(tangent[1:3, 1:3] - (ratio * w) ** 2 * model.system.mass[1:3, 1:3])
+        known = np.linalg.inv(tangent[1:3, 1:3] - w**2 * model.system.mass[1:3, 1:3])
+        _, wanted = response(here, tangent)
+        assert np.abs(lines[0, 1:3] - at @ np.linalg.solve(known, wanted[0, 1:3])).max() < 1e-9 * np.abs(wanted).max()

@@ -4,8 +4,8 @@ Notes
 -----
 The state y0 = (q, q') at the start of the span and the parameter p are followed together along their common arc, so that a
 fold, where p turns back, is passed like any other point.  Newton's corrector adds one row to the closing condition
-(P - T) dy0 - T_p dp = T_r + y_m - P y0: the correction stands across the predictor.  The derivative of the balance of forces by p is a
-difference quotient at the same angles where the caller knows none.  Points are handed over one by one: each holds its
+(P - T) dy0 - T_p dp = T_r + y_m - P y0: the correction stands across the predictor.  The derivative of the balance of forces by
+p is a difference quotient at the same angles where the caller knows none.  Points are handed over one by one: each holds its
 linearised problem, and what a caller does not keep is given back.
 
 References
@@ -112,7 +112,8 @@ class Branch:
     def _step(self, here: Point, size: float) -> tuple[Point, int]:
         solved = here.solved
         n, path, dp = len(solved.problem.free), solved.path, size * here.tangent[-1] * self.unit
-        # Predictor: the linearised problem carries the tangent at the start through the span.
+        # Predictor: the last linearised problem carries the tangent at the start through the span; the last correction, which it
+        # adds once more, is far below the tolerance.
         dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
         first = size * self.length * here.tangent[: 2 * n]
         spread(solved.problem.free, solved.stages, solved.transfer, first, dp, dq, dv, da)

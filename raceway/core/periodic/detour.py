@@ -21,10 +21,10 @@ _RATIOS = (1.15, 1.3, 1.6, 0.85, 0.7)
 def from_other_speeds(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> tuple[Refined, str] | None:
     """The first motion that leads here from another speed, and from where; None where none does."""
     for ratio in _RATIOS:
+        problem.watch()
+        where = "from a higher speed" if ratio > 1.0 else "from a lower speed"
         try:
-            return _from(
-                problem, q, tangent, tolerance, ratio
-            ), "from a higher speed" if ratio > 1.0 else "from a lower speed"
+            return _from(problem, q, tangent, tolerance, ratio), where
         except ConvergenceError:
             continue
     return None

@@ -72,6 +72,7 @@ def grown(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float
     share, step = 0.0, _FIRST_SHARE
     last, before, gap = standing(problem, q, nodes), None, 1.0
     while share < 1.0:
+        problem.watch()
         step = min(step, 1.0 - share)
         here = part(share + step)
         first = guess(here, q, tangent, nodes) if before is None else between(before, last, 1.0 + step / gap)

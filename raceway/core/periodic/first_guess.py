@@ -19,7 +19,7 @@ def response(problem: Problem, tangent: np.ndarray) -> tuple[np.ndarray, np.ndar
     tangent : (5, 5) stiffness of the contacts at the equilibrium
     """
     system, w, free = problem.system, problem.speed, problem.free
-    times = 2.0 * np.pi / w / _SAMPLES * np.arange(_SAMPLES)
+    times = 2.0 * np.pi / problem.clock / _SAMPLES * np.arange(_SAMPLES)
     force = np.empty((_SAMPLES, 5))
     forces(system.force, system.force_params, times, force)
     lines = np.fft.rfft(problem.share * force[:, free], axis=0)[: _SAMPLES // 4 + 1] / _SAMPLES

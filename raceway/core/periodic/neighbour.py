@@ -15,7 +15,6 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.orbit import at_time
 from raceway.core.periodic.collocation import Path, Problem, Solved
 from raceway.core.periodic.first_guess import guess, standing
 from raceway.core.periodic.sampling import motion_at
@@ -82,18 +81,23 @@ class Recorded:
     near_linear: ClassVar[bool] = False
 
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
-        """The same motion on a mesh, by trigonometric interpolation; parameters as of ``Neighbour``'s."""
+        """The same motion on a mesh; parameters as of ``Neighbour``'s."""
         w, inner = problem.speed, problem.angles(nodes)
         still = standing(problem, q, nodes)
         return attrs.evolve(
             still,
-            q=np.ascontiguousarray(self._at(self.displacement, nodes / w)),
-            v=np.ascontiguousarray(self._at(self.velocity, nodes / w) / w),
-            a=np.ascontiguousarray(self._at(self.acceleration, inner / w) / w**2),
+            q=self._at(self.displacement, nodes / w),
+            v=self._at(self.velocity, nodes / w) / w,
+            a=self._at(self.acceleration, inner / w) / w**2,
         )
 
     def _at(self, values: np.ndarray, times: np.ndarray) -> np.ndarray:
-        return np.array([at_time(values, self.period, t) for t in times])
+        """By trigonometric interpolation."""
+        n = len(values)
+        lines = np.fft.rfft(values, axis=0) / n
+        lines[1 : (n + 1) // 2] *= 2.0  # but the line at half the sampling rate
+        waves = np.exp(2j * np.pi / self.period * times[:, None] * np.arange(len(lines)))
+        return np.ascontiguousarray((waves @ lines).real)
 
 
 def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbour:

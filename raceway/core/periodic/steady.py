@@ -14,6 +14,7 @@ from raceway.core.periodic.direct import problem_of
 from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.sampling import record
 from raceway.core.periodic.search import Found, find
+from raceway.core.periodic.stop import passed_on, stopping
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.system import System
@@ -41,7 +42,8 @@ def steady(
     Raises
     ------
     SceneError
-        Bodies that are stepped from Python, friction, a law with memory, a force that does not repeat itself, or balls that orbit without the symmetry of a pitch.
+        Bodies that are stepped from Python, friction, a law with memory, a force that does not repeat itself, or balls that orbit
+        without the symmetry of a pitch.
     ConvergenceError
         No such motion found.
     """
@@ -57,8 +59,9 @@ def steady(
         )
         raise SceneError.at("integrator.kind", "periodic", why)
     if on_chunk is not None:
-        problem = attrs.evolve(problem, watch=lambda: on_chunk(0, schedule.steps))
-    found = find(problem, q, tangent, tolerance, start.near, start.stay)
+        problem = attrs.evolve(problem, watch=stopping(lambda: on_chunk(0, schedule.steps)))
+    with passed_on():
+        found = find(problem, q, tangent, tolerance, start.near, start.stay)
     refined, told = found.refined, orbits(found.all)
     counts = {
         "steps": refined.solved.path.intervals,

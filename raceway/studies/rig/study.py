@@ -166,7 +166,7 @@ def study(scene: Scene, rig: Rig, registry: Registry, on_progress: OnProgress | 
 
 def _point(rig: Rig, held: Bearing, speed: float, seed: int) -> Point:
     """One speed [rad/s]: the true motion, its signals, and what is read from them."""
-    line = rotor(rig, speed)
+    line, held = rotor(rig, speed), held.anew()
     state = balance(line, held)
     answer = response(rig, held, state, rig.signals)
     signals = record(rig, answer, rig.signals, seed)

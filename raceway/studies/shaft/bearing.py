@@ -24,7 +24,7 @@ class Bearing:
     scene : with the axial load; free to tilt and without a rotor's mass, which are the shaft's
     compliance : (2, 2) of deflection and slope by force and moment, tangent at rest [m/N, 1/N; 1/N, rad/(N m)]
     mass : of the inner ring [kg]; 0 with an integrator that knows no inertia
-    last : the last result, if there is one, from which the next one is searched for
+    last : the last result, if there is one, whose motion the next one continues; see ``anew``
     """
 
     scene: Scene
@@ -32,6 +32,10 @@ class Bearing:
     compliance: np.ndarray
     mass: float
     last: list[Result] = attrs.field(factory=list, repr=False)
+
+    def anew(self) -> Bearing:
+        """The same bearing without a motion to continue: what is found with it depends on nothing that was found before."""
+        return attrs.evolve(self, last=[])
 
     @property
     def coupling(self) -> float:
