@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
+
+# One thread of linear algebra, as the commands take; read when numpy is imported, which is later than this.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from benchmarks.evidence import Row, _age, _files, names, report
 from benchmarks.evidence._kept import EARLIER
