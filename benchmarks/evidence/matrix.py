@@ -25,15 +25,25 @@ def rows() -> list[Row]:
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     seconds = time.perf_counter() - begin
     counted = {
-        word: int(number) for number, word in re.findall(r"(\d+) (combinations|run|refused|need options)", done.stdout)
+        word: int(number)
+        for number, word in re.findall(r"(\d+) (combinations|run|accepted|refused|need options)", done.stdout)
     }
     bad = int(found[1]) if (found := re.search(r"(\d+) failed", done.stdout)) else 0
     every = counted.get("combinations", 0)
-    ran, refused = counted.get("run", 0), counted.get("refused", 0)
+    ran, refused, planned = (counted.get(word, 0) for word in ("run", "refused", "accepted"))
+    rest = every - ran - planned - counted.get("need options", 0)
     return [
         Row("combinations", every, "every one of the registry's", every > 0, COMMAND),
         Row("combinations that run, finite and in agreement", ran, "more than 0", ran > 0 and done.returncode == 0, COMMAND),
-        Row("combinations refused with a reason", refused, "the rest", ran + refused == every, COMMAND),
+        Row(
+            "combinations that the plan accepts, not run for their cost",
+            planned,
+            "reported",
+            True,
+            COMMAND,
+            "condensed bodies: those run that change one choice of a plain scene (contacts at points) or two (resultants)",
+        ),
+        Row("combinations refused with a reason", refused, f"the rest, {rest}", refused == rest, COMMAND),
         below("combinations that fail", bad, 0, COMMAND),
         below("wall time, s", seconds, SECONDS, COMMAND),
     ]
