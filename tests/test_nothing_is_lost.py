@@ -14,7 +14,7 @@ from raceway.error_estimate import no_error
 from raceway.errors import ConvergenceError, MeshError
 from raceway.estimate import highest_frequency
 from raceway.plan import make_plan
-from raceway.planning.recording import fits, record_bytes
+from raceway.planning.recording import fits, record_bytes, recorded_per_turn
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.run import run
@@ -181,3 +181,13 @@ def test_records_are_predicted_with_what_is_copied_of_them():
     # Steps that no number of samples divides are all recorded: a second run with such a number is asked, too.
     assert record_bytes(1000, 3607, 12) > 20 * record_bytes(1000, 3600, 12)
     assert fits(1000, 3600, 12) and not fits(10_000, 3607, 12)
+
+
+def test_explicit_steps_of_a_slow_turn_are_recorded_at_their_samples():
+    """At 1 r/min a turn takes millions of steps, a multiple of the samples: the record fits, and the plan refuses nothing."""
+    excitation = {"kind": "bidirectional", "speed_rpm": 1.0, "amplitude": "constant", "force": 400.0}
+    integrator = {"kind": "central_difference", "turns": 3}
+    scene = scene_from_dict(b7206c(excitation=excitation, integrator=integrator))
+    plan = make_plan(scene)
+    assert plan.predicted_steps > 1e6
+    assert recorded_per_turn(plan.predicted_steps // plan.turns, plan.turns) == 360

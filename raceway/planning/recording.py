@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import ceil
+
 from raceway.errors import SceneError
 from raceway.estimate import highest_frequency
 from raceway.planning.elastic import steps_per_turn
@@ -25,7 +27,7 @@ def turns_of(scene: Scene) -> int:
 
 
 def predicted_steps_per_turn(scene: Scene) -> int:
-    """The scene's number; for 'auto' 360, or what a rough stiffness asks of an explicit method."""
+    """The scene's number; for 'auto' 360, or the multiple of it that a rough stiffness asks of an explicit method."""
     given = scene.integrator.steps_per_turn
     if isinstance(given, int):
         return given
@@ -33,8 +35,10 @@ def predicted_steps_per_turn(scene: Scene) -> int:
         return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
     if scene.bodies.kind == "elastic":
-        return max(STEPS_PER_TURN, steps_per_turn(scene, period, 0.8) or 0)
-    return max(STEPS_PER_TURN, int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1)
+        least = steps_per_turn(scene, period, 0.8) or 0
+    else:
+        least = int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1
+    return STEPS_PER_TURN * max(1, ceil(least / STEPS_PER_TURN))
 
 
 def recorded_per_turn(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
