@@ -133,17 +133,22 @@ def right(estimate: float, true: float) -> bool:
 
 
 def rows() -> list[Row]:
-    found, good = [], 0
+    found, good, wrong = [], 0, list[str]()
     limit = f"a third of to {FACTOR:g} times the true error, or both below {SMALL:g}"
     for one in CASES:
         try:
             estimate, true, bound = judge(one)
         except ConvergenceError as why:
+            wrong.append(one.name)
             found.append(Row(one.name, "no result", limit, False, COMMAND, str(why)))
             continue
         ok = right(estimate, true)
         good += ok
         note = f"true value known to {bound:.1g}" if bound > 0.1 * true else ""
+        if not ok:
+            wrong.append(one.name)
+            note += f"{'; ' if note else ''}{estimate / true:.2g} of the true error"
         found.append(Row(one.name, f"{estimate:.2g} against {true:.2g}", limit, ok, COMMAND, note))
-    found.append(Row("scenes whose estimate is right", f"{good} of {len(CASES)}", "all", good == len(CASES), COMMAND))
+    words = f"not right: {', '.join(wrong)}" if wrong else ""
+    found.append(Row("scenes whose estimate is right", f"{good} of {len(CASES)}", "all", good == len(CASES), COMMAND, words))
     return found
