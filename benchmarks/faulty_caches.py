@@ -150,8 +150,8 @@ def kernels(count: int = 150, seed: int = 17) -> dict[str, int]:
 
 def arrays(count: int = 50, seed: int = 19) -> dict[str, int]:
     """Outcomes with kept compliances of condensed bodies, whose kernels are loaded before."""
-    from raceway.core.condensed import structural  # noqa: F401  # what children run, loaded once before they fork
-    from raceway.run import run  # noqa: F401  # as above
+    from raceway.core.condensed import structural  # noqa: F401  # kernels that children run, loaded once before they fork
+    from raceway.run import run  # noqa: F401  # the command itself, for the same reason: each child would import it anew
 
     return tried(run_of, (_CONDENSED,), "*.arrays", count, 2, seed)
 
