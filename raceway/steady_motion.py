@@ -118,7 +118,7 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnPr
     if model.excitation.period_s is None:
         return None
     q, ball = equilibrium.displacement, equilibrium.ball
-    start = Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy(), near=near, stay=near is not None)
+    start = Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy(), near=near, stay=True)
     schedule = Schedule(model.excitation.period_s / _SAMPLES, _SAMPLES, 1)
     watch = None if on_progress is None else (lambda done, total: on_progress("the steady motion", done, total))
     try:

@@ -15,7 +15,7 @@ from benchmarks.evidence.several_motions import crossed_rows
 from raceway import scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.core.orbit import differentiation
-from raceway.core.periodic import beginning
+from raceway.core.periodic import beginning, direct
 from raceway.errors import ConvergenceError
 from raceway.run import run
 from raceway.starting import _STICKS
@@ -173,3 +173,29 @@ def test_only_the_words_for_several_motions_tell_of_several():
     one = "without friction: 2 steady motions that are not unstable exist"
     assert _told(SimpleNamespace(warnings=("an orbit that is unstable",)), SimpleNamespace(warnings=(one,)))
     assert not _told(SimpleNamespace(warnings=(_STICKS, "an orbit that is unstable")))
+
+
+def test_an_error_estimate_lets_no_force_grow_on_a_mesh_of_thousands_of_intervals(monkeypatch):
+    """A large pair at 220 r/min, its preload lifted off by radial forces: 24 steps were held against a search of 1.6 GB."""
+    tables = {
+        "bearing": {
+            "ball_diameter": 0.056, "pitch_diameter": 0.623, "ball_count": 17, "conformity_inner": 0.535,
+            "conformity_outer": 0.5586, "radial_clearance": 2.1e-4,
+        },
+        "load": {"axial": 0.28, "radial": [-744.5, 209.0]},
+        "rotor": {"mass": 0.065, "transverse_inertia": 0.0103},
+        "contact": {"kind": "penalty", "damping": 300.0},
+        "kinematics": {"ball_inertia": True},
+        "integrator": {"kind": "newmark", "turns": 1, "steps_per_turn": 24, "start": "static"},
+        "excitation": {"kind": "bidirectional", "speed_rpm": 219.84, "unbalance": 1.93e-6},
+    }  # fmt: skip
+    meshes = []
+
+    def newton(problem, first, *rest):
+        meshes.append(first.intervals)
+        raise ConvergenceError("not found")
+
+    monkeypatch.setattr(direct, "solve", newton)
+    run(scene_from_dict(tables))
+    assert meshes, "the motion is searched for directly"
+    assert max(meshes) <= 1.5 * direct.HIGHEST, "but not on twice the mesh, share by share"

@@ -65,7 +65,9 @@ def find(
 
     Parameters
     ----------
-    near : a motion to start from;  stay : on it where several may exist, instead of searching for all
+    near : a motion to start from
+    stay : on that one where several may exist, instead of searching for all; and where branches are not followed and nothing
+        is found directly, give up instead of letting the force grow on a mesh of thousands of intervals
 
     Notes
     -----
@@ -96,6 +98,8 @@ def find(
             return direct
     if not can_follow(problem, q, tangent):
         # Each point would take seconds.
+        if direct is None and stay:
+            raise ConvergenceError("no motion of the period of the force was found directly", {"q": q.copy()})
         return direct or found_by(_grown_only(problem, q, tangent, tolerance, highest), highest, "from rest")
     return _chosen(problem, q, tangent, tolerance, direct)
 
