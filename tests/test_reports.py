@@ -79,15 +79,20 @@ def test_what_a_report_imports_of_benchmarks_and_tests_is_measured_and_the_runne
     assert "benchmarks/evidence/_files.py" not in files
 
 
-def test_words_about_code_age_nothing_and_code_does(tmp_path):
-    def content(number: int, text: str) -> str:
+def test_words_and_places_of_code_age_nothing_and_code_does(tmp_path):
+    def pieces(number: int, text: str) -> tuple[str, ...]:
         (tmp_path / f"{number}.py").write_text(text, encoding="utf-8")
-        return _age._content(tmp_path / f"{number}.py")
+        return _age._pieces(tmp_path / f"{number}.py")
 
-    code = 'def f(x):\n    """Twice."""\n    return 2 * x  # "as is"\n'
-    reworded = 'def f(x):\n    """Two times\n\n    x.\n    """\n\n    # more\n    return 2 * x\n'
-    assert content(1, code) == content(2, reworded) == "def f(x):\n    return 2 * x"
-    assert len({content(3 + i, code.replace("2 * x", text)) for i, text in enumerate(("3 * x", "2 * x", '"# x"'))}) == 3
+    code = 'def f(x):\n    """Twice."""\n    return 2 * x  # "as is"\n\n\nLIMIT = 3\n'
+    reworded = (
+        'from a.b import c\n\n\ndef f(x):\n    """Two times\n\n    x.\n    """\n\n    # more\n    import d\n'
+        "\n    return (\n        2 * x\n    )\n\n\nLIMIT = 3\n"
+    )
+    assert pieces(1, code) == pieces(2, reworded) == ("def f(x):\n    return 2 * x", "LIMIT = 3")
+    assert len({pieces(3 + i, code.replace("2 * x", text)) for i, text in enumerate(("3 * x", "2 * x", '"# x"'))}) == 3
+    # What is carried from one file of an area into another one counts as before.
+    assert sorted(pieces(6, "LIMIT = 3\n") + pieces(7, code.split("LIMIT")[0])) == sorted(pieces(8, code))
 
 
 def test_verdicts_are_compared_and_not_digits():

@@ -1,8 +1,9 @@
 """Which reports are older than the code that they measure.
 
 A report carries a digest of the areas that it measures, of its own module, and of what that imports from ``benchmarks`` and
-``tests``.  Comments, docstrings and blank lines are no part of it.  A report whose digest is not that of the code is out of date:
-it is made again or, where that costs too much for now, stands with date and reason in ``docs/reports/older.toml``.
+``tests``.  What counts are definitions and statements, wherever they stand in those areas: comments, docstrings, line breaks,
+imports and the names of files are no part of it.  A report whose digest is not that of the code is out of date: it is made again
+or, where that costs too much for now, stands with date and reason in ``docs/reports/older.toml``.
 """
 
 from __future__ import annotations
@@ -10,9 +11,7 @@ from __future__ import annotations
 import ast
 import datetime
 import hashlib
-import io
 import json
-import tokenize
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -36,10 +35,8 @@ def digest(name: str) -> str:
     KeyError
         A report for which ``_areas.MEASURES`` names no areas.
     """
-    total = hashlib.sha256()
-    for path in measured(name):
-        total.update(f"{path.relative_to(ROOT).as_posix()}\n{_content(path)}\n".encode())
-    return total.hexdigest()[:16]
+    pieces = sorted(piece for path in measured(name) for piece in _pieces(path))
+    return hashlib.sha256("\n".join(pieces).encode()).hexdigest()[:16]
 
 
 def measured(name: str) -> list[Path]:
@@ -97,21 +94,26 @@ def _write(entries: dict[str, str]) -> None:
 
 
 @cache
-def _content(path: Path) -> str:
-    """What counts of a file: a source without comments, docstrings and blank lines; other files as they are."""
+def _pieces(path: Path) -> tuple[str, ...]:
+    """What counts of a file: the statements of a source as Python writes them, without docstrings and imports; other files whole."""
     text = path.read_text(encoding="utf-8")
     if path.suffix != ".py":
-        return text
-    lines = text.splitlines()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type == tokenize.COMMENT:
-            row, column = token.start
-            lines[row - 1] = lines[row - 1][:column]
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
-            for row in range(node.lineno - 1, node.end_lineno or node.lineno):
-                lines[row] = ""
-    return "\n".join(line.rstrip() for line in lines if line.strip())
+        return (text,)
+    return tuple(ast.unparse(statement) for statement in _Bare().visit(ast.parse(text)).body)
+
+
+class _Bare(ast.NodeTransformer):
+    """Takes out docstrings and imports."""
+
+    def visit_Import(self, node: ast.Import) -> None:
+        return None
+
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
+        return None
+
+    def visit_Expr(self, node: ast.Expr) -> ast.Expr | None:
+        words = isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+        return None if words else node
 
 
 @cache
