@@ -2,7 +2,7 @@
 
 A report carries a digest of the areas that it measures, of its own module, and of what that imports from ``benchmarks`` and
 ``tests``.  What counts are definitions and statements, wherever they stand in those areas: comments, docstrings, line breaks,
-imports and the names of files are no part of it.  A report whose digest is not that of the code is out of date: it is made again
+imports and the names of modules are no part of it.  A report whose digest is not that of the code is out of date: it is made again
 or, where that costs too much for now, stands with date and reason in ``docs/reports/older.toml``.
 """
 
@@ -12,6 +12,7 @@ import ast
 import datetime
 import hashlib
 import json
+import re
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -24,6 +25,8 @@ PACKAGE = ROOT / "raceway"
 LISTED = ROOT / "docs" / "reports" / "older.toml"
 #: What every report is made with: no part of what a report measures.
 _RUNNER = {Path(__file__).with_name(name) for name in ("__init__.py", "_files.py", "_kept.py")}
+#: A module of the package in a text, as Python or a path names it.
+_MODULE = re.compile(r"\braceway([./][a-z_][a-z_0-9]*)+(\.py\b)?")
 _PLACES = {place: area for area, places in AREAS.items() for place in places.split()}
 
 
@@ -97,9 +100,8 @@ def _write(entries: dict[str, str]) -> None:
 def _pieces(path: Path) -> tuple[str, ...]:
     """What counts of a file: the statements of a source as Python writes them, without docstrings and imports; other files whole."""
     text = path.read_text(encoding="utf-8")
-    if path.suffix != ".py":
-        return (text,)
-    return tuple(ast.unparse(statement) for statement in _Bare().visit(ast.parse(text)).body)
+    pieces = [text] if path.suffix != ".py" else map(ast.unparse, _Bare().visit(ast.parse(text)).body)
+    return tuple(_MODULE.sub("raceway", piece) for piece in pieces)
 
 
 class _Bare(ast.NodeTransformer):
