@@ -16,10 +16,10 @@ from typing import Any
 
 import attrs
 
-from raceway.registry import Registry
-from raceway.scene import TABLES
-from raceway.scene_file import STUDY_TABLES
-from raceway.schema import keys
+from raceway.framework.registry import Registry
+from raceway.scene.file import STUDY_TABLES
+from raceway.scene.schema import keys
+from raceway.scene.tables import TABLES
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENE = ROOT / "docs" / "scene.md"
@@ -36,7 +36,7 @@ Every mistake is reported at once, each with its path, the value, the rule and t
 
 `raceway check SCENE` validates, `raceway schema` prints the same declarations as a JSON schema for editors, `--set
 table.key=value` changes one key for one run. Made by `python -m benchmarks.documents` from the declarations in
-`raceway/scene.py` and in the plug-ins; do not edit by hand.
+`raceway/scene/tables.py` and in the plug-ins; do not edit by hand.
 
 `title` is a string; by default the name of the file. What `--set` changes stands in its second line, by key, on screens,
 pictures and pages, and in the name of the folder of the results, so that no run overwrites another's.

@@ -85,8 +85,8 @@ def three_kernels() -> list[float]:
 
 def run_of(tables: dict[str, Any]) -> list[float]:
     """Tangent and dynamic stiffness of a scene."""
-    from raceway.run import run
-    from raceway.scene_file import scene_from_dict
+    from raceway.pipeline.run import run
+    from raceway.scene.file import scene_from_dict
 
     result = run(scene_from_dict(tables))
     found = [float(value) for value in np.ravel(result.as_dict()["equilibrium"]["stiffness"])]
@@ -151,7 +151,7 @@ def kernels(count: int = 150, seed: int = 17) -> dict[str, int]:
 def arrays(count: int = 50, seed: int = 19) -> dict[str, int]:
     """Outcomes with kept compliances of condensed bodies, whose kernels are loaded before."""
     from raceway.core.condensed import structural  # noqa: F401  # kernels that children run, loaded once before they fork
-    from raceway.run import run  # noqa: F401  # the command itself, for the same reason: each child would import it anew
+    from raceway.pipeline.run import run  # noqa: F401  # the command itself, for the same reason: each child would import it anew
 
     return tried(run_of, (_CONDENSED,), "*.arrays", count, 2, seed)
 

@@ -12,6 +12,7 @@ import time
 import attrs
 import numpy as np
 
+from raceway.core.contact.hertz import contact_modulus, ellipse
 from raceway.core.contact_laws.power import linear
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body, Frame
@@ -23,11 +24,10 @@ from raceway.core.elastic.contacts.recovery import peak_at_nodes, peak_at_points
 from raceway.core.elastic.contacts.surface import surface_points
 from raceway.core.elastic.statics import TOLERANCE, Settled
 from raceway.core.elastic.system import ElasticSystem
-from raceway.core.hertz import contact_modulus, ellipse
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh import HexMesh
-from raceway.core.meshing.quarter import ball_layers, half_line, quarter_ball, quarter_groove
-from raceway.core.meshing.spacing import growing
+from raceway.core.mesh.hex_mesh import HexMesh
+from raceway.core.mesh.quarter import ball_layers, half_line, quarter_ball, quarter_groove
+from raceway.core.mesh.spacing import growing
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 DIAMETER, CONFORMITY, ROLLING = 9.525e-3, 0.52, 18.25e-3

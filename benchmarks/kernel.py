@@ -19,7 +19,7 @@ import numba
 import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh import HexMesh
+from raceway.core.mesh.hex_mesh import HexMesh
 from tests.reference import hexahedron as reference
 
 STEEL = (2.12e11, 0.29, 7810.0)

@@ -110,11 +110,11 @@ def compared(
 def answers(changes: tuple[str, ...], force: tuple[str, ...] = (), cage: float | None = None) -> Answer:
     """Dynamic stiffness (real, imaginary) of the example, from its scene on, with some parts forced in."""
     from raceway import load_scene
-    from raceway.core.bodies.ring import CAGE
-    from raceway.model import build_model
-    from raceway.plan import make_plan
-    from raceway.simulate import simulate
-    from raceway.statics import settle
+    from raceway.bodies.model import build_model
+    from raceway.core.ring.kernels.layout import CAGE
+    from raceway.pipeline.settle import settle
+    from raceway.pipeline.simulate import simulate
+    from raceway.planning.plan import make_plan
 
     scene = load_scene(SCENE, changes)
     plan = make_plan(scene, force)
@@ -190,12 +190,12 @@ def integration() -> Rule:
 
 def history() -> Rule:
     from raceway import load_scene
-    from raceway.core.record import Schedule
-    from raceway.core.start import at_rest
-    from raceway.model import build_model
-    from raceway.plan import make_plan
+    from raceway.bodies.model import build_model
+    from raceway.core.ring.start import at_rest
+    from raceway.core.stepping.record import Schedule
+    from raceway.pipeline.settle import settle
+    from raceway.planning.plan import make_plan
     from raceway.planning.recording import recorded_per_turn
-    from raceway.statics import settle
 
     per_turn, many = 2880, 50
     scene = load_scene(SCENE, ("integrator.kind=central_difference",))
@@ -222,7 +222,7 @@ def compliances() -> Rule:
     """Compliances made once for all balls and contacts, and once for each ball, nothing kept in memory or on disk."""
     from raceway import load_scene
     from raceway.bodies.basis import make_basis
-    from raceway.bodies.compliances import _BODIES, elastic_bodies
+    from raceway.bodies.condensed.compliances import _BODIES, elastic_bodies
     from raceway.core.condensed import structural
 
     scene = load_scene(SCENE, ("bodies.kind=condensed",))
@@ -257,7 +257,7 @@ def mirror() -> Rule:
 
     from raceway import load_scene
     from raceway.core.condensed.structural import ring_section
-    from raceway.core.meshing.ring_shape import ring_shape
+    from raceway.core.mesh.ring_shape import ring_shape
     from raceway.core.revolution.body import Revolution
     from raceway.core.revolution.factor import factorised
 
@@ -287,9 +287,9 @@ def stresses() -> Rule:
     Both give the same integral of the stress over each body, sum of x f^T: each checks the other.
     """
     from raceway import load_scene
+    from raceway.bodies.model import build_model
     from raceway.core.hexahedron.shape import mean_gradients
-    from raceway.model import build_model
-    from raceway.plan import make_plan
+    from raceway.planning.plan import make_plan
 
     changes = (
         "bodies.kind=elastic", "contact.discretisation=nodal", "mesh.kind=structured", "mesh.nodes_per_semi_axis=1",
@@ -325,7 +325,7 @@ def stresses() -> Rule:
 _PROBE = """
 import contextlib, io, json, pathlib, resource, sys, tempfile, time
 from raceway.cli import main
-from raceway.registry import default_registry
+from raceway.framework.registry import default_registry
 registry = default_registry()
 begun = time.process_time()
 {before}
@@ -349,8 +349,8 @@ for entry in registry.all():
             (plugin.examples()[0] if hasattr(plugin, "examples") else plugin()).kernel()
         except TypeError:
             pass  # needs options
-from raceway.core.bodies import condensed_inertial, condensed_tangential, condensed_weightless
-from raceway.core.integrators import central_difference, implicit, quasi_static
+from raceway.core.ring.kernels import condensed_inertial, condensed_tangential, condensed_weightless
+from raceway.core.ring.loops import central_difference, implicit, quasi_static
 from raceway.core.periodic import steady
 from raceway.core.hexahedron import operator
 import gmsh, matplotlib.figure, meshio, pyvista
@@ -395,7 +395,7 @@ RULES: dict[str, Callable[[], Rule]] = {
 def planning() -> float:
     """Processor time of a plan [s], of the kind of bodies that takes longest."""
     from raceway import load_scene
-    from raceway.plan import make_plan
+    from raceway.planning.plan import make_plan
 
     worst = 0.0
     coarse = ("mesh.nodes_per_semi_axis=1", "mesh.element_size=3.2e-3", "mesh.growth=3.0")

@@ -55,7 +55,7 @@ with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.Stri
         main(["run", sys.argv[1], "--out", folder, *(word for change in sys.argv[2:] for word in ("--set", change))])
 seconds = time.process_time() - before
 slowness.append(timed(60))
-from raceway.plan import make_plan
+from raceway.planning.plan import make_plan
 work = make_plan(load_scene(sys.argv[1], sys.argv[2:])).predicted_work_s
 print(json.dumps([work * sum(slowness) / 2.0, seconds]))
 """

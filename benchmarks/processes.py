@@ -17,7 +17,7 @@ HEAVY = ("numba", "scipy", "meshio", "gmsh", "pyvista", "matplotlib")
 _COUNT = """
 import json, sys
 from raceway import load_scene
-from raceway.run import run
+from raceway.pipeline.run import run
 from raceway.core.jit import clock
 compile_s = run(load_scene(sys.argv[1])).cost["compile_s"]
 print(json.dumps({**clock, "compile_s": compile_s}))

@@ -32,11 +32,11 @@ def count() -> list[dict[str, Any]]:
     """After the example has run: of each changed word the kernels compiled and the signatures that the loops gained."""
     from benchmarks.time_loop import EXAMPLE
     from raceway import load_scene
-    from raceway.core.integrators.central_difference import central_difference
-    from raceway.core.integrators.implicit import implicit
-    from raceway.core.integrators.quasi_static import quasi_static
     from raceway.core.jit import clock
-    from raceway.run import run
+    from raceway.core.ring.loops.central_difference import central_difference
+    from raceway.core.ring.loops.implicit import implicit
+    from raceway.core.ring.loops.quasi_static import quasi_static
+    from raceway.pipeline.run import run
 
     run(load_scene(EXAMPLE))
     loops = (implicit, central_difference, quasi_static)

@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import Any
 
 from raceway.errors import RacewayError
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
 from raceway.plugins.executors.serial import Serial
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import load_scene, read_toml, scene_from_dict, with_value
-from raceway.studies.points import tables_at
+from raceway.scene.file import load_scene, read_toml, scene_from_dict, with_value
+from raceway.studies.many.points import tables_at
 from raceway.studies.sweep import grid, open_store, prepare
 from raceway.studies.sweep import sweep as study
 from tests.sessions import left

@@ -18,11 +18,11 @@ import numpy as np
 from benchmarks.fused_loop import fused_loop
 from benchmarks.processes import light_commands, second_process, whole_runs
 from raceway import build_model, load_scene, make_plan
-from raceway.core.orbit import steady_orbit
-from raceway.core.record import Motion, Record, Schedule
-from raceway.core.start import from_orbit
-from raceway.model import Model
-from raceway.statics import settle
+from raceway.bodies.model import Model
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.ring.start import from_orbit
+from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.pipeline.settle import settle
 
 EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "b7206.toml"
 #: Two loops of the same physics, solved to 1e-9 of the largest force, differ by rounding only.

@@ -29,8 +29,8 @@ from rich.table import Table
 from scipy.optimize import brentq
 
 from raceway import scene_from_dict
+from raceway.pipeline.run import run
 from raceway.plugins.executors.serial import Serial
-from raceway.run import run
 from raceway.studies.ross.coefficients import Coefficients, coefficients
 from raceway.studies.ross.file import NAMES, RossFile, ross_file
 from raceway.studies.ross.reading import through_points

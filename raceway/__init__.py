@@ -21,14 +21,14 @@ from typing import Any
 __version__ = "0.1.0"
 
 _PUBLIC = {
-    "hookimpl": "raceway.hookspecs",
-    "load_scene": "raceway.scene_file",
-    "scene_from_dict": "raceway.scene_file",
-    "Scene": "raceway.scene",
-    "make_plan": "raceway.plan",
-    "build_model": "raceway.model",
-    "Result": "raceway.result",
-    "option": "raceway.options",
+    "hookimpl": "raceway.framework.hookspecs",
+    "load_scene": "raceway.scene.file",
+    "scene_from_dict": "raceway.scene.file",
+    "Scene": "raceway.scene.tables",
+    "make_plan": "raceway.planning.plan",
+    "build_model": "raceway.bodies.model",
+    "Result": "raceway.pipeline.result",
+    "option": "raceway.framework.options",
     "RacewayError": "raceway.errors",
     "SceneError": "raceway.errors",
     "PluginError": "raceway.errors",

@@ -27,19 +27,23 @@ from raceway.commands.frame import (
     show,
     show_progress,
 )
-from raceway.commands.inputs import changed_tables, has_matplotlib, load, require_matplotlib, slug, tell_faults, writable
-from raceway.commands.mesh import mesh
+from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults, writable
 from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
-from raceway.commands.precision_stability import precision, stability
-from raceway.commands.rig import identify
-from raceway.commands.store import export, plot
-from raceway.commands.study_group import study
-from raceway.commands.sweep import sweep
-from raceway.commands.view import view
 from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.studies.command import study
+from raceway.studies.compare.command import compare
+from raceway.studies.measured.command import identify
+from raceway.studies.precision.command import precision
+from raceway.studies.ross.command import export
+from raceway.studies.stability.command import stability
+from raceway.studies.sweep.command import sweep
+from raceway.studies.sweep.store_command import plot
+from raceway.studies.verify.command import verify
+from raceway.studies.view.command import view
+from raceway.studies.view.mesh_command import mesh
 
 if TYPE_CHECKING:
-    from raceway.scene import Scene
+    from raceway.scene.tables import Scene
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -99,7 +103,7 @@ def run(
         require_matplotlib("leave out --pictures")
     tell_faults(registry)
     with show_progress() as progress:
-        from raceway.run import run as compute
+        from raceway.pipeline.run import run as compute
 
         try:
             result = compute(loaded, registry, progress, patience=patience)
@@ -116,7 +120,9 @@ def run(
     if pictures and failed is None:
         report = registry.find("report", "pictures").plugin()
         failed = attempt(lambda: report.write(result, folder), files)
-    show(content, as_json, failed, lambda screen: screen.run_screen(content, files))
+    from raceway.commands.screen.result import run_screen
+
+    show(content, as_json, failed, lambda: run_screen(content, files))
     return 0
 
 
@@ -136,13 +142,15 @@ def plan(
     Example:
       raceway plan examples/b7206.toml --set supports.tilt=free
     """
-    from raceway.plan import make_plan
+    from raceway.planning.plan import make_plan
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     content = make_plan(loaded).as_dict()
     tell_faults(registry)
-    show({"title": loaded.title, **content}, as_json, None, lambda screen: screen.plan_screen(loaded.title, content))
+    from raceway.commands.screen.plan import plan_screen
+
+    show({"title": loaded.title, **content}, as_json, None, lambda: plan_screen(loaded.title, content))
     return 0
 
 
@@ -162,8 +170,8 @@ def check(
     Example:
       raceway check examples/b7206.toml --json
     """
-    from raceway.implausible import foreseen, implausible
-    from raceway.plan import make_plan
+    from raceway.planning.implausible import foreseen, implausible
+    from raceway.planning.plan import make_plan
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
@@ -178,82 +186,6 @@ def check(
     else:
         click.echo(f"{scene}: no mistakes")
     return 0
-
-
-@main.command(short_help="One scene, some keys varied, everything else the same.")
-@on_scene
-@click.option("--vary", multiple=True, required=True, metavar="A.B=X,Y", help="Values x,y,z or a range start:stop:count.")
-@out_folder
-@click.option("--pictures/--no-pictures", default=True, help="Write the curves as PNG (default).")
-@plugin_files
-@common
-def compare(
-    scene: Path,
-    vary: tuple[str, ...],
-    changes: tuple[str, ...],
-    out: Path | None,
-    pictures: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
-    """Vary some keys of a scene and say which of them causes what: main effects and interactions.
-
-    \b
-    Example:
-      raceway compare examples/b7206.toml --set integrator.kind=periodic \\
-          --vary excitation.kind=unidirectional,bidirectional --vary excitation.speed_rpm=10980:15000:5
-    """
-    registry = registry_with(plugins)
-    tables, mistakes = changed_tables(scene, changes, registry)
-    if mistakes:
-        raise SceneError(mistakes)
-    title = str(tables["title"])
-    folder = writable(out or RESULTS / f"{slug(title)}-compare")
-    pictures = pictures and has_matplotlib()
-    tell_faults(registry)
-    with show_progress() as progress:
-        from raceway.result import write_json
-        from raceway.studies.compare.study import compare as study
-
-        stopped = None
-        try:
-            comparison = study(tables, list(vary), registry, progress)
-        except KeyboardInterrupt as stop:
-            partial = getattr(stop, "partial", None)
-            if partial is None or not partial.rows:
-                raise
-            comparison, stopped = partial, stop  # what is finished is shown and written first
-    content = comparison.as_dict()
-    files: list[str] = []
-    failed = attempt(lambda: [write_json(content, folder / "compare.json")], files)
-    if pictures and failed is None and stopped is None:
-        failed = attempt(lambda: comparison.picture(folder), files)
-    show(content, as_json, failed, lambda screen: screen.compare_screen(title, comparison.table(), comparison.words, files))
-    if stopped is not None:
-        raise stopped
-    return 0
-
-
-@main.command(short_help="Compute the reference cases.")
-@click.option("--only", metavar="CASE", help="One case instead of all.")
-@click.option("--all", "every", is_flag=True, help="Show every number, not only the worst of each case.")
-@common
-def verify(only: str | None, every: bool, as_json: bool) -> int:
-    """Compute reference cases; exit code 1 when a number misses its tolerance.
-
-    Published numbers, closed forms, and this program by two ways are counted apart.
-
-    \b
-    Example:
-      raceway verify --only harris-table-6.1 --all
-    """
-    with show_progress() as progress:
-        from raceway.studies.verify.study import verify as study
-
-        verification = study(only, progress)
-    content = verification.as_dict()
-    show(content, as_json, None, lambda screen: screen.verify_screen(content, verification.passed, every))
-    return 0 if verification.passed else 1
 
 
 def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
@@ -271,7 +203,7 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
 
 
 _COMMANDS = (
-    *(precision, stability, sweep, study, plot, export, identify, view, mesh),
+    *(compare, verify, precision, stability, sweep, study, plot, export, identify, view, mesh),
     *(plugins, check_plugin, new_plugin, schema, cache),
 )
 for _command in _COMMANDS:

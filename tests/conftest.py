@@ -12,7 +12,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.model import Model
+from raceway.bodies.model import Model
 from tests.figures import outside
 
 

@@ -10,8 +10,8 @@ import warnings
 import numpy as np
 import pytest
 
-from raceway import array_cache
-from raceway.array_cache import kept
+from raceway.storage import array_cache
+from raceway.storage.array_cache import kept
 from tests.command_line import invoke, python
 
 INPUTS = {"points": np.arange(6.0).reshape(3, 2), "count": 3, "seat": "clamped", "ratio": 0.29, "offsets": None}
@@ -34,7 +34,7 @@ class Maker:
         return {"a": np.arange(12.0).reshape(3, 4)[:, ::2], "b": np.array([7], dtype=np.int32)}
 
 
-def get(maker, inputs=INPUTS, kind="test", sources=("errors.py",)):
+def get(maker, inputs=INPUTS, kind="test", sources=("scene/tables.py",)):
     return kept(kind, "arrays of a test", inputs, sources, maker)
 
 
@@ -69,7 +69,7 @@ def test_kind_sources_shapes_and_nesting_count():
     make = Maker()
     get(make)
     get(make, kind="other")
-    get(make, sources=("options.py",))
+    get(make, sources=("errors.py",))
     get(make, {**INPUTS, "points": INPUTS["points"].reshape(2, 3)})
     get(make, {**INPUTS, "offsets": [[1, 2], [3]]})
     get(make, {**INPUTS, "offsets": [[1], [2, 3]]})
@@ -125,7 +125,7 @@ def test_a_folder_that_cannot_be_written_costs_one_warning(tmp_path, monkeypatch
 RACE = """
 import sys, time
 import numpy as np
-from raceway.array_cache import kept
+from raceway.storage.array_cache import kept
 start = float(sys.argv[1])
 for i in range(20):
     time.sleep(max(0.0, start + 0.02 * i - time.time()))
@@ -222,7 +222,9 @@ def test_the_command_shows_and_clears(folder):
 
 def test_the_command_reads_no_arrays():
     """Heads of files alone: numpy stays out."""
-    found = python("-c", "import sys; from raceway import array_cache; array_cache.entries(); print('numpy' in sys.modules)")
+    found = python(
+        "-c", "import sys; from raceway.storage import array_cache; array_cache.entries(); print('numpy' in sys.modules)"
+    )
     assert found.stdout == "False\n", found.stderr
 
 

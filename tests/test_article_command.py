@@ -10,8 +10,8 @@ import attrs
 import pytest
 
 from raceway.errors import ConvergenceError
-from raceway.registry import default_registry
-from raceway.scene_file import read_toml
+from raceway.framework.registry import default_registry
+from raceway.scene.file import read_toml
 from raceway.studies.article import causes, runs
 from raceway.studies.article import expected as trends
 from raceway.studies.article import study as driver
@@ -48,7 +48,7 @@ def quick(monkeypatch):
 
 def _page(k, monkeypatch) -> str:
     """The page of invented numbers; figures are drawn, but not turned into pictures."""
-    monkeypatch.setattr("raceway.studies.page.svg", lambda figure: b"<svg/>")
+    monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
     found = study(curves(k, ("rigid", "condensed")))
     return page(found, pictures(found), "raceway study article").html()
 
@@ -132,7 +132,7 @@ def test_the_page_says_friction_first(monkeypatch):
 
 
 def test_without_friction_the_page_says_that(monkeypatch):
-    monkeypatch.setattr("raceway.studies.page.svg", lambda figure: b"<svg/>")
+    monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
     found = study(curves(lambda s, load, w: 1e8 * (1.0 + w), friction=0.0))
     text = page(found, pictures(found), "raceway study article --friction 0").html()
     assert "All runs are without friction" in text and "Every verdict is without it" in text

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from raceway.errors import SceneError
-from raceway.scene_file import read_toml
+from raceway.scene.file import read_toml
 from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, raceway
 
 #: What is set; the path that is named; words of the message.
@@ -302,7 +302,7 @@ def test_a_traceback_is_shown_only_when_asked_for():
 
 
 def test_a_fault_of_the_program_is_one_message(monkeypatch):
-    monkeypatch.setattr("raceway.plan.make_plan", lambda scene: 1 / 0)
+    monkeypatch.setattr("raceway.planning.plan.make_plan", lambda scene: 1 / 0)
     found = invoke("check", ARTICLE)
     assert found.exit_code == 1
     assert "unexpected ZeroDivisionError" in found.stderr

@@ -10,10 +10,10 @@ import pytest
 
 from benchmarks.evidence._several import article
 from raceway import load_scene, scene_from_dict
-from raceway.allowance import PATIENCE, Allowance
 from raceway.cli import main
 from raceway.errors import BeyondPlanError
-from raceway.run import run
+from raceway.pipeline.allowance import PATIENCE, Allowance
+from raceway.pipeline.run import run
 from tests.command_line import ARTICLE, invoke
 from tests.test_elastic_scene import QUICK
 from tests.test_elastic_scene import scene as elastic_scene
@@ -26,7 +26,7 @@ class Clock:
 
     def __init__(self, monkeypatch):
         self.now = 0.0
-        monkeypatch.setattr("raceway.allowance.working_processor_time", lambda: self.now)
+        monkeypatch.setattr("raceway.pipeline.allowance.working_processor_time", lambda: self.now)
 
 
 def test_a_run_far_beyond_its_plan_is_stopped_and_keeps_its_state(tmp_path):
@@ -77,7 +77,7 @@ def test_a_search_that_is_stopped_tells_no_error(monkeypatch):
             raise BeyondPlanError("stopped far beyond the plan")
         check(self, what, done, total)
 
-    monkeypatch.setattr("raceway.steady_motion._last_turn", lambda *_: None)
+    monkeypatch.setattr("raceway.pipeline.error.steady_motion._last_turn", lambda *_: None)
     scene = scene_from_dict(article(800.0, start="ramp", turns=24))
     whole = run(scene)
     monkeypatch.setattr(Allowance, "check", stop)

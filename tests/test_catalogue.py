@@ -8,11 +8,11 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.catalogue import catalogue, preset
 from raceway.errors import SceneError
-from raceway.run import run
-from raceway.scene import Bearing
-from raceway.scene_file import scene_from_dict
+from raceway.pipeline.run import run
+from raceway.scene.catalogue import catalogue, preset
+from raceway.scene.file import scene_from_dict
+from raceway.scene.tables import Bearing
 
 POUND = 4.4482216152605
 #: What no document states of each preset: makers print neither conformities nor, for most bearings, balls.

@@ -91,8 +91,8 @@ def test_pictures_leave_matplotlib_as_it_was(tmp_path):
 import matplotlib, sys
 before = str(matplotlib.rcParams.copy())
 from raceway import load_scene
-from raceway.registry import default_registry
-from raceway.run import run
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
 report = default_registry().find("report", "pictures").plugin(dots_per_inch=40)
 static = run(load_scene({MINIMAL!r}, ['identifier.kind="tangent"']))
 assert [p.name for p in report.write(static, {str(tmp_path)!r})] == ["ball-loads.png"]
@@ -202,8 +202,8 @@ def test_cache_is_seen_and_cleared(tmp_path, monkeypatch):
 
 
 def test_the_light_key_is_the_one_that_kernels_are_kept_under():
-    from raceway.cache_folder import current_folder
     from raceway.core.jit import kernel_folder
+    from raceway.storage.cache_folder import current_folder
 
     folder = kernel_folder()
     assert folder is None or folder.path == current_folder()

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from raceway.errors import ConvergenceError, SceneError
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.studies.axes import MOST_POINTS, parse_axes, points
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
 from raceway.studies.compare import study
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
 from raceway.studies.compare.phrases import percent
 from raceway.studies.compare.study import compare, tables_at
+from raceway.studies.many.axes import MOST_POINTS, parse_axes, points
 
 SCENE = {
     "title": "test",

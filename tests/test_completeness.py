@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from raceway import hookspecs
-from raceway.contracts import KINDS
+from raceway.framework import hookspecs
+from raceway.framework.contracts import KINDS
 from raceway.testing import SUITES, suite_of
 
 ROOT = Path(__file__).parents[1]

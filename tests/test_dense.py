@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from raceway.core.blocks import BlockMatrix
-from raceway.core.dense import cholesky_solve, solve
+from raceway.core.kernel.dense import cholesky_solve, solve
+from raceway.core.linear.blocks import BlockMatrix
 
 
 @pytest.mark.parametrize("seed", range(5))

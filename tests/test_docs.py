@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from raceway import scene_from_dict
-from raceway.contracts import KINDS
-from raceway.registry import Registry
-from raceway.run import run
-from raceway.scene_file import read_toml
+from raceway.framework.contracts import KINDS
+from raceway.framework.registry import Registry
+from raceway.pipeline.run import run
+from raceway.scene.file import read_toml
 from raceway.testing import check
 
 PAGE = Path(__file__).parents[1] / "docs" / "plugins.md"

@@ -9,15 +9,15 @@ import json
 import numpy as np
 import pytest
 
-from raceway.core.orbit import steady_orbit
-from raceway.core.start import from_orbit
+from raceway.bodies.model import build_model
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.ring.start import from_orbit
 from raceway.errors import RacewayError, SceneError
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
-from raceway.unused import unused
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.planning.unused import unused
+from raceway.scene.file import scene_from_dict
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.
 TINY = {

@@ -7,10 +7,10 @@ import pytest
 
 from benchmarks.evidence._scenes import imbalance, model_of, settled, static
 from benchmarks.evidence.equilibria import EXTREME_RESIDUAL, families, loose, random_scenes, solve
-from raceway.core.bodies.ring import CENTRIFUGAL, COSINE, SINE
+from raceway.bodies.model import Model
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, SINE
 from raceway.errors import ConvergenceError
-from raceway.model import Model
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
 from tests.reference.ring import Ring
 from tests.reference.statics import equilibrium
 

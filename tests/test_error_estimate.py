@@ -11,12 +11,13 @@ from benchmarks.evidence import error_estimate as single
 from benchmarks.evidence import error_starts as evidence
 from benchmarks.evidence._scenes import rotating
 from benchmarks.evidence.error_estimate import right
-from raceway import error_estimate, scene_from_dict
+from raceway import scene_from_dict
 from raceway.commands.screen.text import number_within
-from raceway.finer_series import more_equilibria
+from raceway.pipeline.error import estimate as error_estimate
+from raceway.pipeline.error.finer_series import more_equilibria
+from raceway.pipeline.error.steady_motion import settles_elsewhere
+from raceway.pipeline.run import run
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
-from raceway.run import run
-from raceway.steady_motion import settles_elsewhere
 
 
 # 45 and 90 samples of a motion with a mirror axis hold the same harmonics: half the samples tell nothing of them.

@@ -10,8 +10,8 @@ import pytest
 
 from raceway import load_scene
 from raceway.errors import SceneError
-from raceway.plan import make_plan
-from raceway.run import run
+from raceway.pipeline.run import run
+from raceway.planning.plan import make_plan
 from tests.command_line import invoke
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from raceway import load_scene, trust
+from raceway import load_scene
 from raceway.errors import MeshError
 from raceway.plugins.meshers import _geo
 from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.storage import trust
 from tests.command_line import EXAMPLES, invoke, python, raceway
 from tests.mesh.solids import RING_SCRIPT, write
 

@@ -26,7 +26,7 @@ def test_same_numbers_through_run():
     """The public path: a scene with an excitation and integrator quasi_static gives the mean of the static ones."""
     from benchmarks.evidence._scenes import rotating
     from raceway import scene_from_dict
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     result = run(scene_from_dict(rotating(1000.0, "locked", 12000.0, False, "quasi_static"))).as_dict()
     found = result["identification"]["equivalent_stiffness"]

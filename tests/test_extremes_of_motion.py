@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from raceway.errors import StabilityError
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.simulate import simulate
-from raceway.statics import settle
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import simulate
+from raceway.scene.file import scene_from_dict
 from tests.conftest import b7206c
 
 #: A force that lifts balls off and presses others with many times the preload.

@@ -14,19 +14,23 @@ from matplotlib.figure import Figure
 
 import raceway
 from raceway import scene_from_dict
-from raceway.plugins.reports import comparison, map_picture, pictures, precision, store_picture
-from raceway.plugins.reports.view import contacts
-from raceway.plugins.reports.view.bearing import Bearing
-from raceway.run import run
+from raceway.pipeline.run import run
+from raceway.plugins.reports import pictures
 from raceway.studies.article import figures as article
 from raceway.studies.article import panel
+from raceway.studies.compare import picture as comparison
+from raceway.studies.map import picture as map_picture
 from raceway.studies.map.curves import curves as map_curves
 from raceway.studies.measured import figures as measured
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.orders import order
+from raceway.studies.precision import picture as precision
 from raceway.studies.rig import figures as rig
+from raceway.studies.sweep import picture as store_picture
 from raceway.studies.sweep.plotting import layout
 from raceway.studies.sweep.selection import select
+from raceway.studies.view import contacts
+from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.states import at_rest
 from tests import article_study, test_compare, test_map
 from tests.conftest import b7206c

@@ -7,8 +7,8 @@ from math import acos, cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from raceway.core.geometry import BallBearing
-from raceway.core.hertz import contact_modulus
+from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.hertz import contact_modulus
 from tests.reference.ring import Ring
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.hertz import contact_modulus, ellipse, ellipticity
+from raceway.core.contact.hertz import contact_modulus, ellipse, ellipticity
 from raceway.errors import RacewayError
 from tests.reference.hertz import contact
 

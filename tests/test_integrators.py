@@ -9,13 +9,13 @@ import pytest
 from benchmarks.evidence import orders
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
-from raceway.core.address import by_address
-from raceway.core.integrators import outer_force
-from raceway.core.record import Schedule
-from raceway.core.start import at_rest
+from raceway.core.ring.address import by_address
+from raceway.core.ring.loops import outer_force
+from raceway.core.ring.start import at_rest
+from raceway.core.stepping.record import Schedule
 from raceway.errors import StabilityError
-from raceway.simulate import simulate
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import simulate
 
 INTEGRATORS = orders.INTEGRATORS
 

@@ -15,7 +15,7 @@ import pytest
 
 from raceway.commands.interrupt import Interrupts, farewell
 from raceway.errors import RacewayError
-from raceway.orphans import WATCH, deaf_to_terminals
+from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.executors.joblib import Joblib
 from raceway.studies.sweep import open_store
 from tests.command_line import ARTICLE, raceway
@@ -147,7 +147,7 @@ def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_p
 
 WORKER = """
 import os, subprocess, sys, time
-child = "import os, sys, time; from raceway.orphans import end_with; end_with(int(sys.argv[1])); time.sleep(1000)"
+child = "import os, sys, time; from raceway.framework.orphans import end_with; end_with(int(sys.argv[1])); time.sleep(1000)"
 print(subprocess.Popen([sys.executable, "-c", child, str(os.getpid())]).pid, flush=True)
 time.sleep(1000)
 """

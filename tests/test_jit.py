@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import raceway
-from raceway.cache_folder import current_folder, make, refusal
 from raceway.core.jit import jit
 from raceway.core.signatures import LAW
 from raceway.errors import PluginError
+from raceway.storage.cache_folder import current_folder, make, refusal
 from tests.command_line import python
 
 #: The smallest kernels, three in a file, one used once; what was compiled and read, what was warned of, numba's own settings.
@@ -198,7 +198,7 @@ def test_what_lacks_in_a_cache_that_cannot_be_written_is_compiled_after_one_warn
 
 
 def key_of(package: Path) -> str:
-    done = python("-c", "from raceway.cache_folder import source_key; print(source_key())", cwd=package.parent)
+    done = python("-c", "from raceway.storage.cache_folder import source_key; print(source_key())", cwd=package.parent)
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
 

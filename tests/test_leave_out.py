@@ -10,16 +10,16 @@ import pytest
 
 from benchmarks import leave_out
 from raceway import load_scene
-from raceway.plan import make_plan
+from raceway.pipeline.run import run as compute
+from raceway.planning.plan import make_plan
 from raceway.planning.recording import recorded_per_turn
-from raceway.run import run as compute
 from tests.command_line import ARTICLE, invoke, python
 
 #: A run in a process of its own: plan, modules, shapes of arrays, compiled kernels with their signatures.
 RUN = """
 import json, sys
 from raceway import load_scene
-from raceway.run import run
+from raceway.pipeline.run import run
 result = run(load_scene(sys.argv[1], sys.argv[2:]))
 from numba.core.dispatcher import Dispatcher
 modules = {name: module for name, module in sys.modules.items() if name.startswith("raceway.")}
@@ -100,16 +100,16 @@ def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrat
     assert found["plan"] == json.loads(json.dumps(make_plan(scene).as_dict()))
     for module in make_plan(scene).modules:
         # A loop in Python is found by its compiled counterpart, among all of which it is looked for.
-        if not module.module.startswith("raceway.core.integrators."):
+        if not module.module.startswith("raceway.core.ring.loops."):
             assert (module.module in found["loaded"]) == module.needed, module
-    assert {"raceway.bodies.compliances", "raceway.core.revolution"} <= set(found["loaded"])
-    assert "raceway.bodies.condensed" not in found["loaded"]
-    assert {"raceway.core.elastic.contacts.resultant", "raceway.core.sphere"} <= set(found["loaded"])
+    assert {"raceway.bodies.condensed.compliances", "raceway.core.revolution"} <= set(found["loaded"])
+    assert "raceway.bodies.condensed.build" not in found["loaded"]
+    assert {"raceway.core.elastic.contacts.resultant", "raceway.core.contact.sphere"} <= set(found["loaded"])
     assert set(found["kernels"].values()) == {1}
 
 
 def _check_shapes(shapes, scene, plan):
-    from raceway.core.bodies.ring import COLUMNS, SCALARS
+    from raceway.core.ring.kernels.layout import COLUMNS, SCALARS
 
     z = scene.bearing.ball_count
     # Positions, slips of what rubs, structural approaches of what deforms.
@@ -192,7 +192,7 @@ def test_planning_takes_less_than_20_ms():
 def test_the_command_shows_modules():
     content = json.loads(invoke("plan", ARTICLE, "--json").stdout)
     needed = {one["module"]: one["needed"] for one in content["modules"]}
-    assert needed["raceway.core.bodies.rigid_inertial"] and not needed["raceway.core.bodies.rigid_tangential"]
+    assert needed["raceway.core.ring.kernels.rigid_inertial"] and not needed["raceway.core.ring.kernels.rigid_tangential"]
     assert not any(needed[name] for name in ("matplotlib", "gmsh", "meshio", "pyvista"))
     shown = invoke("plan", ARTICLE).stdout
     assert "Modules not imported" in shown and "rigid_tangential" in shown
@@ -225,7 +225,7 @@ def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
 
 
 def test_compliances_that_are_kept_are_made_anew_by_the_rule_that_measures_them(monkeypatch):
-    from raceway.bodies import compliances
+    from raceway.bodies.condensed import compliances
 
     made = []
     whole = compliances._elastic_bodies

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear_statics import solve_static
-from raceway.core.natural_modes import natural_modes
+from raceway.core.linear.natural_modes import natural_modes
+from raceway.core.linear.statics import solve_static
 from raceway.errors import ConvergenceError
 from tests.reference import annulus, elastic
 

@@ -8,9 +8,9 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.errors import SceneError
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import read_toml
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
+from raceway.scene.file import read_toml
 from raceway.studies.map import study as study_module
 from raceway.studies.map import workers as map_workers
 from raceway.studies.map.curves import SATURATED, curves, trend, words

@@ -62,21 +62,21 @@ def test_a_text_that_does_not_occur_once_is_refused():
 
 
 def test_words_choose_among_the_faults(capsys):
-    words = ["gyroscopic moment has", "core/root.py"]
-    assert {fault.file for fault in chosen(words)} == {"raceway/bodies/basis.py", "raceway/core/root.py"}
-    assert main(["--list", "core/root.py"]) == 0
-    assert "raceway/core/root.py: " in capsys.readouterr().out
+    words = ["gyroscopic moment has", "ring/root.py"]
+    assert {fault.file for fault in chosen(words)} == {"raceway/bodies/basis.py", "raceway/core/ring/root.py"}
+    assert main(["--list", "ring/root.py"]) == 0
+    assert "raceway/core/ring/root.py: " in capsys.readouterr().out
 
 
 def test_a_fault_touches_what_imports_its_file_and_nothing_else():
-    found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/dense.py")}
+    found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/kernel/dense.py")}
     assert {
-        "raceway/core/dense.py",
-        "raceway/core/integrators/implicit.py",
-        "raceway/core/start.py",
+        "raceway/core/kernel/dense.py",
+        "raceway/core/ring/loops/implicit.py",
+        "raceway/core/ring/start.py",
         "tests/test_dense.py",
     } <= found
-    assert not {"raceway/core/integrators/__init__.py", "raceway/core/hexahedron/one_point.py"} & found
+    assert not {"raceway/core/ring/loops/__init__.py", "raceway/core/hexahedron/one_point.py"} & found
 
 
 def test_a_caught_fault_is_told_from_one_that_survives(monkeypatch, tmp_path):

@@ -9,15 +9,15 @@ import pytest
 
 from raceway import SceneError, build_model, scene_from_dict
 from raceway.commands.inputs import slug
-from raceway.core.mesh import HexMesh
-from raceway.error_estimate import no_error
+from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.errors import ConvergenceError, MeshError
-from raceway.estimate import highest_frequency
-from raceway.plan import make_plan
+from raceway.pipeline.error.estimate import no_error
+from raceway.pipeline.run import run
+from raceway.planning.closed_form import highest_frequency
+from raceway.planning.plan import make_plan
 from raceway.planning.recording import fits, record_bytes, recorded_per_turn
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
-from raceway.run import run
 from raceway.studies.measured.recording import read_recording
 from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
 from tests.conftest import b7206c
@@ -66,7 +66,7 @@ def test_more_harmonics_than_samples_are_refused_by_the_plan():
 
 def test_a_number_below_its_error_is_not_resolved(monkeypatch):
     table = {**no_error("a test"), "total": 1.3}
-    monkeypatch.setattr("raceway.run.error_table", lambda *_: table)
+    monkeypatch.setattr("raceway.pipeline.run.error_table", lambda *_: table)
     result = run(
         scene_from_dict(
             b7206c(rotor={"mass": 2.0}, excitation={"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3e-4})

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from benchmarks.evidence._scenes import model_of, rig_force, rotating
-from raceway.core.orbit import at_time, differentiation, steady_orbit
-from raceway.core.start import from_orbit
-from raceway.starting import chosen_start
-from raceway.statics import settle
+from raceway.core.ring.orbit import at_time, differentiation, steady_orbit
+from raceway.core.ring.start import from_orbit
+from raceway.pipeline.settle import settle
+from raceway.pipeline.starting import chosen_start
 from tests.conftest import b7206c
 from tests.reference.ring import Ring
 from tests.reference.shooting import periodic, swinging

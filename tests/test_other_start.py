@@ -8,12 +8,13 @@ from types import SimpleNamespace
 import attrs
 import pytest
 
-from raceway import other_start, scene_from_dict
-from raceway.error_estimate import _unresolved
+from raceway import scene_from_dict
 from raceway.errors import ConvergenceError
-from raceway.free_vibration import Clean
-from raceway.plan import make_plan
-from raceway.run import run
+from raceway.pipeline.error import other_start
+from raceway.pipeline.error.estimate import _unresolved
+from raceway.pipeline.error.free_vibration import Clean
+from raceway.pipeline.run import run
+from raceway.planning.plan import make_plan
 
 
 def rubbing(start="ramp", friction=0.3, kind="newmark", **tables):

@@ -14,8 +14,6 @@ from scipy.linalg import expm
 from benchmarks.evidence._scenes import model_of, rotating
 from benchmarks.evidence._several import heavy
 from raceway import scene_from_dict
-from raceway.core.address import by_address
-from raceway.core.orbit import steady_orbit
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import Problem, solve
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
@@ -27,12 +25,14 @@ from raceway.core.periodic.sampling import motion_at, record
 from raceway.core.periodic.search import find
 from raceway.core.periodic.steady import _equilibrium
 from raceway.core.periodic.symmetry import one_turn
-from raceway.core.record import Motion, Schedule
+from raceway.core.ring.address import by_address
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.stepping.record import Motion, Schedule
 from raceway.errors import SceneError
 from raceway.integrators.periodic import Periodic
-from raceway.run import run
-from raceway.statics import settle
-from raceway.steady_motion import steady_record
+from raceway.pipeline.error.steady_motion import steady_record
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
 from tests.command_line import ARTICLE, invoke

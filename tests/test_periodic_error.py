@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
 from tests.conftest import b7206c
 
 

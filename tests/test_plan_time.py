@@ -6,8 +6,8 @@ import pytest
 
 from benchmarks.plan_time import LEAST, MOST, SCENE, SCENES
 from raceway import load_scene
-from raceway.plan import make_plan
 from raceway.planning import machine
+from raceway.planning.plan import make_plan
 from tests.command_line import ARTICLE
 
 #: Processor times [s] of whole runs on the reference machine, as `python -m benchmarks.plan_time` measured them: what a test can

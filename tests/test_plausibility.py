@@ -8,11 +8,11 @@ import sys
 import pytest
 
 from raceway.errors import ConvergenceError
-from raceway.options import nearest
+from raceway.framework.options import nearest
+from raceway.pipeline.run import run
+from raceway.pipeline.simulate import _stride
 from raceway.planning.recording import samples_per_turn
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.simulate import _stride
+from raceway.scene.file import scene_from_dict
 from tests.command_line import EXAMPLES
 from tests.conftest import b7206c
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.errors import RacewayError, SceneError
-from raceway.plugins.reports.store_picture import draw
+from raceway.studies.sweep.picture import draw
 from raceway.studies.sweep.plotting import layout
 from raceway.studies.sweep.selection import select
 from tests.stores import SPEEDS, as_list, made, stiffness

@@ -3,8 +3,8 @@
 import pytest
 
 from raceway.errors import PluginError
-from raceway.registry import Registry
-from raceway.requires import check_requires
+from raceway.framework.registry import Registry
+from raceway.scene.requires import check_requires
 from tests.fake_site import LAW, FakeSite
 
 BROKEN = {
@@ -315,7 +315,7 @@ def _three(site, monkeypatch):
 
 def test_a_hook_that_raises_ends_the_run_with_the_plugins_name(tmp_path):
     from raceway import scene_from_dict
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     path = tmp_path / "watcher.py"
     path.write_text(LIFE_CYCLE + "\n@hookimpl\ndef raceway_meshers(): return []\n")

@@ -10,17 +10,17 @@ import pytest
 
 from benchmarks.evidence import error_estimate as evidence
 from raceway.errors import RacewayError, SceneError
-from raceway.free_vibration import hann_line
-from raceway.motion import peak
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import read_toml, scene_from_dict
-from raceway.studies.measured_run import measured
+from raceway.framework.registry import default_registry
+from raceway.pipeline.error.free_vibration import hann_line
+from raceway.pipeline.motion import peak
+from raceway.pipeline.run import run
+from raceway.scene.file import read_toml, scene_from_dict
+from raceway.studies.many.measured_run import measured
+from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.precision import study as module
 from raceway.studies.precision.design import make_design
 from raceway.studies.precision.result import THRESHOLDS
 from raceway.studies.precision.study import precision
-from raceway.studies.row_store import RowStore, row_key
 from tests.command_line import ARTICLE, invoke
 
 TABLES = read_toml(ARTICLE)
@@ -139,7 +139,7 @@ def test_a_disk_that_takes_no_more_rows_does_not_stop_the_study(tmp_path):
 
 def test_a_run_that_compiled_is_not_among_the_repeats(monkeypatch):
     from raceway.core.jit import clock
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     done = []
 
@@ -148,7 +148,7 @@ def test_a_run_that_compiled_is_not_among_the_repeats(monkeypatch):
         clock["compile_s"] += 100.0 if len(done) == 1 else 0.0
         return run(scene, registry)
 
-    monkeypatch.setattr("raceway.run.run", compiling)
+    monkeypatch.setattr("raceway.pipeline.run.run", compiling)
     cost = measured(scene_from_dict(FEW), default_registry(), 2)["cost"]
     assert len(done) == 3 and cost["repeats"] == 2 and cost["compile_s"] >= 100.0
     assert 0.0 < cost["cpu_s"] == cost["time_s"] < 50.0

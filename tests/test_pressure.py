@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from raceway.pressure import approach_at, contact_ellipse
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.pipeline.pressure import approach_at, contact_ellipse
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
 
 STIFFNESS = 1e15
 

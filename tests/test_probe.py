@@ -7,8 +7,8 @@ from raceway.contact_laws.hertz import Hertz
 from raceway.core.jit import jit
 from raceway.core.signatures import FORCE
 from raceway.errors import PluginError
+from raceway.framework.probe import probe_excitation, probe_law
 from raceway.plugins.excitations.bidirectional import Bidirectional
-from raceway.probe import probe_excitation, probe_law
 from tests import broken_laws
 
 N = 24

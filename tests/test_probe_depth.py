@@ -7,14 +7,14 @@ import numba
 import numpy as np
 import pytest
 
+from raceway.bodies.model import build_model
 from raceway.contact_laws.hertz import Hertz
 from raceway.core.signatures import LAW
 from raceway.errors import PluginError
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
 from tests.conftest import b7206c
 
 

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.registry import default_registry
+from raceway.framework.registry import default_registry
 from raceway.studies.precision.design import make_design
 from raceway.studies.precision.reference import find_reference
 from tests.conftest import b7206c

@@ -64,8 +64,8 @@ def test_every_file_of_the_package_has_an_area_and_every_report_measures_some():
     [
         ("core/elastic/cage.py", {"elastic", "stability"}, {"sweep", "tangent", "condensed_patches"}),
         ("studies/sweep/__init__.py", {"sweep", "dask"}, {"elastic", "tangent"}),
-        ("core/equilibrium.py", {"tangent", "expected_values"}, {"sweep", "hexahedron"}),
-        ("commands/sweep.py", set(), set(MEASURES)),
+        ("core/ring/equilibrium.py", {"tangent", "expected_values"}, {"sweep", "hexahedron"}),
+        ("studies/sweep/command.py", set(), set(MEASURES)),
     ],
 )
 def test_a_change_ages_the_reports_that_measure_it_and_no_others(changed, aged, spared):

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from raceway.contracts import KINDS
 from raceway.errors import PluginError
-from raceway.scaffold import new_plugin
+from raceway.framework.contracts import KINDS
+from raceway.testing.scaffold import new_plugin
 
 
 @pytest.mark.parametrize("kind", KINDS)

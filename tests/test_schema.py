@@ -7,9 +7,9 @@ import tomllib
 import pytest
 from jsonschema import Draft202012Validator
 
-from raceway.registry import Registry, default_registry
-from raceway.scene_file import load_scene
-from raceway.schema import scene_schema
+from raceway.framework.registry import Registry, default_registry
+from raceway.scene.file import load_scene
+from raceway.scene.schema import scene_schema
 from tests.command_line import EXAMPLES
 from tests.conftest import b7206c
 

@@ -14,11 +14,11 @@ from benchmarks.evidence._several import article, by_integration, heavy
 from benchmarks.evidence.several_motions import crossed_rows
 from raceway import scene_from_dict
 from raceway.commands.screen.result import run_screen
-from raceway.core.orbit import differentiation
 from raceway.core.periodic import beginning, direct
+from raceway.core.ring.orbit import differentiation
 from raceway.errors import ConvergenceError
-from raceway.run import run
-from raceway.starting import _STICKS
+from raceway.pipeline.run import run
+from raceway.pipeline.starting import _STICKS
 
 
 def solved(tables):

@@ -10,12 +10,12 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway.bodies.model import build_model
 from raceway.commands.frame import registry_with
 from raceway.errors import ConvergenceError, SceneError
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.registry import default_registry
-from raceway.statics import settle
+from raceway.framework.registry import default_registry
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
 from raceway.studies.stability import elastic, scenes
 from raceway.studies.stability import study as study_module
 from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused

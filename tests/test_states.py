@@ -10,15 +10,15 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.core.record import Schedule
-from raceway.core.start import at_rest
-from raceway.core.stepping.bearing import SteppedBearing
+from raceway.bodies.model import build_model
+from raceway.core.ring.start import at_rest
+from raceway.core.ring.stepped import SteppedBearing
+from raceway.core.stepping.record import Schedule
 from raceway.errors import PluginError
 from raceway.integrators.newmark import Newmark
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
 from raceway.studies.stability.systems import BASE
 
 SIX = np.zeros((6, 2))

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import quad
 
 from raceway.bodies.basis import make_basis
-from raceway.core.bodies.ring import STICK
-from raceway.core.hertz import contact_modulus, ellipse
+from raceway.core.contact.hertz import contact_modulus, ellipse
+from raceway.core.ring.kernels.layout import STICK
 
 YOUNG, NU = 212e9, 0.29
 MODULUS = contact_modulus(YOUNG, NU, YOUNG, NU)

@@ -17,16 +17,16 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.contracts import Lost, Refused
 from raceway.errors import PluginError, RacewayError, SceneError
+from raceway.framework.contracts import Lost, Refused
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.joblib import Joblib
 from raceway.plugins.executors.serial import Serial
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.studies.axes import parse_axes, points
-from raceway.studies.points import tables_at
+from raceway.scene.file import scene_from_dict
+from raceway.studies.many.axes import parse_axes, points
+from raceway.studies.many.points import tables_at
 from raceway.studies.sweep import Design, design_file, grid, open_store, point_list, prepare
 from raceway.studies.sweep import sweep as study
 from raceway.studies.sweep.store import facts_digest, written

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.evidence._scenes import settled
 from benchmarks.evidence.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
-from raceway.core.bodies.ring import DAMPING
+from raceway.core.ring.kernels.layout import DAMPING
 
 CASES = cases()
 
@@ -50,7 +50,7 @@ def test_damping_tangent_is_the_derivative_by_velocity(inertia):
 def test_two_balls_in_line_with_the_load_share_it(built):
     """Tangent of the axial direction equals the closed form of equally loaded balls in series."""
     model = built(load={"axial": 1000.0})
-    from raceway.statics import settle
+    from raceway.pipeline.settle import settle
 
     now = settle(model)
     z, load, angle = 12, now.contact_force[0], now.angle_inner[0]

@@ -34,8 +34,8 @@ def python(installed, code, **environment):
 RUN = """
 import json
 from raceway import scene_from_dict
-from raceway.run import run
-from raceway.scene_file import read_toml
+from raceway.pipeline.run import run
+from raceway.scene.file import read_toml
 
 law, force = read_toml("third_party_law/scene.toml"), read_toml("third_party_excitation/scene.toml")
 scenes = {
@@ -85,7 +85,7 @@ print(json.dumps(found))
 BLOCKED = """
 import json
 from raceway import load_scene, SceneError
-from raceway.registry import default_registry
+from raceway.framework.registry import default_registry
 try:
     load_scene("third_party_law/scene.toml")
     told = ""

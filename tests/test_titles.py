@@ -7,14 +7,14 @@ import json
 import pytest
 
 from raceway.commands.inputs import slug
-from raceway.commands.store import head
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
 from raceway.plugins.reports.pictures import ball_loads
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import load_scene, parse_change, scene_from_dict, titled
-from raceway.studies.page import Page
-from raceway.studies.row_store import row_key
+from raceway.scene.file import load_scene, parse_change, scene_from_dict, titled
+from raceway.studies.many.page import Page
+from raceway.studies.many.row_store import row_key
 from raceway.studies.sweep.selection import select
+from raceway.studies.sweep.store_command import head
 from tests.command_line import EXAMPLES, invoke
 from tests.conftest import b7206c
 from tests.stores import SPEEDS, made

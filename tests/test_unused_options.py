@@ -8,7 +8,7 @@ import pytest
 from raceway import option
 from raceway.contact_laws.hertz import Hertz
 from raceway.errors import PluginError
-from raceway.options import unused_options
+from raceway.framework.options import unused_options
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.unidirectional import Unidirectional
 

@@ -12,20 +12,22 @@ import zlib
 import numpy as np
 import pytest
 
-from raceway import number_table, plugin_sources, scene_from_dict
+from raceway import scene_from_dict
 from raceway.errors import MeshError, RacewayError, SceneError
-from raceway.number_table import read_numbers
-from raceway.plugin_sources import import_file
+from raceway.framework import sources as plugin_sources
+from raceway.framework.sources import import_file
 from raceway.plugins.formats import _exchange
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.formats.msh import Msh
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.storage import number_table
+from raceway.storage.number_table import read_numbers
+from raceway.storage.user_files import memory_for, told
 from raceway.studies.measured.recording import read_recording
 from raceway.studies.sweep import design
 from raceway.studies.sweep.design import point_list
-from raceway.user_files import memory_for, told
 from tests.conftest import b7206c
 from tests.mesh.cubes import block
 

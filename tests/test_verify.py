@@ -10,9 +10,9 @@ import pytest
 
 from raceway import hookimpl
 from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.registry import Registry
 from raceway.integrators.newmark import Newmark
-from raceway.registry import Registry
-from raceway.studies.reference import reference_cases
+from raceway.studies.many.reference import reference_cases
 from raceway.studies.verify import study as module
 from raceway.studies.verify.study import COMPUTED, Verification, verify
 

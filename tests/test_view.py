@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.mesh.ring_shape import ring_shape
+from raceway.pipeline.run import run
 from raceway.plugins.reports.pictures import ball_loads
-from raceway.plugins.reports.view import surfaces
-from raceway.plugins.reports.view.bearing import Bearing
-from raceway.run import run
+from raceway.studies.view import surfaces
+from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.states import at_peak, at_rest, last_turn
 from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
 from tests.conftest import b7206c
@@ -147,7 +147,7 @@ def test_the_command_draws_without_a_display_and_in_silence(tmp_path):
 @pytest.mark.parametrize("package", ["pyvista", "matplotlib"])
 def test_a_missing_package_is_named_before_anything_is_computed(tmp_path, monkeypatch, package):
     real = importlib.util.find_spec
-    monkeypatch.setattr("raceway.commands.view.find_spec", lambda name: None if name == package else real(name))
+    monkeypatch.setattr("raceway.studies.view.command.find_spec", lambda name: None if name == package else real(name))
     found = invoke("view", MINIMAL, "--out", tmp_path)
     assert found.exit_code == 2
     assert package in found.output and "pip install '.[view]'" in found.output

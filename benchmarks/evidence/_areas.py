@@ -9,44 +9,51 @@ from __future__ import annotations
 #: Places in the package by area: folders, or modules without their suffix.
 AREAS = {
     "rigid": """
-        contact_laws core/__init__ core/bodies core/contact core/contact_laws core/dense core/equilibrium core/geometry core/hertz core/root
-        core/system bodies/__init__ bodies/basis bodies/mounting bodies/rigid model pressure ring ring_section statics data/bearings""",
+        bodies/__init__ bodies/basis bodies/model bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
+        core/kernel/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/root
+        core/ring/system data/bearings pipeline/pressure pipeline/settle scene/inner_ring""",
     "motion": """
-        integrators core/advance core/changing_speed core/energy core/excitations core/friction core/identification core/integrators
-        core/lines core/orbit core/record core/start core/states plugins/excitations plugins/identifiers motion run simulate starting
-        data/forces""",
-    "periodic": "core/periodic integrators/periodic steady_motion",
-    "errors": "contact_error error_estimate finer_series free_vibration misfit other_start plausibility series_error",
+        core/excitations core/ring/advance core/ring/changing_speed core/ring/energy core/ring/friction core/ring/loops core/ring/orbit
+        core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__
+        pipeline/motion pipeline/run pipeline/simulate pipeline/starting plugins/excitations plugins/identifiers""",
+    "periodic": "core/periodic integrators/periodic pipeline/error/steady_motion",
+    "errors": "pipeline/error pipeline/plausibility",
     "condensed": """
-        core/condensed core/half_space core/sphere core/bodies/between core/bodies/condensed_inertial core/bodies/condensed_tangential
-        core/bodies/condensed_weightless core/bodies/structural core/bodies/structural_rows bodies/calibration_error bodies/compliances bodies/condensed bodies/inertia
-        bodies/patches bodies/patch_report""",
-    "revolution": "core/revolution array_cache",
-    "elastic": """
-        core/elastic core/stepping bodies/elastic bodies/elastic_points bodies/elastic_report bodies/elastic_resultants
-        bodies/locking""",
-    "solids": """
-        core/hexahedron core/address core/aggregates core/blocks core/linear_statics core/multigrid core/natural_modes core/rigid""",
-    "mesh": """
-        core/meshing core/mesh core/mesh_quality core/mesh_summary meshing mesh_fit plugins/meshers plugins/formats data/meshes""",
-    "kernels": "core/jit core/kernel_files core/plugin_kernel core/signatures",
-    "plan": "plan planning estimate probe allowance",
-    "scene": "scene scene_file structure requires options catalogue implausible unused",
+        bodies/condensed bodies/patches core/condensed core/contact/half_space core/contact/sphere core/patches core/revolution/grooves
+        core/ring/kernels/between core/ring/kernels/condensed_inertial core/ring/kernels/condensed_tangential
+        core/ring/kernels/condensed_weightless core/ring/kernels/structural core/ring/kernels/structural_rows""",
+    "revolution": "core/revolution storage/array_cache",
+    "elastic": "bodies/elastic core/elastic core/ring/stepped core/stepping",
+    "solids": "core/hexahedron core/linear core/ring/address",
+    "mesh": "bodies/mesh_fit bodies/meshing core/mesh data/meshes plugins/formats plugins/meshers",
+    "kernels": "core/jit core/kernel core/signatures storage/kernel_files",
+    "plan": "framework/probe pipeline/allowance planning",
+    "scene": """
+        framework/options planning/implausible planning/unused scene/__init__ scene/catalogue scene/file scene/requires scene/structure
+        scene/tables""",
     "article": "studies/article data/article",
     "compare": "studies/compare",
     "map": "studies/map data/map",
-    "measured": "studies/measured number_table",
-    "precision": "studies/precision studies/measured_run",
-    "rig": "studies/rig rig",
+    "measured": "studies/measured storage/number_table",
+    "precision": "studies/precision studies/many/measured_run",
+    "rig": "studies/rig scene/rig",
     "ross": "studies/ross",
     "shaft": "studies/shaft",
     "stability": "studies/stability",
-    "sweep": "studies/sweep studies/points studies/processes studies/row_store plugins/executors orphans",
-    "verify": "studies/verify studies/reference data/cases",
-    "pages": "studies/page studies/view plugins/reports data/page data/view data/view_stage",
+    "sweep": "framework/orphans plugins/executors studies/many/points studies/many/processes studies/many/row_store studies/sweep",
+    "verify": "data/cases studies/many/reference studies/verify",
+    "pages": """
+        data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture
+        studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
-        __init__ __main__ cache_folder cli commands contracts data/templates errors files hookspecs plugin_sources plugins/__init__
-        plugins/system_libraries registry result scaffold schema studies/__init__ studies/axes testing trust user_files""",
+        __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/hookspecs framework/registry
+        framework/sources pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
+        storage/files storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
+        studies/article/command studies/article/screen studies/compare/command studies/compare/screen studies/map/command
+        studies/measured/command studies/precision/command studies/precision/screen studies/rig/command studies/rig/screen
+        studies/ross/command studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/screen
+        studies/sweep/store_command studies/verify/command studies/verify/screen studies/view/command studies/view/mesh_command
+        studies/view/mesh_screen""",
 }
 
 #: Areas by report; words with a slash are files or folders outside the package.

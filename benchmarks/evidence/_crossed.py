@@ -10,8 +10,8 @@ import numpy as np
 
 from raceway import scene_from_dict
 from raceway.errors import RacewayError
-from raceway.result import Result
-from raceway.run import run
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
 
 Tables = dict[str, Any]
 _METHODS = ("newmark", "generalized_alpha", "central_difference", "periodic")

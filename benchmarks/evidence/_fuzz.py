@@ -23,13 +23,13 @@ from benchmarks.evidence._fuzz_scenes import fill, wild
 from benchmarks.evidence._random_scenes import Chance, refuse_nan
 from raceway import load_scene, scene_from_dict
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.estimate import highest_frequency
-from raceway.implausible import foreseen, implausible
-from raceway.plan import Plan, make_plan
+from raceway.pipeline.run import run
+from raceway.planning.closed_form import highest_frequency
+from raceway.planning.implausible import foreseen, implausible
+from raceway.planning.plan import Plan, make_plan
 from raceway.planning.recording import predicted_steps_per_turn, record_bytes
 from raceway.planning.wall_time import START_S
-from raceway.run import run
-from raceway.scene import Scene
+from raceway.scene.tables import Scene
 
 #: Processor time [s] in which a scene is checked and planned, and run; and wall time that nothing may sleep through.
 CHECK_S, RUN_S, ASLEEP_S = 10.0, 60.0, 300.0

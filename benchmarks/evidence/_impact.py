@@ -16,13 +16,13 @@ from raceway.core.elastic.contacts.gap import plane
 from raceway.core.elastic.contacts.nodal import NodalContact, Pair
 from raceway.core.elastic.contacts.penalty import penalty_stiffness
 from raceway.core.elastic.contacts.surface import surface_points
+from raceway.core.elastic.stepped import SteppedElastic
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear_statics import solve_static
-from raceway.core.mesh import FACES
-from raceway.core.meshing.quarter import half_line
-from raceway.core.meshing.sphere import ball_mesh
-from raceway.core.stepping.elastic import SteppedElastic
+from raceway.core.linear.statics import solve_static
+from raceway.core.mesh.ball_mesh import ball_mesh
+from raceway.core.mesh.hex_mesh import FACES
+from raceway.core.mesh.quarter import half_line
 from tests.reference.elastic import grid
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
@@ -105,7 +105,7 @@ def _block(fine: float, zone: float, growth: float) -> tuple[np.ndarray, np.ndar
 
 def _surface(mesh: tuple[np.ndarray, np.ndarray], chosen: Any, sphere: float | None) -> np.ndarray:
     """(k, 4) nodes of outer facets all of whose corners are chosen (and lie on the sphere)."""
-    from raceway.core.mesh import boundary
+    from raceway.core.mesh.hex_mesh import boundary
 
     points, cells = mesh
     facets = boundary(cells)

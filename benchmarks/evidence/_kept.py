@@ -15,8 +15,8 @@ import attrs
 
 from benchmarks.evidence import Row
 from benchmarks.evidence._files import ROOT
-from raceway.cache_folder import cache_root
-from raceway.studies.row_store import RowStore
+from raceway.storage.cache_folder import cache_root
+from raceway.studies.many.row_store import RowStore
 
 #: Seconds that parts read from disk took when they were computed, by report.
 EARLIER: dict[str, float] = {}

@@ -13,20 +13,20 @@ import numpy as np
 
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
-from raceway.core.address import by_address
-from raceway.core.identification import stiffness
-from raceway.core.orbit import steady_orbit
+from raceway.bodies.model import Model
 from raceway.core.periodic.branch import Point
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
 from raceway.core.periodic.from_rest import from_rest
 from raceway.core.periodic.sampling import motion_at
 from raceway.core.periodic.symmetry import one_turn
+from raceway.core.ring.address import by_address
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.signals.identification import stiffness
 from raceway.errors import ConvergenceError
-from raceway.model import Model
-from raceway.result import Result
-from raceway.run import run
-from raceway.simulate import simulate
-from raceway.statics import Equilibrium, settle
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.simulate import simulate
 
 Tables = dict[str, Any]
 

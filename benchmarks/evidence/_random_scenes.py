@@ -12,13 +12,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from raceway import scene_from_dict
-from raceway.catalogue import catalogue
 from raceway.errors import RacewayError
-from raceway.estimate import highest_frequency
-from raceway.plan import make_plan
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
+from raceway.planning.closed_form import highest_frequency
+from raceway.planning.plan import make_plan
 from raceway.planning.wall_time import START_S
-from raceway.result import Result
-from raceway.run import run
+from raceway.scene.catalogue import catalogue
 
 Tables = dict[str, Any]
 FINISHED, REFUSED, FAILED, PLANNED = "finished", "refused, exit code 2", "failed, exit code 1", "planned only"

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from raceway.result import Result
-from raceway.ring import ring_inertia
+from raceway.pipeline.result import Result
+from raceway.scene.inner_ring import ring_inertia
 from tests.reference.ring import Ring
 from tests.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory
 

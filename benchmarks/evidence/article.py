@@ -17,9 +17,9 @@ from typing import Any
 import attrs
 
 from benchmarks.evidence import Row, below
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
 from raceway.studies.article.curves import ROTATING
 from raceway.studies.article.design import (
     FRICTION_ERROR,

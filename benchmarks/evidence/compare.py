@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from benchmarks.evidence import Row
-from raceway.scene_file import read_toml
+from raceway.scene.file import read_toml
 from raceway.studies.compare.study import compare
 
 TITLE = "What causes the change of stiffness: both excitations, amplitude laws, speed, tilt, ball inertia"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from benchmarks.evidence import Row
-from raceway.scene_file import read_toml
+from raceway.scene.file import read_toml
 from raceway.studies.compare.study import Comparison, compare
 
 TITLE = "What elastic rings and balls change: dynamic stiffness over speed, tilt and seat"

@@ -33,7 +33,7 @@ def rows() -> list[Row]:
 
 def _shape(inner: bool, land: float | None = None) -> Any:
     from raceway import load_scene
-    from raceway.core.meshing.ring_shape import ring_shape
+    from raceway.core.mesh.ring_shape import ring_shape
 
     shape = ring_shape(load_scene(ROOT / "examples" / "minimal.toml").bearing, inner)
     return shape if land is None else attrs.evolve(shape, land=land)
@@ -92,8 +92,8 @@ def _reciprocity() -> list[Row]:
 def _sizes(nodes: int) -> tuple[float, int, float, float, int, int]:
     """Ball radius, sectors of the ball, steps along and across the groove, half cells of the patch along and across."""
     from raceway import load_scene
-    from raceway.core.geometry import BallBearing
-    from raceway.core.hertz import contact_modulus
+    from raceway.core.contact.geometry import BallBearing
+    from raceway.core.contact.hertz import contact_modulus
 
     b = load_scene(ROOT / "examples" / "minimal.toml").bearing
     row = BallBearing(
@@ -190,7 +190,7 @@ def _torsion() -> float:
 BUILD = """
 import json, sys, time
 from pathlib import Path
-from raceway import array_cache
+from raceway.storage import array_cache
 array_cache.folder = lambda: Path(sys.argv[2])
 from benchmarks.evidence.condensed_bodies import set_up
 

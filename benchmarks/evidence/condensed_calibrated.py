@@ -175,9 +175,9 @@ def _rings(model: Any) -> list[Any]:
 
 def step() -> list[Row]:
     """CPU time of an equilibrium and of a Newmark step, the least of several repeats, 12 balls."""
-    from raceway.core.orbit import steady_orbit
-    from raceway.core.record import Schedule
-    from raceway.core.start import from_orbit
+    from raceway.core.ring.orbit import steady_orbit
+    from raceway.core.ring.start import from_orbit
+    from raceway.core.stepping.record import Schedule
 
     out = []
     soft_seat = {"supports": {"tilt": "locked", "outer_seat": 500e9}}
@@ -210,7 +210,7 @@ def step() -> list[Row]:
 BUILD = """
 import json, sys, time
 from pathlib import Path
-from raceway import array_cache
+from raceway.storage import array_cache
 array_cache.folder = lambda: Path(sys.argv[1])
 from benchmarks.evidence._scenes import settled
 from benchmarks.evidence.condensed_calibrated import peak_bytes, tables

@@ -15,12 +15,12 @@ import numpy as np
 from benchmarks.evidence import Row
 from benchmarks.evidence._files import ROOT
 from benchmarks.evidence.condensed_calibrated import quantities, tables
-from raceway import array_cache
+from raceway.bodies.model import build_model
 from raceway.errors import RacewayError
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from raceway.storage import array_cache
 
 TITLE = "Error against cost on one scene: B7206C, 1000 N axial, 500 N radial, tilt locked"
 COMMAND = "python -m benchmarks.condensed"

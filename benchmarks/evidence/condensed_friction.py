@@ -23,7 +23,7 @@ def rows() -> list[Row]:
 
 def _mindlin() -> list[Row]:
     """One contact of 8 points along a semi-axis, pressed by 300 N and pulled along the groove."""
-    from raceway.core.condensed.friction import Friction
+    from raceway.core.patches.friction import Friction
     from tests.patches.single import single
     from tests.reference.mindlin import Mindlin
 
@@ -82,7 +82,7 @@ def _mindlin() -> list[Row]:
 
 def _run(points: int | None, **changes: Any) -> tuple[dict[str, Any], float]:
     from raceway import scene_from_dict
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     made = {**tables(points, "locked"), "load": {"axial": 1000.0}, "rotor": {"mass": 2.0}}
     for name, table in changes.items():
@@ -122,7 +122,7 @@ def _beside_resultants() -> list[Row]:
 def _moments() -> list[Row]:
     """Gyroscopic moments at 15 000 and 40 000 r/min, 1 kN axial and 300 N radial, tilt free."""
     from raceway import build_model, make_plan, scene_from_dict
-    from raceway.statics import settle
+    from raceway.pipeline.settle import settle
 
     out = []
     for rpm in (15000.0, 40000.0):
@@ -142,7 +142,7 @@ def _moments() -> list[Row]:
 def _inertia() -> list[Row]:
     """What the balls' mass does to the dynamic stiffness, against K_ee - K_ep (K_pp - m w^2)^-1 K_pe of the static tangents."""
     from raceway import build_model, make_plan, scene_from_dict
-    from raceway.statics import settle
+    from raceway.pipeline.settle import settle
 
     out = []
     for rpm, within in ((12000.0, 2e-5), (50000.0, 2e-3)):
@@ -180,8 +180,8 @@ def _inertia() -> list[Row]:
 
 
 def _dynamic_stiffness(model: Any) -> float:
-    from raceway.simulate import simulate
-    from raceway.statics import settle
+    from raceway.pipeline.settle import settle
+    from raceway.pipeline.simulate import simulate
 
     equilibrium = settle(model)
     motion = simulate(model, equilibrium, lambda what, done, total: None)

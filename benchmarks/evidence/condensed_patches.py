@@ -74,7 +74,7 @@ def tables(points: int | None, tilt: str) -> dict[str, Any]:
 
 def solved_points(points: int | None, tilt: str) -> tuple[Any, Any]:
     from raceway import build_model, make_plan, scene_from_dict
-    from raceway.statics import settle
+    from raceway.pipeline.settle import settle
 
     scene = scene_from_dict(tables(points, tilt))
     model = build_model(scene, make_plan(scene))
@@ -161,10 +161,10 @@ def _beside(tilt: str, nodal: Any) -> list[Row]:
 BUILD = """
 import json, sys, time
 from pathlib import Path
-from raceway import array_cache
+from raceway.storage import array_cache
 array_cache.folder = lambda: Path(sys.argv[2])
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
 from benchmarks.evidence.condensed_patches import tables
 
 def peak():  # of this program alone: ru_maxrss would hand on what its parent took

@@ -8,7 +8,7 @@ from benchmarks.evidence import Row
 from benchmarks.evidence._scenes import settled
 from benchmarks.evidence.condensed_calibrated import quantities, tables
 from benchmarks.evidence.condensed_seats import NODAL
-from raceway.contact_error import contact_error
+from raceway.pipeline.error.contact import contact_error
 
 TITLE = "Condensed bodies: the calibration of contact resultants"
 COMMAND = "python -m benchmarks.evidence condensed_walls"

@@ -8,12 +8,12 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.core.energy import energy_balance
-from raceway.core.friction import friction_energy
-from raceway.core.lines import phasors, sharpest
-from raceway.model import Model
-from raceway.simulate import simulate
-from raceway.statics import settle
+from raceway.bodies.model import Model
+from raceway.core.ring.energy import energy_balance
+from raceway.core.ring.friction import friction_energy
+from raceway.core.signals.lines import phasors, sharpest
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import simulate
 from raceway.studies.verify.study import verify
 
 TITLE = "The rigid model in full depth"

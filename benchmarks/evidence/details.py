@@ -7,10 +7,10 @@ import numpy as np
 from benchmarks.evidence import Row, below, near
 from benchmarks.evidence._files import ROOT
 from raceway import load_scene
-from raceway.meshing import mesh_scene
-from raceway.ring import radial_growth, ring_inertia
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.bodies.meshing import mesh_scene
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
+from raceway.scene.inner_ring import radial_growth, ring_inertia
 from tests.reference.rotating_ring import growth_by_elements
 
 TITLE = "Single numbers: pressure of a penalty, sticking, the inner ring as a solid, the elastic example"

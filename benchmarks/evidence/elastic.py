@@ -86,7 +86,7 @@ def _cost() -> list[Row]:
 
 def _bearing() -> list[Row]:
     from raceway import load_scene
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     begin = time.process_time()
     result = run(load_scene(ROOT / SCENE)).as_dict()

@@ -13,19 +13,19 @@ from benchmarks.evidence import Row, below
 from benchmarks.evidence._impact import Impact, expected, model, structural_compliances
 from benchmarks.evidence._kept import kept
 from raceway import build_model, make_plan, scene_from_dict
+from raceway.bodies.model import Model
 from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.elastic.start import from_orbit
+from raceway.core.elastic.stepped import SteppedElastic
 from raceway.core.elastic.touching import sticking
-from raceway.core.orbit import steady_orbit
-from raceway.core.record import Record, Schedule
-from raceway.core.stepping.elastic import SteppedElastic
+from raceway.core.ring.orbit import steady_orbit
 from raceway.core.stepping.energy import drift, largest_share
+from raceway.core.stepping.record import Record, Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
-from raceway.model import Model
-from raceway.run import run
-from raceway.statics import settle
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
 from tests.stepping.block import Block
 
 TITLE = "Elastic bodies in motion"

@@ -14,11 +14,11 @@ import numpy as np
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._kept import kept
 from benchmarks.evidence.condensed_calibrated import quantities, tables
-from raceway.model import Model, build_model
-from raceway.plan import make_plan
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.statics import Equilibrium, settle
+from raceway.bodies.model import Model, build_model
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import Equilibrium, settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
 
 TITLE = "Elastic bodies: coarse meshes with the calibrated law"
 COMMAND = "python -m benchmarks.evidence elastic_resultants"
@@ -119,7 +119,7 @@ def _half_held() -> list[Row]:
 
 
 def _half(mesh: tuple[float, int, int]) -> dict[str, Any]:
-    from raceway.meshing import mesh_scene
+    from raceway.bodies.meshing import mesh_scene
     from raceway.plugins.formats.vtu import Vtu
 
     scene = scene_from_dict(elastic(mesh))

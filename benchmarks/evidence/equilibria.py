@@ -17,9 +17,9 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._scenes import imbalance, model_of, random_tables
+from raceway.bodies.model import Model
 from raceway.errors import ConvergenceError
-from raceway.model import Model
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
 
 TITLE = "Equilibria of random and extreme scenes"
 COMMAND = "python -m benchmarks.evidence equilibria"

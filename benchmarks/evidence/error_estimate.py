@@ -15,11 +15,11 @@ import numpy as np
 from benchmarks.evidence import Row
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
-from raceway.core.identification import stiffness
-from raceway.core.orbit import steady_orbit
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.signals.identification import stiffness
 from raceway.errors import ConvergenceError
-from raceway.run import run
-from raceway.statics import settle
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
 
 TITLE = "Estimated against true error of the dynamic stiffness"
 COMMAND = "python -m benchmarks.evidence error_estimate"

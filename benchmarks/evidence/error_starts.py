@@ -18,12 +18,12 @@ from benchmarks.evidence import Row
 from benchmarks.evidence._scenes import model_of, rotating
 from benchmarks.evidence.error_estimate import FACTOR, SMALL, right
 from raceway import scene_from_dict
-from raceway.core.identification import stiffness
-from raceway.core.orbit import steady_orbit
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.signals.identification import stiffness
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.result import Result
-from raceway.run import run
-from raceway.statics import settle
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
 
 TITLE = "Estimated against true error: series of equilibria, sudden and ramped starts"
 COMMAND = "python -m benchmarks.evidence error_starts"

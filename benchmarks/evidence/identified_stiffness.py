@@ -13,8 +13,8 @@ import numpy as np
 from benchmarks.evidence import Row
 from benchmarks.evidence._scenes import rig_force, rotating
 from raceway import scene_from_dict
-from raceway.ring import ring_inertia
-from raceway.run import run
+from raceway.pipeline.run import run
+from raceway.scene.inner_ring import ring_inertia
 from tests.reference.ring import Ring
 from tests.reference.shooting import dynamic_stiffness, periodic
 from tests.reference.shooting import rotating as rotating_force

@@ -12,9 +12,9 @@ import numpy as np
 from benchmarks.evidence import Row
 from benchmarks.evidence._intervals import width as width_row
 from raceway.errors import RacewayError
-from raceway.registry import default_registry
-from raceway.rig import Rig
-from raceway.scene_file import load_scene, rig_of
+from raceway.framework.registry import default_registry
+from raceway.scene.file import load_scene, rig_of
+from raceway.scene.rig import Rig
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.inversion import values
 from raceway.studies.measured.run_out import slow_roll

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.evidence import Row, below, near
-from raceway.registry import default_registry
-from raceway.scene_file import read_toml
+from raceway.framework.registry import default_registry
+from raceway.scene.file import read_toml
 from raceway.studies.map.design import ANGLE, AXIAL, SPEED, TILT, design
 from raceway.studies.map.page import write_data, write_pictures
 from raceway.studies.map.study import Map, study_map

@@ -23,13 +23,13 @@ ELEMENTS = 1_061_016
 BUILD = """
 import json, resource, sys, time
 from raceway import load_scene
-from raceway.meshing import mesh_scene
+from raceway.bodies.meshing import mesh_scene
 scene = load_scene(sys.argv[1])
 begin = time.perf_counter()
 meshes = mesh_scene(scene)
 seconds = time.perf_counter() - begin
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-from raceway.core.mesh_summary import summary
+from raceway.core.mesh.summary import summary
 found = summary(meshes)
 begin = time.perf_counter()
 tidy = meshes["outer_ring"].renumbered()
@@ -77,10 +77,10 @@ def _article() -> list[Row]:
 def _rates() -> list[Row]:
     """Orders between the two finest of three meshes, each half the size of the one before."""
     from raceway import load_scene
-    from raceway.core.meshing.ring import ring_mesh
-    from raceway.core.meshing.ring_shape import ring_shape
-    from raceway.core.meshing.spacing import halved
-    from raceway.core.meshing.sphere import ball_mesh
+    from raceway.core.mesh.ball_mesh import ball_mesh
+    from raceway.core.mesh.ring_mesh import ring_mesh
+    from raceway.core.mesh.ring_shape import ring_shape
+    from raceway.core.mesh.spacing import halved
     from raceway.plugins.meshers.structured import Structured
 
     bearing = load_scene(ROOT / SCENE).bearing
@@ -123,7 +123,7 @@ def _numbering() -> list[Row]:
     """A ring whose nodes and cells are numbered at random, and again after renumbering."""
 
     from raceway import load_scene
-    from raceway.core.mesh import HexMesh
+    from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.plugins.meshers.structured import Structured
 
     bearing = load_scene(ROOT / SCENE).bearing

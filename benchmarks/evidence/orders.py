@@ -14,12 +14,12 @@ import numpy as np
 from benchmarks.evidence import Row
 from benchmarks.evidence._scenes import model_of, rig_force, rotating
 from raceway import scene_from_dict
-from raceway.core.record import Motion, Schedule
-from raceway.core.system import System
-from raceway.model import Model
-from raceway.ring import ring_inertia
-from raceway.simulate import simulate
-from raceway.statics import settle
+from raceway.bodies.model import Model
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Motion, Schedule
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import simulate
+from raceway.scene.inner_ring import ring_inertia
 from tests.reference.ring import Ring
 from tests.reference.shooting import rotating as rotating_force
 from tests.reference.shooting import trajectory

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.evidence import Row, below
-from raceway.scene_file import read_toml
+from raceway.scene.file import read_toml
 from raceway.studies.precision.result import EXACT, words_of
 from raceway.studies.precision.study import precision
 

@@ -15,10 +15,10 @@ import numpy as np
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._intervals import width
 from raceway.errors import ConvergenceError
-from raceway.registry import default_registry
-from raceway.rig import Rig, Signals
-from raceway.scene import Scene
-from raceway.scene_file import load_scene, rig_of
+from raceway.framework.registry import default_registry
+from raceway.scene.file import load_scene, rig_of
+from raceway.scene.rig import Rig, Signals
+from raceway.scene.tables import Scene
 from raceway.studies.measured.from_files import from_files
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.recording import Recording, write_recording

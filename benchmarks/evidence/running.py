@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.evidence import Row, below
-from raceway.run import run
-from raceway.scene_file import load_scene, scene_from_dict
+from raceway.pipeline.run import run
+from raceway.scene.file import load_scene, scene_from_dict
 from tests.reference.mounted import FORCE, approach, axial, row, secant
 
 TITLE = "What the running speed changes: preload, held displacements, run-ups, fits over whirl speeds"

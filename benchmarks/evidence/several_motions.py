@@ -12,8 +12,8 @@ from benchmarks.evidence import Row, below
 from benchmarks.evidence._crossed import Pair, compared
 from benchmarks.evidence._several import Tables, article, by_integration, heavy
 from raceway import scene_from_dict
-from raceway.result import Result
-from raceway.run import run
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
 
 TITLE = "Several steady motions"
 COMMAND = "python -m benchmarks.evidence several_motions"

@@ -9,9 +9,9 @@ import numpy as np
 from benchmarks.evidence import Row, below, near
 from raceway import load_scene
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear_statics import solve_static
-from raceway.core.mesh_quality import quality
-from raceway.core.natural_modes import natural_modes
+from raceway.core.linear.natural_modes import natural_modes
+from raceway.core.linear.statics import solve_static
+from raceway.core.mesh.quality import quality
 from raceway.plugins.meshers.structured import Structured
 from tests.reference import annulus, elastic
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._scenes import model_of, random_tables
+from raceway.bodies.model import Model
 from raceway.errors import RacewayError
-from raceway.model import Model
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
 
 TITLE = "Consistent 5x5 tangent"
 COMMAND = "python -m benchmarks.evidence tangent"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.evidence import Row
-from raceway.studies.reference import BASES
+from raceway.studies.many.reference import BASES
 from raceway.studies.verify.study import verify
 
 TITLE = "Reference cases: published numbers, closed forms, this program by two ways"

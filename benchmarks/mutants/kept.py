@@ -15,8 +15,8 @@ import attrs
 from benchmarks.evidence._kept import EARLIER
 from benchmarks.mutants.faults import ROOT, Fault
 from benchmarks.mutants.trial import Verdict, copied
-from raceway.cache_folder import cache_root
-from raceway.studies.row_store import RowStore
+from raceway.storage.cache_folder import cache_root
+from raceway.studies.many.row_store import RowStore
 
 
 def tried(faults: list[Fault], on_verdict: Callable[[Verdict], None] | None = None) -> tuple[str, list[Verdict]]:

@@ -1,6 +1,6 @@
 """Builders of the kinds of bodies: from scene and plan to a system that can be settled and stepped.
 
-``build(scene, plan) -> Built`` in a file for each ``bodies.kind``; ``raceway.model`` chooses.
+``build(scene, plan) -> Built`` in a file for each ``bodies.kind``; ``raceway.bodies.model`` chooses.
 
 elastic     every node moves: pressures at points, or a calibrated force a contact
 elastic_report  what a result tells of those;  elastic_points, elastic_resultants: of their contacts

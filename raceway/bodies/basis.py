@@ -9,17 +9,17 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.contracts import ContactPairs
-from raceway.core.changing_speed import ChangingSpeed
-from raceway.core.geometry import BallBearing
-from raceway.core.hertz import Ellipse, contact_modulus
-from raceway.core.plugin_kernel import plugin_kernel
+from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.hertz import Ellipse, contact_modulus
+from raceway.core.kernel.plugin_kernel import plugin_kernel
+from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.signatures import FORCE
 from raceway.errors import PluginError, RacewayError
-from raceway.estimate import axial_approach
-from raceway.plan import Plan
-from raceway.ring import radial_growth, ring_inertia
-from raceway.scene import Scene
+from raceway.framework.contracts import ContactPairs
+from raceway.planning.closed_form import axial_approach
+from raceway.planning.plan import Plan
+from raceway.scene.inner_ring import radial_growth, ring_inertia
+from raceway.scene.tables import Scene
 
 
 @attrs.frozen(eq=False)
@@ -49,7 +49,7 @@ class Built:
     Attributes
     ----------
     basis : geometry and contacts
-    system : ``raceway.core.system.System``, or what offers the same
+    system : ``raceway.core.ring.system.System``, or what offers the same
     guess : (5,) first guess of the equilibrium, with a held axial displacement
     bodies : what this kind knows beyond that; None for rigid bodies
     """

@@ -11,17 +11,17 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess
-from raceway.core.bodies import ring
-from raceway.core.changing_speed import ChangingSpeed
-from raceway.core.system import System
+from raceway.core.ring.changing_speed import ChangingSpeed
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.planning.recording import turns_of
-from raceway.ring import radial_growth
-from raceway.scene import Scene
+from raceway.scene.inner_ring import radial_growth
+from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
-    from raceway.model import Model
-    from raceway.statics import Equilibrium
+    from raceway.bodies.model import Model
+    from raceway.pipeline.settle import Equilibrium
 
 #: The force of a spring is met to this part of the preload.
 _TOLERANCE = 1e-9

@@ -20,7 +20,7 @@ def cache(clear: bool, as_json: bool) -> int:
     """
     import attrs
 
-    from raceway import array_cache, cache_folder
+    from raceway.storage import array_cache, cache_folder
 
     if clear:
         cache_folder.clear()
@@ -39,5 +39,7 @@ def cache(clear: bool, as_json: bool) -> int:
         "arrays_limit_bytes": array_cache.LIMIT,
         "cleared": clear,
     }
-    show(content, as_json, None, lambda screen: screen.cache_screen(content))
+    from raceway.commands.screen.kept import cache_screen
+
+    show(content, as_json, None, lambda: cache_screen(content))
     return 0

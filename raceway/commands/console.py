@@ -21,7 +21,7 @@ import click
 
 from raceway.commands.interrupt import Interrupts, farewell, stopped_by
 from raceway.errors import MeshError, RacewayError, SceneError
-from raceway.options import nearest
+from raceway.framework.options import nearest
 
 
 class _Stopped(BaseException):

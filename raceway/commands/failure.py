@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from raceway.errors import ConvergenceError
-from raceway.files import write_whole
-from raceway.result import without_nan, write_json
-from raceway.scene import Scene
+from raceway.pipeline.result import without_nan, write_json
+from raceway.scene.tables import Scene
+from raceway.storage.files import write_whole
 
 
 def save_failure(error: ConvergenceError, scene: Scene, folder: Path) -> list[Path]:

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.console import described, print_json
+from raceway.commands.console import described, print_json, warn
 from raceway.errors import RacewayError
-from raceway.registry import default_registry
+from raceway.framework.registry import default_registry
 
 if TYPE_CHECKING:
-    from raceway.registry import Registry
+    from raceway.framework.registry import Registry
 
 #: Where results go unless --out says otherwise.
 RESULTS = Path("raceway-out")
@@ -47,7 +47,7 @@ plugin_files = click.option(
 
 
 def _allow(_context: click.Context, _option: click.Parameter, files: tuple[Path, ...]) -> None:
-    from raceway.trust import allow
+    from raceway.storage.trust import allow
 
     for file in files:
         allow(file)
@@ -87,8 +87,8 @@ def common(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def show_progress(remaining: bool = False, waiting: str | None = None) -> Any:
     """A bar; ``waiting`` says what happens before the first step where that is not the start of this process."""
-    from raceway.cache_folder import current_folder
     from raceway.commands.progress import ProgressBar
+    from raceway.storage.cache_folder import current_folder
 
     folder = current_folder()
     warm = folder.is_dir() and any(folder.iterdir())
@@ -105,7 +105,7 @@ def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError |
     return None
 
 
-def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[Any], Any]) -> None:
+def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[], Any]) -> None:
     """JSON or tables on standard output; then the failure of writing them, if there was one."""
     if as_json:
         print_json(content if failed is None else {**content, "errors": described(failed)[1]})
@@ -114,8 +114,12 @@ def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Calla
         return
     from rich.console import Console
 
-    from raceway.commands import screen as tables
-
-    Console(highlight=False).print(screen(tables), crop=False)
+    Console(highlight=False).print(screen(), crop=False)
     if failed is not None:
         raise failed
+
+
+def tell_kept(what: str, file: Path) -> None:
+    """Where a study that was stopped goes on, if anything was finished."""
+    if file.is_file():
+        warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")

@@ -14,8 +14,8 @@ from raceway.commands.console import warn
 from raceway.errors import Mistake, RacewayError, SceneError, extra
 
 if TYPE_CHECKING:
-    from raceway.registry import Registry
-    from raceway.scene import Scene
+    from raceway.framework.registry import Registry
+    from raceway.scene.tables import Scene
 
 
 def slug(title: str) -> str:
@@ -61,7 +61,7 @@ def tell_faults(registry: Registry) -> None:
 
 def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[dict[str, Any], list[Mistake]]:
     """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
-    from raceway.scene_file import parse_change, read_toml, titled, with_paths, with_value
+    from raceway.scene.file import parse_change, read_toml, titled, with_paths, with_value
 
     if scene.is_dir():
         inside = sorted(str(p) for p in scene.glob("*.toml"))
@@ -87,7 +87,7 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
     SceneError
         With the mistakes of both.
     """
-    from raceway.scene_file import scene_from_dict
+    from raceway.scene.file import scene_from_dict
 
     tables, mistakes = changed_tables(scene, changes, registry)
     try:

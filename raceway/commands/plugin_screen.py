@@ -13,13 +13,13 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from raceway.registry import Entry
+    from raceway.framework.registry import Entry
     from raceway.testing.suite import Conformity
 
 
 def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:
     """``[{kind, name, distribution, version, options[{name, unit, default, help}]}]``."""
-    from raceway.schema import key_schema, keys
+    from raceway.scene.schema import key_schema, keys
 
     rows = []
     for entry in entries:

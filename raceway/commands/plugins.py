@@ -10,7 +10,7 @@ from raceway.commands.console import print_json
 from raceway.commands.frame import common, plugin_files, registry_with, show
 from raceway.commands.inputs import faults
 from raceway.errors import RacewayError
-from raceway.registry import default_registry
+from raceway.framework.registry import default_registry
 
 
 @click.command(short_help="List what is installed, with options.")
@@ -34,7 +34,7 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
     if as_json:
         print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in broken]})
         return 2 if broken else 0
-    show(rows, False, None, lambda _: plugin_screen.plugins_screen(rows))
+    show(rows, False, None, lambda: plugin_screen.plugins_screen(rows))
     if broken:
         raise RacewayError("\n  ".join(broken))
     return 0
@@ -49,7 +49,7 @@ def schema(as_json: bool) -> int:
     Example:
       raceway schema > scene.schema.json
     """
-    from raceway.schema import scene_schema
+    from raceway.scene.schema import scene_schema
 
     del as_json  # it is JSON either way
     print_json(scene_schema(default_registry()))
@@ -73,7 +73,7 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
     from raceway.testing import check_named
 
     conformity = check_named(name, registry_with(plugins))
-    show(conformity.as_dict(), as_json, None, lambda _: plugin_screen.conformity_screen(conformity))
+    show(conformity.as_dict(), as_json, None, lambda: plugin_screen.conformity_screen(conformity))
     return 0 if conformity.conforms else 1
 
 
@@ -92,9 +92,9 @@ def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
       raceway new-plugin contact_law my_law
     """
     from raceway.commands import plugin_screen
-    from raceway.scaffold import new_plugin as write
+    from raceway.testing.scaffold import new_plugin as write
 
     folder = write(kind, name, out, default_registry())
     files = sorted(str(path) for path in folder.rglob("*") if path.is_file())
-    show({"folder": str(folder), "files": files}, as_json, None, lambda _: plugin_screen.new_plugin_screen(folder, files))
+    show({"folder": str(folder), "files": files}, as_json, None, lambda: plugin_screen.new_plugin_screen(folder, files))
     return 0

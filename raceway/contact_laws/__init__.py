@@ -5,7 +5,7 @@ from __future__ import annotations
 from raceway.contact_laws.hertz import Hertz
 from raceway.contact_laws.penalty import Penalty
 from raceway.contact_laws.unilateral import Unilateral
-from raceway.hookspecs import hookimpl
+from raceway.framework.hookspecs import hookimpl
 
 
 @hookimpl

@@ -11,12 +11,12 @@ from raceway.contact_laws.stiffness import point_stiffness
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.contracts import ContactPairs
+    from raceway.framework.contracts import ContactPairs
 
 
 @attrs.frozen
 class Hertz:
-    """Q = K delta^1.5 with K from the complete elliptic integrals (``raceway.core.hertz``).
+    """Q = K delta^1.5 with K from the complete elliptic integrals (``raceway.core.contact.hertz``).
 
     Notes
     -----

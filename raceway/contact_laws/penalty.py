@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.contact_laws.stiffness import point_stiffness
-from raceway.options import option, optional, positive
+from raceway.framework.options import option, optional, positive
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.contracts import ContactPairs
+    from raceway.framework.contracts import ContactPairs
 
 
 @attrs.frozen

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.contracts import ContactPairs
+    from raceway.framework.contracts import ContactPairs
 
 #: Times the pressure per penetration at which two rigid paraboloids approach as far as Hertz's: the largest penetration
 #: is then 1.5 / 150 = 1 % of Hertz's approach, because the peak of a Hertz pressure is 1.5 times its mean.

@@ -11,7 +11,7 @@ from raceway.contact_laws.stiffness import point_stiffness
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.contracts import ContactPairs
+    from raceway.framework.contracts import ContactPairs
 
 
 @attrs.frozen

@@ -20,9 +20,9 @@ from typing import Any
 
 import numba
 
-from raceway.cache_folder import current_folder
-from raceway.core.kernel_files import FilesOfKernel, KernelFolder, opened
 from raceway.errors import PluginError, RacewayError
+from raceway.storage.cache_folder import current_folder
+from raceway.storage.kernel_files import FilesOfKernel, KernelFolder, opened
 
 if getattr(numba.config, "DISABLE_JIT", 0):
     raise RacewayError(

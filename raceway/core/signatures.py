@@ -18,7 +18,7 @@ FORCE = void(float64, VECTOR, VECTOR)
 FORCE_POINTER = types.FunctionType(FORCE)
 
 #: system(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work,
-#:        f (5,), K (5, 5), C (5, 5)) -> status, see raceway.core.bodies
+#:        f (5,), K (5, 5), C (5, 5)) -> status, see raceway.core.ring.kernels
 SYSTEM = int64(
     float64, float64, VECTOR, VECTOR, MATRIX, float64, MATRIX,
     LAW_POINTER, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX,
@@ -27,7 +27,7 @@ SYSTEM_POINTER = types.FunctionType(SYSTEM)
 
 CUBE = float64[:, :, ::1]
 
-#: The arguments that every compiled loop shares; see ``raceway.core.integrators``.
+#: The arguments that every compiled loop shares; see ``raceway.core.ring.loops``.
 _MODEL = (
     SYSTEM_POINTER, LAW_POINTER, FORCE_POINTER, MATRIX, VECTOR, MATRIX, VECTOR,
     MATRIX, MATRIX, MATRIX, VECTOR, VECTOR,

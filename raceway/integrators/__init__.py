@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from raceway.hookspecs import hookimpl
+from raceway.framework.hookspecs import hookimpl
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 if TYPE_CHECKING:
-    from raceway.core.advance import OnChunk
-    from raceway.core.record import Motion, Record, Schedule
-    from raceway.core.system import System
+    from raceway.core.ring.advance import OnChunk
+    from raceway.core.ring.system import System
+    from raceway.core.stepping.record import Motion, Record, Schedule
 
 
 @attrs.frozen
@@ -25,7 +25,7 @@ class CentralDifference:
     def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
         import numpy as np
 
-        from raceway.core.advance import advance
-        from raceway.core.integrators.central_difference import central_difference
+        from raceway.core.ring.advance import advance
+        from raceway.core.ring.loops.central_difference import central_difference
 
         return advance(central_difference, system, start, schedule, np.zeros(1), on_chunk)

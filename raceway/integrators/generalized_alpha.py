@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.options import between, inside, option
+from raceway.framework.options import between, inside, option
 
 if TYPE_CHECKING:
-    from raceway.core.advance import OnChunk
-    from raceway.core.record import Motion, Record, Schedule
-    from raceway.core.system import System
+    from raceway.core.ring.advance import OnChunk
+    from raceway.core.ring.system import System
+    from raceway.core.stepping.record import Motion, Record, Schedule
 
 
 @attrs.frozen
@@ -37,8 +37,8 @@ class GeneralizedAlpha:
     def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
         import numpy as np
 
-        from raceway.core.advance import advance
-        from raceway.core.integrators.implicit import implicit
+        from raceway.core.ring.advance import advance
+        from raceway.core.ring.loops.implicit import implicit
 
         rho = self.rho_infinity
         am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.errors import ConvergenceError
-from raceway.options import inside, one_of, option
+from raceway.framework.options import inside, one_of, option
 
 if TYPE_CHECKING:
-    from raceway.core.advance import OnChunk
-    from raceway.core.record import Motion, Record, Schedule
-    from raceway.core.system import System
+    from raceway.core.ring.advance import OnChunk
+    from raceway.core.ring.system import System
+    from raceway.core.stepping.record import Motion, Record, Schedule
 
 
 @attrs.frozen

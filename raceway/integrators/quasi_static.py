@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.options import inside, option
+from raceway.framework.options import inside, option
 
 if TYPE_CHECKING:
-    from raceway.core.advance import OnChunk
-    from raceway.core.record import Motion, Record, Schedule
-    from raceway.core.system import System
+    from raceway.core.ring.advance import OnChunk
+    from raceway.core.ring.system import System
+    from raceway.core.stepping.record import Motion, Record, Schedule
 
 
 @attrs.frozen
@@ -29,10 +29,10 @@ class QuasiStatic:
     def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
         import numpy as np
 
-        from raceway.core.advance import advance
+        from raceway.core.ring.advance import advance
 
         if system.conservative:
-            from raceway.core.integrators.quasi_static import quasi_static as loop
+            from raceway.core.ring.loops.quasi_static import quasi_static as loop
         else:
-            from raceway.core.integrators.quasi_static_tangential import quasi_static_tangential as loop
+            from raceway.core.ring.loops.quasi_static_tangential import quasi_static_tangential as loop
         return advance(loop, system, start, schedule, np.array([self.tolerance]), on_chunk)

@@ -13,8 +13,8 @@ from raceway.planning.mesh import mesh_faults
 from raceway.planning.patches import patch_faults
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.planning.sections import seat_faults, section_faults
-from raceway.ring import ring_inertia
-from raceway.scene import Scene
+from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.tables import Scene
 
 #: Kinds of bodies that this version can compute.
 BODIES = ("rigid", "condensed", "elastic")

@@ -7,12 +7,12 @@ from math import pi
 import attrs
 
 from raceway.planning.elastic import ElasticCost, words
-from raceway.planning.modules import remembers_its_start
 from raceway.planning.parts import Decisions
 from raceway.planning.patches import PatchCost
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
-from raceway.ring import ring_inertia
-from raceway.scene import Scene
+from raceway.planning.steady_orbits import remembers_its_start
+from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.tables import Scene
 
 #: Name of what repeats itself, for ``make_plan``'s ``force``.
 OTHER_TURNS = "other turns"

@@ -8,9 +8,9 @@ from math import ceil, inf, pi
 import attrs
 
 from raceway.errors import Mistake
-from raceway.estimate import axial_approach
+from raceway.planning.closed_form import axial_approach
 from raceway.planning.mesh import predicted_mesh, refined
-from raceway.scene import Scene
+from raceway.scene.tables import Scene
 
 #: Bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory measured at 4500 and
 #: 17 000 cells with factors, at 60 000 with multigrid).
@@ -88,8 +88,8 @@ def _stable_step(scene: Scene) -> float:
     patch, for the ball's core, half as wide, is thinner than its surface.  Contacts: a surface point of stiffness k_n A on
     nodes of mass rho A h / 2, both sides, by Gershgorin's theorem: 4 / dt^2 = 4.8 k_n / (rho h).
     """
-    from raceway.core.geometry import BallBearing
-    from raceway.core.hertz import contact_modulus
+    from raceway.core.contact.geometry import BallBearing
+    from raceway.core.contact.hertz import contact_modulus
 
     b, mesh, law = scene.bearing, scene.mesh, scene.contact.law
     row = BallBearing(

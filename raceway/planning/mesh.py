@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from raceway.bodies.meshing import scene_mesher
 from raceway.errors import MeshError, Mistake, PluginError
-from raceway.meshing import scene_mesher
-from raceway.scene import Scene
+from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
-    from raceway.core.meshing.size import Prediction
+    from raceway.core.mesh.size import Prediction
 
 
 def mesh_faults(scene: Scene) -> list[Mistake]:
@@ -59,7 +59,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
     found = _prediction(scene) if scene.mesh is not None and scene.bodies.kind == "elastic" else None
     if found is None:
         return None
-    from raceway.core.meshing.size import body_bytes
+    from raceway.core.mesh.size import body_bytes
 
     bodies = [{"name": name, "cells": cells, "bytes": body_bytes(cells)} for name, cells in found.bodies.items()]
     return {"bodies": bodies, "cells": found.cells, "bytes": found.memory_bytes}
@@ -70,7 +70,7 @@ def _prediction(scene: Scene) -> Prediction | None:
     mesher = scene_mesher(scene)
     if not hasattr(mesher, "predict"):
         return None
-    from raceway.core.meshing.size import Prediction, refuse_memory
+    from raceway.core.mesh.size import Prediction, refuse_memory
 
     found = mesher.predict(scene.bearing)
     if found is None:  # it cannot tell before it reads or meshes

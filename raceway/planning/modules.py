@@ -9,10 +9,11 @@ from typing import Any
 
 import attrs
 
-from raceway.scene import Scene
+from raceway.planning.steady_orbits import compares_with_steady_motion, has_orbits, remembers_its_start, searches_orbits
+from raceway.scene.tables import Scene
 
-_BODIES = "raceway.core.bodies"
-_LOOPS = "raceway.core.integrators"
+_BODIES = "raceway.core.ring.kernels"
+_LOOPS = "raceway.core.ring.loops"
 #: Kernels of the bodies by what their balls need.
 _BALLS = {
     "weightless": "balls follow the ring at once",
@@ -79,7 +80,7 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
             _not(kind, "condensed", f"the balls are {balls}"),
         )
     no_potential = "forces on the balls have no potential"
-    decide(balls == "tangential", "raceway.core.root", no_potential, f"the balls are {balls}")
+    decide(balls == "tangential", "raceway.core.ring.root", no_potential, f"the balls are {balls}")
     for law, kinds in _LAWS.items():
         why = f"contact.kind is {scene.contact.kind}"
         decide(scene.contact.kind in kinds, f"raceway.core.contact_laws.{law}", why, why)
@@ -110,7 +111,7 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
         rubs = integrates and method == "quasi_static" and balls == "tangential"
         decide(rubs, f"{_LOOPS}.quasi_static_tangential", no_potential, f"{unused}, the balls are {balls}")
     searched = method == "periodic" or searches_orbits(scene) or compares_with_steady_motion(scene)
-    searched = searched or (remembers_its_start(scene) and _has_orbits(scene))
+    searched = searched or (remembers_its_start(scene) and has_orbits(scene))
     unused = unused if not integrates else f"{unused}, no steady orbit is searched for"
     decide(integrates and searched, "raceway.core.periodic", "steady orbits and their multipliers", unused)
     mesher = getattr(scene.mesh, "name", None) if kind != "rigid" else None
@@ -119,56 +120,6 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
     for library in _PICTURES:
         decide(False, library, "", "pictures are drawn by --pictures and raceway view only")
     return tuple(found)
-
-
-def searches_orbits(scene: Scene) -> bool:
-    """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
-    ramped = getattr(scene.excitation, "ramp_turns", 0.0) > 0.0
-    return scene.integrator.start == "orbit" and not ramped and _has_orbits(scene)
-
-
-def _has_orbits(scene: Scene) -> bool:
-    """Whether steady orbits of a transient, or of it without friction, can be searched for."""
-    method, excitation, contact = scene.integrator.method, scene.excitation, scene.contact
-    if excitation is None or getattr(method, "steady", False) or not method.inertial:
-        return False
-    repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
-    compiled = scene.bodies.kind != "elastic" and contact.discretisation != "nodal"
-    return repeats and compiled and contact.law.state_size == 0
-
-
-def remembers_its_start(scene: Scene) -> bool:
-    """Whether the answer depends on how the motion began, and a second run tells how far.
-
-    Notes
-    -----
-    With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
-    fits over several speeds no transient is estimated: a second run of them would tell nothing more.
-    """
-    if scene.excitation is None or scene.contact.friction == 0.0 or scene.bodies.kind == "elastic":
-        return False
-    needs = scene.identifier.method.needs
-    return "record" in needs and "speeds" not in needs
-
-
-def compares_with_steady_motion(scene: Scene) -> bool:
-    """Whether the error of a transient is its distance from the steady motion.
-
-    Notes
-    -----
-    A motion that starts on its orbit is near it already.  Bodies that are stepped from Python, friction and laws with memory
-    have no steady motion that can be solved for by itself.
-    """
-    method, excitation = scene.integrator.method, scene.excitation
-    if excitation is None or not method.inertial or getattr(method, "steady", False):
-        return False
-    steps_in_python = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
-    if steps_in_python or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
-        return False
-    if excitation.period_s is None:
-        return getattr(excitation, "steady", None) is not None
-    ramped = getattr(excitation, "ramp_turns", 0.0) > 0.0
-    return ramped or scene.integrator.start != "orbit" or "speeds" in scene.identifier.method.needs
 
 
 def _not(kind: str, wanted: str, else_why: str) -> str:

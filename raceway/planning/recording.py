@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import ceil
 
 from raceway.errors import SceneError
-from raceway.estimate import highest_frequency
+from raceway.planning.closed_form import highest_frequency
 from raceway.planning.elastic import steps_per_turn
-from raceway.scene import Scene
+from raceway.scene.tables import Scene
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360

@@ -7,7 +7,7 @@ from math import ceil, log, pi
 import attrs
 
 from raceway.errors import Mistake
-from raceway.scene import Scene
+from raceway.scene.tables import Scene
 
 #: Bytes and seconds of processor time for both rings, by nodes of a section, measured on one core of a small server: the
 #: factor of a harmonic, and some seventy of those; balls and a coarser mesh for the error included.
@@ -34,7 +34,7 @@ def section_cost(scene: Scene) -> SectionCost:
     size, along = 0.62 * length, 0.077 * length
     if scene.mesh is not None:
         size = min(float(getattr(scene.mesh, "element_size", size)), size)
-        # A contact's semi-major axis is about a tenth of the ball; see raceway.bodies.condensed.
+        # A contact's semi-major axis is about a tenth of the ball; see raceway.bodies.condensed.build.
         along = min(0.09 * b.ball_diameter / float(getattr(scene.mesh, "nodes_per_semi_axis", 4)), size)
     width = b.width or b.ball_diameter
     wall = (

@@ -10,11 +10,11 @@ import attrs
 
 from raceway.planning.decisions import Balls, Motion
 from raceway.planning.elastic import ElasticCost
-from raceway.planning.modules import remembers_its_start
 from raceway.planning.patches import PatchCost
 from raceway.planning.recording import recorded_per_turn
 from raceway.planning.sections import section_cost
-from raceway.scene import Scene
+from raceway.planning.steady_orbits import remembers_its_start
+from raceway.scene.tables import Scene
 
 #: A step for 12 balls, of an implicit method; and how much less an explicit one takes, whose steps iterate less.
 _STEP_S = {"weightless": 2.3e-6, "inertial": 3.3e-6, "tangential": 16.0e-6}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from raceway.hookspecs import hookimpl
+from raceway.framework.hookspecs import hookimpl
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.measured import Measured
 from raceway.plugins.excitations.run_up import RunUp

@@ -1,4 +1,4 @@
-"""Many runs, or many numbers, made into one answer.  Studies call ``raceway.run`` and never reach into a time loop.
+"""Many runs, or many numbers, made into one answer.  Studies call ``raceway.pipeline.run`` and never reach into a time loop.
 
 reference          the reference cases in ``raceway/data/cases.json``
 verify             every case against this program's own numbers; verify_bearings, verify_impacts: how each is computed

@@ -21,7 +21,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from raceway.registry import Entry, Registry
+    from raceway.framework.registry import Entry, Registry
     from raceway.testing.suite import Conformity
 
 #: kind -> (module, class) of its suite
@@ -81,7 +81,7 @@ def check(entry: Entry) -> Conformity:
 
     Parameters
     ----------
-    entry : raceway.registry.Entry, from ``Registry.find`` or ``Registry.find_any``
+    entry : raceway.framework.registry.Entry, from ``Registry.find`` or ``Registry.find_any``
     """
     return suite_of(entry.kind).conformity(entry.plugin, entry.kind, entry.name)
 
@@ -94,6 +94,6 @@ def check_named(text: str, registry: Registry | None = None) -> Conformity:
     PluginError
         A name that is unknown, or that means more than one plug-in; the message lists the choices.
     """
-    from raceway.registry import default_registry
+    from raceway.framework.registry import default_registry
 
     return check((registry or default_registry()).find_any(text))

@@ -73,7 +73,7 @@ def apart(work: Callable[[], Any]) -> Any:
 @cache
 def _import_compiler() -> None:
     """Once for all children, with the smallest kernels: most duties take less time than that."""
-    for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.run", "raceway.core.contact_laws.power"):
+    for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.pipeline.run", "raceway.core.contact_laws.power"):
         import_module(name)
 
 

@@ -52,7 +52,7 @@ _OPEN = 1.0
 
 @jit(SYSTEM)
 def one_contact(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
-    """See ``raceway.core.bodies``."""
+    """See ``raceway.core.ring.kernels``."""
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
     for i in range(gap.size):
         gap[i] = _OPEN

@@ -7,7 +7,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.contracts import ContactPairs
+from raceway.framework.contracts import ContactPairs
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 from raceway.testing.units import scale_of
 
@@ -67,7 +67,7 @@ def drive(law: Any, n: int, discretisation: str = "") -> Driven:
 
 
 class ContactLawSuite(Suite):
-    """Duties of ``raceway.contracts.ContactLaw``.
+    """Duties of ``raceway.framework.contracts.ContactLaw``.
 
     Attributes
     ----------

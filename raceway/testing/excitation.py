@@ -31,7 +31,7 @@ def fundamental(excitation: Any) -> np.ndarray:
 
 
 class ExcitationSuite(Suite):
-    """Duties of ``raceway.contracts.Excitation``."""
+    """Duties of ``raceway.framework.contracts.Excitation``."""
 
     kind = "excitation"
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import attrs
 
-from raceway.contracts import Batch, Refused
+from raceway.framework.contracts import Batch, Refused
 from raceway.testing.suite import Suite, check_class, duty, require
 
 _BATCHES = 400
@@ -44,7 +44,7 @@ class _Source:
 
 
 class ExecutorSuite(Suite):
-    """Duties of ``raceway.contracts.Executor``.  Its work is in processes of its own, and clusters do not survive a fork."""
+    """Duties of ``raceway.framework.contracts.Executor``.  Its work is in processes of its own, and clusters do not survive a fork."""
 
     kind = "executor"
     apart = False

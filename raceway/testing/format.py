@@ -39,7 +39,7 @@ def same(a: Any, b: Any, relative: float = 0.0) -> bool:
 
 
 class FormatSuite(Suite):
-    """Duties of ``raceway.contracts.Format``.
+    """Duties of ``raceway.framework.contracts.Format``.
 
     Attributes
     ----------

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.identification import Identification
+from raceway.core.signals.identification import Identification
 from raceway.testing.signals import (
     DAMPING,
     FORCE,
@@ -27,7 +27,7 @@ _SPEEDS = (0.6, 0.8, 1.0, 1.2, 1.4)
 
 
 class IdentifierSuite(Suite):
-    """Duties of ``raceway.contracts.Identifier``.
+    """Duties of ``raceway.framework.contracts.Identifier``.
 
     Notes
     -----

@@ -7,8 +7,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.record import Motion, Record, Schedule
-from raceway.core.system import System
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.testing.steady import contact_motion, forgets_the_start, linear_motion, own_error, refuses_memory
 from raceway.testing.suite import Suite, check_class, duty, require
@@ -53,7 +53,7 @@ def _is_steady(method: Any) -> bool:
 
 
 class IntegratorSuite(Suite):
-    """Duties of ``raceway.contracts.Integrator``."""
+    """Duties of ``raceway.framework.contracts.Integrator``."""
 
     kind = "integrator"
 

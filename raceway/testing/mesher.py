@@ -15,7 +15,7 @@ AROUND = ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 
 
 
 class MesherSuite(Suite):
-    """Duties of ``raceway.contracts.Mesher``."""
+    """Duties of ``raceway.framework.contracts.Mesher``."""
 
     kind = "mesher"
 

@@ -11,7 +11,7 @@ from raceway.testing.suite import Suite, check_class, duty, require
 
 
 class ReportSuite(Suite):
-    """Duties of ``raceway.contracts.Report``."""
+    """Duties of ``raceway.framework.contracts.Report``."""
 
     kind = "report"
 

@@ -26,6 +26,6 @@ def example_scene() -> Any:
 @cache
 def example_result() -> Any:
     """The scene's ``Result``."""
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     return run(example_scene())

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.stepping.record import Motion, Record, Schedule
 
 #: Stiffness [N/m], mass [kg], damping [N s/m], frequency [Hz], force [N] of the synthetic records.
 STIFFNESS, MASS, DAMPING, FREQUENCY, FORCE = 2.0e8, 2.0, 4000.0, 200.0, 300.0

@@ -7,8 +7,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.record import Record, Schedule
-from raceway.core.system import System
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Record, Schedule
 from raceway.errors import RacewayError
 from raceway.testing.compiled import along_x
 from raceway.testing.suite import require

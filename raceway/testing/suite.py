@@ -218,7 +218,7 @@ class Suite:
 
 def check_class(kind: str, plugin: Any) -> None:
     """The duties that every kind shares: attributes that exist, a frozen attrs class, options that declare themselves."""
-    from raceway.contracts import broken_duties
+    from raceway.framework.contracts import broken_duties
 
     cls = type(plugin)
     faults = broken_duties(kind, cls)

@@ -15,11 +15,11 @@ import attrs
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from raceway.core.bodies.ring import COLUMNS, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.contact_laws.power import three_halves
 from raceway.core.excitations.harmonic import harmonic, no_force
-from raceway.core.record import Motion
-from raceway.core.system import System
+from raceway.core.ring.kernels.layout import COLUMNS, REST_AXIAL, SCALARS, TILT_ARM
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Motion
 from raceway.testing.compiled import counting, one_contact
 
 #: The last entry of ``scalars``, a diameter that no ball here has: the gap at x = 0 [m].

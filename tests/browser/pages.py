@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from raceway.commands.study_group import STUDIES
+from raceway.studies.command import STUDIES
 from tests.command_line import ARTICLE, EXAMPLES, invoke
 
 

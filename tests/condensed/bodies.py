@@ -6,7 +6,7 @@ import numpy as np
 
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
 from raceway.core.condensed.structural import RingCompliance
-from raceway.core.system import System
+from raceway.core.ring.system import System
 
 ANGLES = np.linspace(-0.7, 0.7, 13)
 #: Of the inner ring, the outer ring, a ball on itself and from its other contact [m/N]: docs/physics.md, condensed bodies.

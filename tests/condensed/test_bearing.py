@@ -7,16 +7,16 @@ import json
 import numpy as np
 import pytest
 
-from raceway import array_cache
-from raceway.bodies import compliances
+from raceway.bodies.condensed import compliances
+from raceway.bodies.model import build_model
 from raceway.core.condensed import calibration
 from raceway.core.revolution.body import seat_areas
 from raceway.errors import SceneError
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from raceway.storage import array_cache
 from tests.command_line import EXAMPLES, invoke
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}

@@ -6,8 +6,8 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.contact_error import contact_error
 from raceway.core.condensed.calibration import LOADS, POINTS, _limit
+from raceway.pipeline.error.contact import contact_error
 from tests.condensed.test_bearing import settled
 
 #: Walls of 1.24 mm.

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from raceway.core.energy import energy_balance
-from raceway.core.orbit import steady_orbit
-from raceway.core.record import Schedule
-from raceway.core.start import from_orbit, static_orbit
+from raceway.core.ring.energy import energy_balance
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.ring.start import from_orbit, static_orbit
+from raceway.core.stepping.record import Schedule
 from tests.condensed.bodies import ANGLES, BALL, BED, INNER, OPPOSITE, OUTER, elastic
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
@@ -125,8 +125,8 @@ def test_groove_centres_move_as_the_loads_of_all_balls_push_them(built):
 @pytest.mark.parametrize("name", ["weightless", "inertial"])
 def test_stored_energy_is_the_work_of_the_force(built, name):
     """On beds the energy of bodies and contacts between two states is the integral of the force: Gauss' rule, to 1e-9."""
-    from raceway.core.bodies import STORED
-    from raceway.core.bodies.ring import CENTRIFUGAL
+    from raceway.core.ring.kernels import STORED
+    from raceway.core.ring.kernels.layout import CENTRIFUGAL
 
     rigid = model(built, **SCENES[name])
     soft = elastic(rigid.system, slope=1.3e-9, bed=True)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from raceway.registry import default_registry
+from raceway.framework.registry import default_registry
 from raceway.testing import check
 
 ENTRIES = list(default_registry().all())

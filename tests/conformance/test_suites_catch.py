@@ -291,7 +291,7 @@ class TestHertzBySubclassing(ContactLawSuite):
 
 
 def test_every_suite_says_its_duties():
-    from raceway.contracts import KINDS
+    from raceway.framework.contracts import KINDS
 
     for kind in KINDS:
         checks = suite_of(kind).checks()

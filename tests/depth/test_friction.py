@@ -6,13 +6,13 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.core.bodies.ring import FRICTION, STICK
-from raceway.core.energy import energy_balance
-from raceway.core.friction import friction_energy
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.simulate import simulate
-from raceway.statics import settle
+from raceway.core.ring.energy import energy_balance
+from raceway.core.ring.friction import friction_energy
+from raceway.core.ring.kernels.layout import FRICTION, STICK
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import simulate
+from raceway.scene.file import scene_from_dict
 from tests.conftest import b7206c
 
 

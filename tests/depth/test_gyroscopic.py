@@ -8,10 +8,10 @@ import pytest
 from scipy.optimize import root
 
 from raceway import SceneError, make_plan
-from raceway.core.bodies import ring
-from raceway.core.bodies.rigid_tangential import rigid_tangential
-from raceway.core.system import System
-from raceway.scene_file import scene_from_dict
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
+from raceway.core.ring.system import System
+from raceway.scene.file import scene_from_dict
 from tests.conftest import b7206c
 
 #: Sizes of displacements [m, rad] over which contact forces change by some percent.

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from raceway import SceneError
-from raceway.run import run
-from raceway.scene_file import load_scene, scene_from_dict
+from raceway.pipeline.run import run
+from raceway.scene.file import load_scene, scene_from_dict
 from tests.conftest import b7206c
 
 RPM = 12000.0

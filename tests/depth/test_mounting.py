@@ -12,12 +12,12 @@ import pytest
 
 from raceway.bodies import mounting
 from raceway.bodies.mounting import preload_table
-from raceway.core.bodies.ring import SHIFT
+from raceway.core.ring.kernels.layout import SHIFT
 from raceway.errors import ConvergenceError
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
-from raceway.unused import unused
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.planning.unused import unused
+from raceway.scene.file import scene_from_dict
 from tests.conftest import b7206c
 from tests.reference.mounted import FORCE, approach, axial, row, secant
 

@@ -6,12 +6,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.core.bodies.ring import CAGE, place
-from raceway.core.lines import phasors, sharpest
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.simulate import simulate
-from raceway.statics import settle
+from raceway.core.ring.kernels.layout import CAGE, place
+from raceway.core.signals.lines import phasors, sharpest
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import simulate
+from raceway.scene.file import scene_from_dict
 from tests.conftest import b7206c
 
 SPEED = 9000.0

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from raceway import SceneError
-from raceway.core.system import System
-from raceway.scene_file import scene_from_dict
+from raceway.core.ring.system import System
+from raceway.scene.file import scene_from_dict
 from raceway.studies.verify.study import verify
 
 DISTANCE = 16e-3

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.ring import ring_inertia
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
+from raceway.scene.inner_ring import ring_inertia
 from tests.conftest import b7206c
 
 #: Half the rig's disc [kg m2]: polar inertia about twice the transverse one.

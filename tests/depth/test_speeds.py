@@ -10,15 +10,15 @@ from rich.console import Console
 
 from raceway import SceneError
 from raceway.commands.screen.result import run_screen
-from raceway.core.bodies.ring import CAGE, CENTRIFUGAL, COSINE, SINE
-from raceway.core.record import Schedule
-from raceway.core.start import at_rest
-from raceway.core.stepping.bearing import SteppedBearing
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
+from raceway.core.ring.start import at_rest
+from raceway.core.ring.stepped import SteppedBearing
+from raceway.core.stepping.record import Schedule
+from raceway.pipeline.run import run
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.run_up import RunUp
-from raceway.ring import ring_inertia
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.scene.file import scene_from_dict
+from raceway.scene.inner_ring import ring_inertia
 from tests.conftest import b7206c
 
 

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from raceway.bodies.model import build_model
 from raceway.errors import RacewayError, SceneError
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
 
 #: Three balls on 864 hexahedra: every path, some accuracy.
 TINY: dict[str, Any] = {

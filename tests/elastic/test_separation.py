@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway.core.contact.half_space import normal_displacement
+from raceway.core.contact.sphere import ball_compliance
 from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.footprint import footprint
 from raceway.core.elastic.contacts.separation import LoadedBody
-from raceway.core.half_space import normal_displacement
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.meshing.sphere import ball_mesh
-from raceway.core.sphere import ball_compliance
+from raceway.core.mesh.ball_mesh import ball_mesh
 from tests.reference import elastic
 
 STEEL = YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0

@@ -11,10 +11,10 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
 from raceway.planning.combinations import BODIES
-from raceway.registry import default_registry
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.scene.file import scene_from_dict
 
 DISCRETISATIONS = ("resultant", "nodal")
 TILTS: tuple[str | float, ...] = ("locked", "free", 3e4)

@@ -18,9 +18,9 @@ from __future__ import annotations
 import pytest
 
 from raceway.errors import SceneError
-from raceway.plan import make_plan
-from raceway.registry import default_registry
-from raceway.scene_file import scene_from_dict
+from raceway.framework.registry import default_registry
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
 from tests.matrix.combinations import (
     Combination,
     NeedsOptions,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from raceway.core.mesh import HexMesh, boundary, nodes_of
+from raceway.core.mesh.hex_mesh import HexMesh, boundary, nodes_of
 
 
 def block(nx=3, ny=4, nz=5, size=(1.0, 2.0, 3.0)):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from raceway import load_scene, scene_from_dict
+from raceway.bodies.meshing import mesh_scene
 from raceway.errors import MeshError, SceneError
-from raceway.meshing import mesh_scene
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.formats.msh import Msh
 from raceway.plugins.formats.vtu import Vtu

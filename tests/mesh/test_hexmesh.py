@@ -4,9 +4,9 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.core.mesh import HexMesh, merged
-from raceway.core.mesh_quality import quality, refuse_bad_cells
-from raceway.core.mesh_summary import summary
+from raceway.core.mesh.hex_mesh import HexMesh, merged
+from raceway.core.mesh.quality import quality, refuse_bad_cells
+from raceway.core.mesh.summary import summary
 from raceway.errors import MeshError
 from tests.mesh.cubes import block
 

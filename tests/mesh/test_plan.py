@@ -9,12 +9,12 @@ import attrs
 import pytest
 
 from raceway import load_scene, scene_from_dict
+from raceway.bodies.meshing import mesh_scene
 from raceway.commands.screen import plan_screen
 from raceway.errors import MeshError, PluginError, SceneError
-from raceway.meshing import mesh_scene
-from raceway.plan import make_plan
 from raceway.planning.combinations import BODIES
 from raceway.planning.mesh import predicted_mesh
+from raceway.planning.plan import make_plan
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.plugins.meshers.structured import Structured

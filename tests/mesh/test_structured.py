@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from raceway import load_scene, scene_from_dict
-from raceway.core.mesh import EDGES
-from raceway.core.mesh_quality import quality, refuse_bad_cells
-from raceway.core.mesh_summary import summary
-from raceway.core.meshing import sphere
-from raceway.core.meshing.quarter import quarter_groove
-from raceway.core.meshing.ring import ring_mesh
-from raceway.core.meshing.ring_shape import ring_shape
-from raceway.core.meshing.spacing import graded, growing, halved
-from raceway.core.meshing.sphere import ball_cells, ball_mesh
+from raceway.bodies.meshing import mesh_scene, scene_mesher
+from raceway.core.mesh import ball_mesh as sphere
+from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
+from raceway.core.mesh.hex_mesh import EDGES
+from raceway.core.mesh.quality import quality, refuse_bad_cells
+from raceway.core.mesh.quarter import quarter_groove
+from raceway.core.mesh.ring_mesh import ring_mesh
+from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.mesh.spacing import graded, growing, halved
+from raceway.core.mesh.summary import summary
 from raceway.errors import MeshError, SceneError
-from raceway.meshing import mesh_scene, scene_mesher
 from raceway.plugins.meshers.structured import Structured
 from tests.command_line import EXAMPLES
 

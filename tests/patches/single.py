@@ -9,11 +9,11 @@ import numpy as np
 
 from raceway import scene_from_dict
 from raceway.bodies.basis import make_basis
-from raceway.core.condensed.compliances import RingBody, Solid, make_ball, make_patch
-from raceway.core.condensed.contact import Contact, Pressed
-from raceway.core.condensed.patch import Patch, Spacing
-from raceway.core.hertz import Ellipse
-from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.contact.hertz import Ellipse
+from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.patches.compliances import RingBody, Solid, make_ball, make_patch
+from raceway.core.patches.contact import Contact, Pressed
+from raceway.core.patches.patch import Patch, Spacing
 
 
 @attrs.frozen(eq=False)

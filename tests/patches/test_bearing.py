@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.contact_error import contact_error
-from raceway.core.bodies.ring import CAGE, CENTRIFUGAL
-from raceway.core.condensed.balls import Balls
-from raceway.core.condensed.pool import Pool
+from raceway.core.patches.balls import Balls
+from raceway.core.patches.pool import Pool
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
 from raceway.errors import ConvergenceError, SceneError
-from raceway.run import run
-from raceway.statics import settle
+from raceway.pipeline.error.contact import contact_error
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
 from tests.conftest import b7206c
 
 NODAL = {

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from raceway import build_model, make_plan
-from raceway.core.condensed.balls import Given
-from raceway.core.condensed.contact import Contact, Held
-from raceway.core.condensed.friction import Friction, Gripped
-from raceway.core.condensed.gyroscopic import Gyroscopic
-from raceway.core.condensed.history import History
+from raceway.core.patches.balls import Given
+from raceway.core.patches.contact import Contact, Held
+from raceway.core.patches.friction import Friction, Gripped
+from raceway.core.patches.gyroscopic import Gyroscopic
+from raceway.core.patches.history import History
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
 from raceway.planning.patches import patch_cost
-from raceway.run import run
-from raceway.statics import settle
-from raceway.unused import unused
+from raceway.planning.unused import unused
 from tests.patches.single import single
 from tests.patches.test_bearing import model, scene
 from tests.reference.mindlin import Mindlin

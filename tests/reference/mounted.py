@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from raceway.scene_file import scene_from_dict
+from raceway.scene.file import scene_from_dict
 from tests.reference.ring import Ring
 
 #: Turning force of ``secant`` [N].

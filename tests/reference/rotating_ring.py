@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.revolution.body import Revolution
 from raceway.core.revolution.ring_profile import coarse_profile
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from raceway import load_scene
-from raceway.core.meshing.ring_shape import ring_shape
+from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.revolution.ball_profile import ball_profile
 from raceway.core.revolution.profile import Profile
 from raceway.core.revolution.ring_profile import graded_profile

@@ -6,9 +6,9 @@ from math import pi
 
 import pytest
 
-from raceway.registry import default_registry
-from raceway.rig import Rig
-from raceway.scene_file import load_scene
+from raceway.framework.registry import default_registry
+from raceway.scene.file import load_scene
+from raceway.scene.rig import Rig
 from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from raceway.errors import ConvergenceError, SceneError
-from raceway.registry import default_registry
-from raceway.scene_file import load_scene
+from raceway.framework.registry import default_registry
+from raceway.scene.file import load_scene
 from raceway.studies.measured.inversion import invert, scatter, values, with_moment, with_tilt_of
 from raceway.studies.shaft.balance import find_root
 from raceway.studies.shaft.bearing import bearing

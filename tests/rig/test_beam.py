@@ -7,7 +7,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from raceway.rig import Rig
+from raceway.scene.rig import Rig
 from raceway.studies.shaft.beam import beam
 from raceway.studies.shaft.rotor import shaft
 

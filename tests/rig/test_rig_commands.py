@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.registry import default_registry
-from raceway.rig import Signals
-from raceway.scene_file import load_scene
+from raceway.framework.registry import default_registry
+from raceway.scene.file import load_scene
+from raceway.scene.rig import Signals
 from raceway.studies.measured.identify import identify
 from raceway.studies.measured.recording import read_recording, write_recording
 from raceway.studies.rig.error_split import silent

@@ -10,8 +10,8 @@ import scipy.sparse.linalg as solvers
 
 from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.record import Motion
 from raceway.core.stepping.protocol import Observation, State
+from raceway.core.stepping.record import Motion
 from tests.reference import elastic
 
 YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from benchmarks.evidence._scenes import model_of, rotating
-from raceway.core.record import Schedule
-from raceway.core.start import at_rest, static_orbit
-from raceway.core.stepping.bearing import SteppedBearing
+from raceway.core.ring.start import at_rest, static_orbit
+from raceway.core.ring.stepped import SteppedBearing
+from raceway.core.stepping.record import Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.errors import RacewayError, StabilityError
 from raceway.integrators import raceway_integrators
-from raceway.statics import settle
+from raceway.pipeline.settle import settle
 from raceway.testing.integrator import IntegratorSuite
 
 #: Those that march in time.

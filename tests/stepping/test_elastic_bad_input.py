@@ -14,12 +14,12 @@ from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.gap import plane
 from raceway.core.elastic.contacts.nodal import NodalContact, Pair
 from raceway.core.elastic.contacts.surface import surface_points
+from raceway.core.elastic.stepped import SteppedElastic
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh import FACES, boundary
-from raceway.core.record import Schedule
-from raceway.core.stepping.elastic import SteppedElastic
+from raceway.core.mesh.hex_mesh import FACES, boundary
 from raceway.core.stepping.energy import drift
+from raceway.core.stepping.record import Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.errors import ConvergenceError, MeshError, StabilityError
 from raceway.integrators.central_difference import CentralDifference

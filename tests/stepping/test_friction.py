@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from raceway.core.elastic.contacts.friction import CoulombFriction
-from raceway.core.record import Schedule
 from raceway.core.stepping.energy import drift
+from raceway.core.stepping.record import Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.errors import ConvergenceError
 from raceway.integrators.central_difference import CentralDifference

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.bodies.impact import impact_system
-from raceway.registry import default_registry
-from raceway.studies.reference import reference_cases
+from raceway.core.ring.kernels.impact import impact_system
+from raceway.framework.registry import default_registry
+from raceway.studies.many.reference import reference_cases
 from raceway.studies.verify.impacts import impact_of, measure, transient_integrators
 from raceway.studies.verify.study import verify
 
@@ -51,7 +51,7 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
     The phase error of the worst of them is (w dt)^2 / 12 of 2 pi: 5e-4.
     """
     from raceway.core.contact_laws.power import three_halves
-    from raceway.core.record import Motion, Schedule
+    from raceway.core.stepping.record import Motion, Schedule
 
     mass, stiffness, x0 = 2.0, 8e6, 1e-5
     system = impact_system(mass, three_halves, np.array([1e10]), clearance=1.0, stiffness=stiffness)
@@ -68,7 +68,7 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
 def test_an_impact_on_a_penalty(name):
     """Q = c d^2: energy gives d_max = (3 m v^2 / (2 c))^(1/3).  Tolerance as for Hertz; the frequency is about the same."""
     from raceway.core.contact_laws.power import square
-    from raceway.core.record import Motion, Schedule
+    from raceway.core.stepping.record import Motion, Schedule
 
     mass, speed, factor = 0.01, 2.0, 1e12
     deepest = (1.5 * mass * speed**2 / factor) ** (1 / 3)

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
 from raceway.studies.verify.study import verify
 
 CASES = ("masta-dgbb-1", "masta-dgbb-3", "masta-dgbb-5")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway import option
-from raceway.options import at_least, between, finite, one_of, positive
+from raceway.framework.options import at_least, between, finite, one_of, positive
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway import option
-from raceway.options import at_least, inside, optional, positive
+from raceway.framework.options import at_least, inside, optional, positive
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.contracts import ContactPairs
+    from raceway.framework.contracts import ContactPairs
 
 
 @attrs.frozen

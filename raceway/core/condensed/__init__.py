@@ -26,7 +26,7 @@ field        the pressures of a contact over its points
 balls        all balls between both races: places and resultants that are in equilibrium
 history      what contacts and balls remember between accepted steps
 pool         patches and solvers, shared by all copies of a system
-patch_system the ring on such balls, with the interface of ``raceway.core.system.System``
+patch_system the ring on such balls, with the interface of ``raceway.core.ring.system.System``
 
 Lengths in metres.  In a ball's meridian plane vectors are (axial, radial); contact angles are counted from the radial
 direction, so that both contact angles of a ball pressed straight through are equal and positive.

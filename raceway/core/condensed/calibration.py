@@ -15,14 +15,14 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.array_cache import kept
-from raceway.core.condensed.compliances import RingBody, Solid, make_ball, make_patch
-from raceway.core.condensed.contact import BeyondPatch, Contact
-from raceway.core.condensed.patch import Patch, Spacing
 from raceway.core.condensed.structural import SOURCES
-from raceway.core.hertz import Ellipse
+from raceway.core.contact.hertz import Ellipse
+from raceway.core.patches.compliances import RingBody, Solid, make_ball, make_patch
+from raceway.core.patches.contact import BeyondPatch, Contact
+from raceway.core.patches.patch import Patch, Spacing
 from raceway.core.revolution.ring_profile import coarse_profile
 from raceway.errors import ConvergenceError, MeshError
+from raceway.storage.array_cache import kept
 
 #: Points along a semi-axis of the coarser and the finer patch.
 POINTS = (3, 6)

@@ -9,9 +9,9 @@ import attrs
 import numpy as np
 
 from raceway.core.condensed.calibration import Calibration
-from raceway.core.condensed.grooves import along_normal, groove_compliance, own_compliance
 from raceway.core.condensed.structural import RingCompliance
-from raceway.core.system import System
+from raceway.core.revolution.grooves import along_normal, groove_compliance, own_compliance
+from raceway.core.ring.system import System
 
 #: Least standard deviation of the contact angles that compliances between groove centres are fitted for [rad].
 _WIDTH = 0.2
@@ -134,4 +134,4 @@ def between_grooves(one: RingCompliance, angles: np.ndarray) -> np.ndarray:
 def _elastic(kernel: Any) -> Any:
     """The kernel of elastic bodies that belongs to one of rigid bodies; the others are not imported, hence not compiled."""
     name = kernel.__name__.replace("rigid", "condensed")
-    return getattr(import_module(f"raceway.core.bodies.{name}"), name)
+    return getattr(import_module(f"raceway.core.ring.kernels.{name}"), name)

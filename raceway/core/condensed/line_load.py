@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.half_space import normal_displacement
+from raceway.core.contact.half_space import normal_displacement
 
 
 def density(points: int) -> tuple[np.ndarray, np.ndarray]:

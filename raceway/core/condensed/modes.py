@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.array_cache import kept
 from raceway.core.condensed.structural import SOURCES, reach, ring_section
-from raceway.core.meshing.ring import RingShape
+from raceway.core.mesh.ring_mesh import RingShape
 from raceway.core.revolution.body import Revolution
+from raceway.storage.array_cache import kept
 
 #: Harmonics that are looked at; the lowest mode of a free ring is its second, that of a mounted one the 0th or 1st.
 _HARMONICS = (0, 1, 2, 3)

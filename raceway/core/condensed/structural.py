@@ -16,16 +16,16 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.array_cache import kept
 from raceway.core.condensed.line_load import half_space, nodal_weights
-from raceway.core.meshing.ring import RingShape
+from raceway.core.mesh.ring_mesh import RingShape
 from raceway.core.revolution.body import Revolution
 from raceway.core.revolution.harmonics import offset_weights, solved_harmonics
 from raceway.core.revolution.profile import Profile
 from raceway.core.revolution.ring_profile import coarse_profile
+from raceway.storage.array_cache import kept
 
 #: Sources on which kept numbers depend.
-SOURCES = ("core/revolution", "core/hexahedron", "core/condensed", "core/meshing")
+SOURCES = ("core/revolution", "core/hexahedron", "core/condensed", "core/patches", "core/mesh")
 #: Depths between which the fields are compared, over ``reach``, and how many.
 DEPTHS, COUNT = (0.31, 0.77), 7
 #: Sizes of the elements over ``reach``: in the bulk, at the groove's surface, around the ring.

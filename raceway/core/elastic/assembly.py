@@ -9,7 +9,7 @@ import numpy as np
 from raceway.core.elastic.body import Body
 from raceway.core.elastic.cage import Cage
 from raceway.core.elastic.contacts.surface import surface_points
-from raceway.core.rigid import MOTIONS, rigid_motions
+from raceway.core.linear.rigid_motions import MOTIONS, rigid_motions
 
 
 class Assembly:

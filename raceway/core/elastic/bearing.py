@@ -12,11 +12,11 @@ from raceway.core.elastic.body import Body, Frame
 from raceway.core.elastic.cage import Cage, cage_rows
 from raceway.core.elastic.contacts.gap import CIRCLE
 from raceway.core.elastic.setup import Setup
+from raceway.core.elastic.stepped import Seen
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.elastic.touching import nodal_contact, resultant_contact
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh import HexMesh
-from raceway.core.stepping.elastic import Seen
+from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.errors import MeshError
 
 #: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh import FACES
+from raceway.core.mesh.hex_mesh import FACES
 
 
 def _no_nodes() -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A bearing of elastic bodies seen from its inner ring: the interface of ``raceway.core.system.System``."""
+"""A bearing of elastic bodies seen from its inner ring: the interface of ``raceway.core.ring.system.System``."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import attrs
 import numpy as np
 
 from raceway.core.elastic.bearing import ElasticBearing
-from raceway.core.stepping.elastic import SteppedElastic
-from raceway.core.system import Evaluation, System
+from raceway.core.elastic.stepped import SteppedElastic
+from raceway.core.ring.system import Evaluation, System
 from raceway.errors import ConvergenceError
 
 #: Relative residual of equilibria, and of the linear solves for the ring's stiffness, whose error is its square.

@@ -8,8 +8,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.geometry import BallBearing
-from raceway.core.hertz import contact_modulus
+from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.hertz import contact_modulus
 
 Material = tuple[float, float, float]
 

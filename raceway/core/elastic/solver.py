@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from raceway.core.blocks import BlockMatrix
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.factorised import MOST_OF_A_BODY, MOST_UNKNOWNS, Factorised
 from raceway.core.elastic.whole_contacts import WholeContacts
-from raceway.core.linear_statics import Preconditioner
+from raceway.core.linear.blocks import BlockMatrix
+from raceway.core.linear.statics import Preconditioner
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
 MOST_ITERATIONS, MANY_ITERATIONS = 600, 300

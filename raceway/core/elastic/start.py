@@ -1,4 +1,4 @@
-"""Where a time integration of elastic bodies begins: what ``raceway.core.start`` does for systems of five coordinates."""
+"""Where a time integration of elastic bodies begins: what ``raceway.core.ring.start`` does for systems of five coordinates."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.core.orbit import Orbit, at_time
-from raceway.core.record import Motion
+from raceway.core.ring.orbit import Orbit, at_time
+from raceway.core.stepping.record import Motion
 
 if TYPE_CHECKING:
     from raceway.core.elastic.ring import ElasticRing

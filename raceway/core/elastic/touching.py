@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from raceway.core.contact.sphere import ball_compliance
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.footprint import Footprint, footprint
@@ -15,8 +16,7 @@ from raceway.core.elastic.contacts.resultant import ResultantContact, Touch
 from raceway.core.elastic.contacts.separation import LoadedBody
 from raceway.core.elastic.contacts.surface import SurfacePoints, surface_points
 from raceway.core.elastic.setup import Setup
-from raceway.core.mesh import HexMesh
-from raceway.core.sphere import ball_compliance
+from raceway.core.mesh.hex_mesh import HexMesh
 
 #: Points of a ball count as contact points where the undeformed gap is below this many Hertz approaches at four times the
 #: reference load: the ellipse may then move along the groove by twice its own length.

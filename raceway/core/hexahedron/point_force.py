@@ -6,10 +6,10 @@ These are the elements for accuracy on coarse meshes; the loops are plain, one e
 import numpy as np
 from numba import float64, int64, uint32, void
 
-from raceway.core.dense import solve
 from raceway.core.hexahedron.stiffness import stress_rows
 from raceway.core.hexahedron.strain import COLUMNS, strain_matrices
 from raceway.core.jit import jit
+from raceway.core.kernel.dense import solve
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 

@@ -3,7 +3,7 @@
 Notes
 -----
 The search of ``raceway.core.periodic.search``, so that a transient and the steady orbit that is solved for directly are of one
-motion.  Where it finds nothing, Fourier collocation (``raceway.core.orbit``) may: its damped iteration ends on any motion.
+motion.  Where it finds nothing, Fourier collocation (``raceway.core.ring.orbit``) may: its damped iteration ends on any motion.
 """
 
 from __future__ import annotations
@@ -14,8 +14,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.address import by_address
-from raceway.core.orbit import Orbit, evaluate_many, steady_orbit
 from raceway.core.periodic.collocation import Problem, solve
 from raceway.core.periodic.direct import HIGHEST, highest_order, mesh_of, problem_of
 from raceway.core.periodic.neighbour import Recorded
@@ -24,7 +22,9 @@ from raceway.core.periodic.sampling import states
 from raceway.core.periodic.search import Found, can_follow, find, found_by
 from raceway.core.periodic.stop import passed_on, stopping
 from raceway.core.periodic.told import orbits, several, unstable
-from raceway.core.system import System
+from raceway.core.ring.address import by_address
+from raceway.core.ring.orbit import Orbit, evaluate_many, steady_orbit
+from raceway.core.ring.system import System
 from raceway.errors import BeyondPlanError, ConvergenceError
 
 #: Samples of an orbit, as many as Fourier collocation has, and error of the search over the motion.

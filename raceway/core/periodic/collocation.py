@@ -23,7 +23,7 @@ from raceway.core.periodic.rates import renew, stiff
 from raceway.core.periodic.rule import Rule, rule
 from raceway.core.periodic.sweep import forces
 from raceway.core.periodic.symmetry import Symmetry
-from raceway.core.system import System
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 
 #: Turns of motion and rates, and the change over the motion's size that rounding may leave.

@@ -12,7 +12,7 @@ from raceway.core.periodic.collocation import Path, Problem, Solved, solve
 from raceway.core.periodic.first_guess import guess, standing
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.symmetry import one_pitch, one_turn
-from raceway.core.system import System
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 
 #: Intervals a turn at least, and for each order of the highest natural frequency.

@@ -8,7 +8,6 @@ from itertools import islice, pairwise
 import attrs
 import numpy as np
 
-from raceway.core.bodies.ring import CAGE
 from raceway.core.periodic.branch import Branch, Point, towards
 from raceway.core.periodic.collocation import Path, Problem, Solved, solve
 from raceway.core.periodic.direct import ROUGH
@@ -16,6 +15,7 @@ from raceway.core.periodic.first_guess import response, standing
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.sampling import half_a_turn_later
 from raceway.core.periodic.sweep import forces
+from raceway.core.ring.kernels.layout import CAGE
 from raceway.errors import ConvergenceError
 
 #: Points of a branch, and intervals of its meshes.

@@ -10,7 +10,7 @@ from raceway.core.periodic.collocation import Path, Problem, Solved
 from raceway.core.periodic.rule import integrals
 from raceway.core.periodic.sweep import contacts, forces
 from raceway.core.periodic.symmetry import rotations
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.bodies.ring import CAGE
 from raceway.core.periodic.collocation import Problem
 from raceway.core.periodic.detour import from_other_speeds
 from raceway.core.periodic.direct import directly, full_steps, grown, highest_order, mesh_of
@@ -16,6 +15,7 @@ from raceway.core.periodic.neighbour import Neighbour, Recorded, neighbour_of
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.sampling import states
+from raceway.core.ring.kernels.layout import CAGE
 from raceway.errors import ConvergenceError
 
 #: Distance of a motion from its neighbour, over its size, up to which it is that one's continuation.

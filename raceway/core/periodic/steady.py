@@ -8,16 +8,16 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.address import by_address
-from raceway.core.bodies.ring import CAGE, FRICTION
 from raceway.core.periodic.direct import problem_of
 from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.sampling import record
 from raceway.core.periodic.search import Found, find
 from raceway.core.periodic.stop import passed_on, stopping
 from raceway.core.periodic.told import orbits, several, unstable
-from raceway.core.record import Motion, Record, Schedule
-from raceway.core.system import System
+from raceway.core.ring.address import by_address
+from raceway.core.ring.kernels.layout import CAGE, FRICTION
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import SceneError
 
 #: Imbalance of an equilibrium over the contact forces that the settled state is known by.

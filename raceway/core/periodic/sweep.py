@@ -17,8 +17,8 @@ Arrays: n unknown coordinates ``free`` (n,), m intervals, s points an interval, 
 import numpy as np
 from numba import boolean, float64, int64, void
 
-from raceway.core.bodies.columns import work_rows
 from raceway.core.jit import jit
+from raceway.core.ring.kernels.columns import work_rows
 from raceway.core.signatures import CUBE, FORCE_POINTER, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
 
 INDICES = int64[::1]

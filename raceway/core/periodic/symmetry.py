@@ -14,9 +14,9 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.bodies.ring import CAGE, COSINE, LEVER, REST_RADIAL, SIDE, SINE
 from raceway.core.periodic.sweep import contacts, forces
-from raceway.core.system import System
+from raceway.core.ring.kernels.layout import CAGE, COSINE, LEVER, REST_RADIAL, SIDE, SINE
+from raceway.core.ring.system import System
 
 #: Largest difference that counts as rounding, over the largest force: ball solves end near 1e-12.
 _SAME = 1e-9

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.identification import stiffness
 from raceway.core.periodic.collocation import Solved
 from raceway.core.periodic.sampling import states
 from raceway.core.periodic.search import Found
 from raceway.core.periodic.sweep import forces
+from raceway.core.signals.identification import stiffness
 
 #: Samples of a turn for its 1x line: a path has no more intervals as a rule, and harmonics up to this order alias nothing.
 _SAMPLES = 360

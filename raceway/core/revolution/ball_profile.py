@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 
-from raceway.core.meshing.spacing import growing
+from raceway.core.mesh.spacing import growing
 from raceway.core.revolution.profile import Profile, mapped
 
 #: Radius of the hole on the axis over the ball's: it takes 2e-3 of the volume's moment arm and none of the contact's field.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.array_cache import kept
 from raceway.core.revolution.body import HOURGLASS, Revolution
 from raceway.core.revolution.profile import Profile
+from raceway.storage.array_cache import kept
 
 #: The code on which the numbers depend; whoever keeps something made of compliances adds its own.
 SOURCES = ("core/revolution", "core/hexahedron")

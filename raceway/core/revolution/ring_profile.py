@@ -6,8 +6,8 @@ from math import ceil, floor
 
 import numpy as np
 
-from raceway.core.meshing.ring import RingShape
-from raceway.core.meshing.spacing import growing
+from raceway.core.mesh.ring_mesh import RingShape
+from raceway.core.mesh.spacing import growing
 from raceway.core.revolution.profile import Profile, corner_areas, mapped
 from raceway.errors import MeshError
 

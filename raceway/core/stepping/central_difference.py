@@ -1,4 +1,4 @@
-"""Central differences for stepped systems, without matrices; equations in ``raceway.core.integrators.central_difference``."""
+"""Central differences for stepped systems, without matrices; equations in ``raceway.core.ring.loops.central_difference``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Newmark's method and generalised-alpha for stepped systems; equations in ``raceway.core.integrators.implicit``."""
+"""Newmark's method and generalised-alpha for stepped systems; equations in ``raceway.core.ring.loops.implicit``."""
 
 from __future__ import annotations
 

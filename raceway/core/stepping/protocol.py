@@ -7,7 +7,7 @@ from typing import Protocol
 import attrs
 import numpy as np
 
-from raceway.core.record import Motion
+from raceway.core.stepping.record import Motion
 
 
 @attrs.define(eq=False)

@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 
-from raceway.core.record import OnChunk, Record, Schedule
 from raceway.core.stepping.protocol import Observation, State, SteppedSystem
+from raceway.core.stepping.record import OnChunk, Record, Schedule
 from raceway.errors import ConvergenceError, StabilityError
 
 #: Seconds between two reports of progress.

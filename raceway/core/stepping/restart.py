@@ -8,7 +8,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 
-from raceway.core.record import Motion
+from raceway.core.stepping.record import Motion
 from raceway.errors import RacewayError
 
 _WHOLE = "whole."

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.options import at_least, between, finite, inside, one_of, option, optional, positive
+from raceway.framework.options import at_least, between, finite, inside, one_of, option, optional, positive
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import one_of, option
+from raceway.framework.options import one_of, option
 from raceway.plugins.excitations.amplitude import Amplitude
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.number_table import read_numbers
-from raceway.options import inside, option
+from raceway.framework.options import inside, option
+from raceway.storage.number_table import read_numbers
 
 if TYPE_CHECKING:
     import numpy as np

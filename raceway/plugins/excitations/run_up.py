@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import at_least, between, finite, inside, one_of, option, positive
+from raceway.framework.options import at_least, between, finite, inside, one_of, option, positive
 from raceway.plugins.excitations.bidirectional import Bidirectional
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import finite, option
+from raceway.framework.options import finite, option
 from raceway.plugins.excitations.amplitude import Amplitude
 
 if TYPE_CHECKING:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.contracts import Lost, Refused
 from raceway.errors import PluginError, extra
-from raceway.options import between, inside, option, optional
-from raceway.orphans import deaf_to_terminals
+from raceway.framework.contracts import Lost, Refused
+from raceway.framework.options import between, inside, option, optional
+from raceway.framework.orphans import deaf_to_terminals
 
 if TYPE_CHECKING:
-    from raceway.contracts import Batch
+    from raceway.framework.contracts import Batch
 
 #: How often the list of workers is looked at [s].
 _LOOK_S = 2.0

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.contracts import Lost
 from raceway.errors import PluginError, extra
-from raceway.options import between, option
-from raceway.orphans import deaf_to_terminals, end_with
+from raceway.framework.contracts import Lost
+from raceway.framework.options import between, option
+from raceway.framework.orphans import deaf_to_terminals, end_with
 
 if TYPE_CHECKING:
-    from raceway.contracts import Batch
+    from raceway.framework.contracts import Batch
 
 
 @attrs.frozen

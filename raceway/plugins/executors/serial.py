@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 if TYPE_CHECKING:
-    from raceway.contracts import Batch
+    from raceway.framework.contracts import Batch
 
 
 @attrs.frozen

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.mesh import FACES, HexMesh
+from raceway.core.mesh.hex_mesh import FACES, HexMesh
 from raceway.errors import MeshError, extra
-from raceway.user_files import memory_for, size_of, told
+from raceway.storage.user_files import memory_for, size_of, told
 
 #: Bytes of the largest mesh file.
 LARGEST = 2**32

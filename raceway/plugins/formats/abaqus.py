@@ -11,11 +11,11 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.mesh import HexMesh
+from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.errors import MeshError
-from raceway.options import one_of, option
+from raceway.framework.options import one_of, option
 from raceway.plugins.formats import _exchange as exchange
-from raceway.user_files import memory_for
+from raceway.storage.user_files import memory_for
 
 #: Element types that both programs know, by this program's word for the hexahedron.
 _TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.mesh import HexMesh
+from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.plugins.formats import _exchange as exchange
 
 _NODES, _FACETS = "nodes:", "facets:"

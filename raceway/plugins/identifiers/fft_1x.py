@@ -9,8 +9,8 @@ import attrs
 from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
-    from raceway.core.identification import Identification
-    from raceway.core.record import Record
+    from raceway.core.signals.identification import Identification
+    from raceway.core.stepping.record import Record
 
 
 @attrs.frozen
@@ -26,7 +26,7 @@ class Fft1x:
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
-        from raceway.core.identification import fit_lines, fourier_line, identification, stiffness, without_drift
+        from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift
 
         record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
         force = fourier_line(record.time, record.force, frequency)

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import option, worded
+from raceway.framework.options import option, worded
 from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
-    from raceway.core.identification import Identification
-    from raceway.core.record import Record
+    from raceway.core.signals.identification import Identification
+    from raceway.core.stepping.record import Record
 
 
 def _speeds(_instance: Any, _attribute: Any, value: tuple[float, ...]) -> None:
@@ -52,7 +52,7 @@ class ImpedanceFit:
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
-        from raceway.core.identification import fourier_line, identification, stiffness
+        from raceway.core.signals.identification import fourier_line, identification, stiffness
 
         records = [whole_turns(record) for record in records]
         w = np.array([2.0 * pi / (r.schedule.dt * r.schedule.steps_per_turn) for r in records])

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import between, option
+from raceway.framework.options import between, option
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.core.identification import Identification
-    from raceway.core.record import Record
+    from raceway.core.signals.identification import Identification
+    from raceway.core.stepping.record import Record
 
 
 @attrs.frozen
@@ -40,7 +40,7 @@ class OrderTracking:
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
-        from raceway.core.identification import identification
+        from raceway.core.signals.identification import identification
         from raceway.errors import ConvergenceError
 
         record = records[0]
@@ -120,7 +120,7 @@ def _steady(
     """
     import numpy as np
 
-    from raceway.core.identification import steady_stiffness
+    from raceway.core.signals.identification import steady_stiffness
 
     if system is None:
         return steady_stiffness(line[:5], line[5:], np.zeros(5, dtype=complex)), 0.0

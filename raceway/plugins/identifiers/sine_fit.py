@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import between, option
+from raceway.framework.options import between, option
 
 if TYPE_CHECKING:
-    from raceway.core.identification import Identification
-    from raceway.core.record import Record
+    from raceway.core.signals.identification import Identification
+    from raceway.core.stepping.record import Record
 
 
 @attrs.frozen
@@ -28,7 +28,7 @@ class SineFit:
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
-        from raceway.core.identification import fit_lines, fourier_line, identification, stiffness, without_drift
+        from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift
 
         record, frequency = records[0], model.excitation.frequency_hz
         signals = np.hstack([record.force, record.displacement])

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 if TYPE_CHECKING:
-    from raceway.core.identification import Identification
-    from raceway.core.record import Record
+    from raceway.core.signals.identification import Identification
+    from raceway.core.stepping.record import Record
 
 
 @attrs.frozen
@@ -24,7 +24,7 @@ class Tangent:
     def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
         import numpy as np
 
-        from raceway.core.identification import identification
+        from raceway.core.signals.identification import identification
 
         system, excitation = model.system, model.excitation
         w = 2.0 * np.pi * excitation.frequency_hz

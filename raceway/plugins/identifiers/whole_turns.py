@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import attrs
 
 if TYPE_CHECKING:
-    from raceway.core.record import Record
+    from raceway.core.stepping.record import Record
 
 
 def whole_turns(record: Record) -> Record:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.errors import MeshError
-from raceway.options import option, positive
+from raceway.framework.options import option, positive
 
 if TYPE_CHECKING:
-    from raceway.core.mesh import HexMesh
+    from raceway.core.mesh.hex_mesh import HexMesh
 
 BODIES = ("inner_ring", "outer_ring", "ball")
 
@@ -44,7 +44,7 @@ def bodies(mesher: Any, bearing: Any, make: Callable[[str, str], HexMesh]) -> di
     MeshError
         A pair of rows, or what ``make`` raises.
     """
-    from raceway.core.meshing.place import azimuth, ball_names, placed
+    from raceway.core.mesh.place import azimuth, ball_names, placed
 
     if len(bearing.rows) > 1:
         raise MeshError(f"mesh.kind = '{mesher.name}' makes one row; use 'structured' for a pair of rows")
@@ -70,7 +70,7 @@ def refuse_no_body(mesher: Any) -> None:
 
 def with_node_sets(mesh: HexMesh) -> HexMesh:
     """The mesh with a node set for each facet set that has none of its name."""
-    from raceway.core.mesh import nodes_of
+    from raceway.core.mesh.hex_mesh import nodes_of
 
     more = {name: nodes_of(mesh.cells, f) for name, f in mesh.facet_sets.items() if name not in mesh.node_sets}
     return attrs.evolve(mesh, node_sets={**mesh.node_sets, **more}) if more else mesh

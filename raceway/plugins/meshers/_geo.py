@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.errors import MeshError, Mistake
-from raceway.trust import is_allowed
+from raceway.storage.trust import is_allowed
 
 if TYPE_CHECKING:
-    from raceway.core.mesh import HexMesh
+    from raceway.core.mesh.hex_mesh import HexMesh
 
 #: Time that a script and its mesh may take [s].
 LIMIT_S = 600.0
@@ -86,7 +86,7 @@ def _executed(asked: dict[str, Any], name: str, folder: str) -> None:
 
 
 def _read(path: Path) -> HexMesh:
-    from raceway.core.mesh import HexMesh
+    from raceway.core.mesh.hex_mesh import HexMesh
 
     with np.load(path, allow_pickle=False) as kept:
         names = [str(name) for name in kept["names"]]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.errors import MeshError
-from raceway.options import nearest, option
+from raceway.framework.options import nearest, option
 from raceway.plugins.meshers._bodies import (
     BODIES,
     ball_path,
@@ -21,7 +21,7 @@ from raceway.plugins.meshers._bodies import (
 )
 
 if TYPE_CHECKING:
-    from raceway.core.mesh import HexMesh
+    from raceway.core.mesh.hex_mesh import HexMesh
 
 
 @attrs.frozen
@@ -62,7 +62,7 @@ class File:
         return bodies(self, bearing, self._body)
 
     def _body(self, body: str, path: str) -> HexMesh:
-        from raceway.core.mesh_quality import refuse_bad_cells, refuse_doubled
+        from raceway.core.mesh.quality import refuse_bad_cells, refuse_doubled
         from raceway.plugins.formats.abaqus import Abaqus
         from raceway.plugins.formats.msh import Msh
         from raceway.plugins.formats.vtu import Vtu

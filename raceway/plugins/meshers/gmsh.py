@@ -18,15 +18,15 @@ import attrs
 import numpy as np
 
 from raceway.errors import MeshError, extra
-from raceway.options import one_of, option, positive
+from raceway.framework.options import one_of, option, positive
 from raceway.plugins.formats._exchange import readable
 from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
 from raceway.plugins.meshers._geo import is_script, mesh_of_script
 from raceway.plugins.system_libraries import remedy
 
 if TYPE_CHECKING:
-    from raceway.core.mesh import HexMesh
-    from raceway.core.meshing.size import Prediction
+    from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.core.mesh.size import Prediction
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 #: Endings of files and OpenCASCADE's readers for them; a .geo is executed instead.
@@ -75,7 +75,7 @@ class Gmsh:
             Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, a .geo was not allowed,
             elements are too large or too small.
         """
-        from raceway.core.mesh_quality import refuse_bad_cells
+        from raceway.core.mesh.quality import refuse_bad_cells
 
         self.predict(bearing)  # refuses what cannot work
 
@@ -104,7 +104,7 @@ class Gmsh:
         Six-sided volumes of transfinite edges are counted exactly: of the numbers of cells along twelve edges, each of the
         three directions' occurs four times.  Solids of Gmsh's built-in geometry kernel tell no volume: their box bounds it.
         """
-        from raceway.core.meshing.place import ball_names
+        from raceway.core.mesh.place import ball_names
 
         found: dict[str, float] = {}
         prediction: Prediction | None = None
@@ -133,7 +133,7 @@ class Gmsh:
         return self._opened(path, self._meshed)
 
     def _refuse_large(self, found: dict[str, float], path: str) -> Prediction:
-        from raceway.core.meshing.size import Prediction, refuse_memory
+        from raceway.core.mesh.size import Prediction, refuse_memory
 
         # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
         prediction = Prediction.of(found, _BESIDE_BYTES + _BYTES_BESIDE * max(found.values()))
@@ -173,7 +173,7 @@ class Gmsh:
             gmsh.finalize()
 
     def _meshed(self, gmsh: Any, path: str, scale: float) -> HexMesh:
-        from raceway.core.mesh import HexMesh
+        from raceway.core.mesh.hex_mesh import HexMesh
         from raceway.plugins.formats._exchange import facets_of_quads
 
         self._set_sizes(gmsh, scale)
@@ -204,7 +204,7 @@ class Gmsh:
 
     def _cells(self, gmsh: Any, path: str, scale: float) -> float:
         """Predicted number of hexahedra of the open file."""
-        from raceway.core.meshing.size import Prediction, refuse_coarse, refuse_memory
+        from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
 
         volumes = {tag: _volume(gmsh, tag) * scale**3 for _, tag in gmsh.model.getEntities(3)}
         if self.method != "as_written":

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.options import between, option, optional, positive, word_or
+from raceway.framework.options import between, option, optional, positive, word_or
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.core.mesh import HexMesh
-    from raceway.core.meshing.ring import RingShape
-    from raceway.core.meshing.size import Prediction
+    from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.core.mesh.ring_mesh import RingShape
+    from raceway.core.mesh.size import Prediction
 
 #: Load of a ball [N] whose ellipse the patches follow where neither the scene nor the option says it.
 BALL_LOAD = 300.0
@@ -56,8 +56,8 @@ class Structured:
         MeshError
             Dimensions that are missing or do not fit, elements larger than the wall or too many for the memory.
         """
-        from raceway.core.meshing.place import azimuth, ball_names, placed
-        from raceway.core.meshing.sphere import ball_mesh
+        from raceway.core.mesh.ball_mesh import ball_mesh
+        from raceway.core.mesh.place import azimuth, ball_names, placed
 
         self.predict(bearing)  # refuses what cannot work
         bodies: dict[str, HexMesh] = {}
@@ -79,10 +79,10 @@ class Structured:
         MeshError
             As ``mesh``.
         """
-        from raceway.core.meshing.place import ball_names
-        from raceway.core.meshing.ring_shape import ring_shape
-        from raceway.core.meshing.size import Prediction, refuse_memory
-        from raceway.core.meshing.sphere import ball_cells
+        from raceway.core.mesh.ball_mesh import ball_cells
+        from raceway.core.mesh.place import ball_names
+        from raceway.core.mesh.ring_shape import ring_shape
+        from raceway.core.mesh.size import Prediction, refuse_memory
 
         self._refuse(bearing)
         bodies: dict[str, float] = {}
@@ -106,8 +106,8 @@ class Structured:
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
 
     def _refuse(self, bearing: Any) -> None:
-        from raceway.core.meshing.ring_shape import ring_shape
-        from raceway.core.meshing.size import Prediction, refuse_coarse, refuse_memory
+        from raceway.core.mesh.ring_shape import ring_shape
+        from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
 
         volume = pi / 6.0 * bearing.ball_diameter**3 * bearing.ball_count
         for inner, word in ((True, "inner"), (False, "outer")):
@@ -121,8 +121,8 @@ class Structured:
 
     def _semi_axes(self, bearing: Any, inner: bool) -> tuple[float, float]:
         """Semi-axes [m] of a contact ellipse, along the groove and along the rolling direction."""
-        from raceway.core.geometry import BallBearing
-        from raceway.core.hertz import contact_modulus
+        from raceway.core.contact.geometry import BallBearing
+        from raceway.core.contact.hertz import contact_modulus
 
         rings, balls = bearing.rings, bearing.balls
         modulus = contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)
@@ -141,8 +141,8 @@ class Structured:
         """Lines of the cube along u, v, w, layers, and the semi-axes of the patch along u, v."""
         import numpy as np
 
-        from raceway.core.meshing.spacing import graded, growing
-        from raceway.core.meshing.sphere import CUBE
+        from raceway.core.mesh.ball_mesh import CUBE
+        from raceway.core.mesh.spacing import graded, growing
 
         # Both contacts of a ball share the cube's lines: the larger ellipse sets the zone, the smaller one the size.
         pairs = [self._semi_axes(bearing, inner) for inner in (True, False)]
@@ -169,7 +169,7 @@ class Structured:
         self, bearing: Any, shape: RingShape
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
         """Points of the left land, the groove, the right land, the layers, and the refined band's angles."""
-        from raceway.core.meshing.spacing import graded, growing
+        from raceway.core.mesh.spacing import graded, growing
 
         major, minor = self._semi_axes(bearing, shape.inner)
         size, (low, high) = self.element_size, shape.edges
@@ -191,7 +191,7 @@ class Structured:
         """(n,) azimuths of the nodes around a ring, less that of the first ball [rad]: each ball meets the same nodes."""
         import numpy as np
 
-        from raceway.core.meshing.spacing import graded
+        from raceway.core.mesh.spacing import graded
 
         wanted, count = self.azimuth_cells, bearing.ball_count
         pitch = 2.0 * pi / count
@@ -210,9 +210,9 @@ class Structured:
     def _ring(self, bearing: Any, inner: bool, side: float, place: float) -> HexMesh:
         import numpy as np
 
-        from raceway.core.meshing.place import azimuth
-        from raceway.core.meshing.ring import ring_mesh
-        from raceway.core.meshing.ring_shape import ring_shape
+        from raceway.core.mesh.place import azimuth
+        from raceway.core.mesh.ring_mesh import ring_mesh
+        from raceway.core.mesh.ring_shape import ring_shape
 
         shape = ring_shape(bearing, inner)
         left, arc, right, layers, band = self._ring_lines(bearing, shape)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.errors import RacewayError, extra
-from raceway.files import write_whole
-from raceway.options import between, option
+from raceway.framework.options import between, option
+from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,7 +36,7 @@ class Pictures:
 
         Parameters
         ----------
-        result : raceway.result.Result
+        result : raceway.pipeline.result.Result
         folder : path, made when it is missing
 
         Returns

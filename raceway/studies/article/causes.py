@@ -7,8 +7,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.registry import Registry
-from raceway.scene_file import with_value
+from raceway.framework.registry import Registry
+from raceway.scene.file import with_value
 from raceway.studies.article.curves import Curves
 from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILTS, Design, Setting
 from raceway.studies.article.runs import Row, Task, curve

@@ -11,10 +11,10 @@ from typing import Any
 import attrs
 
 from raceway.errors import SceneError
-from raceway.registry import Registry
-from raceway.scene_file import read_toml, with_value
-from raceway.studies.axes import Axis, parse_axis, points
-from raceway.studies.points import tables_at
+from raceway.framework.registry import Registry
+from raceway.scene.file import read_toml, with_value
+from raceway.studies.many.axes import Axis, parse_axis, points
+from raceway.studies.many.points import tables_at
 
 DIRECTIONS = ("unidirectional", "bidirectional")
 AMPLITUDES = ("constant", "unbalance")

@@ -13,9 +13,9 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.registry import Registry
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
+from raceway.framework.registry import Registry
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
 from raceway.studies.article.design import article_tables
 
 SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)

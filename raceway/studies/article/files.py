@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.files import write_whole
+from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.reports.pictures import save_figure
-from raceway.result import without_nan, write_json
+from raceway.storage.files import write_whole
 from raceway.studies.article import causes
 from raceway.studies.article.figures import pictures as all_pictures
 from raceway.studies.article.report import page, verdict_rows

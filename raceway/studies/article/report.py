@@ -13,7 +13,7 @@ from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICT
 from raceway.studies.article.figures import named
 from raceway.studies.article.panel import Picture
 from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
-from raceway.studies.page import Cell, Page
+from raceway.studies.many.page import Cell, Page
 
 if TYPE_CHECKING:
     from raceway.studies.article.study import Article

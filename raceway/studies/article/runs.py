@@ -12,12 +12,12 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.registry import Registry
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.simulate import OnProgress
-from raceway.studies.processes import in_processes
-from raceway.studies.row_store import RowStore, program_key
+from raceway.framework.registry import Registry
+from raceway.pipeline.run import run
+from raceway.pipeline.simulate import OnProgress
+from raceway.scene.file import scene_from_dict
+from raceway.studies.many.processes import in_processes
+from raceway.studies.many.row_store import RowStore, program_key
 
 Row = dict[str, Any]
 

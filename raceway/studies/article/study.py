@@ -11,19 +11,19 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.registry import Registry, default_registry
-from raceway.result import without_nan
-from raceway.scene_file import scene_from_dict
-from raceway.simulate import OnProgress
+from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline.result import without_nan
+from raceway.pipeline.simulate import OnProgress
+from raceway.scene.file import scene_from_dict
 from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import verdicts
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import BODIES, LOADS, SPEEDS, TILTS, Design, Setting, article_tables, design
 from raceway.studies.article.runs import Row, Task, curve, work
 from raceway.studies.article.verdict import Verdict
-from raceway.studies.processes import processor_time
-from raceway.studies.reference import reference_cases
-from raceway.studies.row_store import RowStore
+from raceway.studies.many.processes import processor_time
+from raceway.studies.many.reference import reference_cases
+from raceway.studies.many.row_store import RowStore
 from raceway.studies.verify import study as verification
 
 PROCESSES = 2

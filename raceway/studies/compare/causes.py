@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.studies.axes import Axis, shown
 from raceway.studies.compare.effects import Factorial
 from raceway.studies.compare.phrases import HARDLY, listed, named, percent, span, step
+from raceway.studies.many.axes import Axis, shown
 
 if TYPE_CHECKING:
     from raceway.studies.compare.findings import Findings

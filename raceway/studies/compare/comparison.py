@@ -8,9 +8,9 @@ from typing import Any
 
 import attrs
 
-from raceway.studies.axes import Axis, shown
 from raceway.studies.compare.explain import explain
 from raceway.studies.compare.findings import QUANTITIES, Findings, Row
+from raceway.studies.many.axes import Axis, shown
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -46,7 +46,7 @@ class Comparison(Findings):
         RacewayError
             matplotlib is missing, or a folder that cannot be written.
         """
-        from raceway.plugins.reports.comparison import ComparisonPicture
+        from raceway.studies.compare.picture import ComparisonPicture
 
         return ComparisonPicture().write(self.as_dict(), folder)
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from raceway.studies.axes import Axis, shown
 from raceway.studies.compare.causes import causes, leading_axis
 from raceway.studies.compare.effects import Effect, Factorial
 from raceway.studies.compare.inertia import inertia
 from raceway.studies.compare.phrases import HARDLY, LABELS, listed, percent, settings, step
+from raceway.studies.many.axes import Axis, shown
 
 if TYPE_CHECKING:
     from raceway.studies.compare.findings import Findings

@@ -11,8 +11,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.studies.axes import Axis, shown
 from raceway.studies.compare.effects import Factorial, trend, whole_part
+from raceway.studies.many.axes import Axis, shown
 
 #: What is explained: name in the answer, label for people, path in ``identification``.
 QUANTITIES = {

@@ -6,8 +6,8 @@ import math
 from itertools import product
 from typing import TYPE_CHECKING
 
-from raceway.studies.axes import Axis
 from raceway.studies.compare.phrases import LABELS, percent, step
+from raceway.studies.many.axes import Axis
 
 if TYPE_CHECKING:
     from raceway.studies.compare.findings import Findings

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from raceway.studies.axes import Axis, shown
+from raceway.studies.many.axes import Axis, shown
 
 #: A change of less than half a percent "hardly matters".
 HARDLY = math.log(1.005)

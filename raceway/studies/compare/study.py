@@ -1,6 +1,6 @@
 """Variations of one scene under otherwise identical settings; ``comparison`` and ``explain`` say what changes what.
 
-Only ``raceway.run.run`` is called.
+Only ``raceway.pipeline.run.run`` is called.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from raceway.errors import RacewayError
-from raceway.registry import Registry, default_registry
-from raceway.run import run
-from raceway.scene_file import scene_from_dict
-from raceway.simulate import OnProgress
-from raceway.studies.axes import parse_axes, points
+from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline.run import run
+from raceway.pipeline.simulate import OnProgress
+from raceway.scene.file import scene_from_dict
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
-from raceway.studies.points import refuse_mistakes, tables_at
+from raceway.studies.many.axes import parse_axes, points
+from raceway.studies.many.points import refuse_mistakes, tables_at
 
 
 def compare(

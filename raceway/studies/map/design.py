@@ -10,11 +10,11 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.registry import Registry
-from raceway.scene import Scene
-from raceway.scene_file import scene_from_dict
-from raceway.studies.axes import Axis, is_number, parse_axes
-from raceway.studies.points import tables_at
+from raceway.framework.registry import Registry
+from raceway.scene.file import scene_from_dict
+from raceway.scene.tables import Scene
+from raceway.studies.many.axes import Axis, is_number, parse_axes
+from raceway.studies.many.points import tables_at
 
 AXIAL, SPEED, TILT, ANGLE = "load.axial", "excitation.speed_rpm", "supports.tilt", "bearing.contact_angle_deg"
 #: The axes in the order of the rows, with their default values.

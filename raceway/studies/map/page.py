@@ -7,13 +7,13 @@ import io
 from pathlib import Path
 from typing import Any
 
-from raceway.files import write_whole
-from raceway.plugins.reports.map_picture import at_angle, can_map, change_map, curves_figure, exponent_map
+from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.reports.pictures import save_figure
-from raceway.result import without_nan, write_json
+from raceway.storage.files import write_whole
+from raceway.studies.many.page import Page
 from raceway.studies.map.design import AXES
+from raceway.studies.map.picture import at_angle, can_map, change_map, curves_figure, exponent_map
 from raceway.studies.map.study import Map
-from raceway.studies.page import Page
 
 _ROW = (
     "status", "reason", "stiffness", "change", "exponent", "error", "small_signal", "force", "lost", "unseats", "reach_inner",

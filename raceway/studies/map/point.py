@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from raceway.errors import RacewayError
-from raceway.registry import Registry
-from raceway.result import Result
-from raceway.ring import shoulder_height
-from raceway.run import run
-from raceway.scene import Scene
-from raceway.statics import contact_angles
+from raceway.framework.registry import Registry
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import contact_angles
+from raceway.scene.inner_ring import shoulder_height
+from raceway.scene.tables import Scene
 
 
 def point_row(scene: Scene, registry: Registry) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """``raceway study map``: hardening or softening of k(speed) over axial load, tilt boundary and contact angle.
 
-Only ``raceway.run.run`` is called, on variations of one scene.
+Only ``raceway.pipeline.run.run`` is called, on variations of one scene.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.registry import Registry, default_registry
-from raceway.simulate import OnProgress
+from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline.simulate import OnProgress
+from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.map.curves import LEVEL, SATURATED, curves, words
 from raceway.studies.map.design import SPEED, Design, amplitude_words
 from raceway.studies.map.workers import Numbered, in_parallel, rows_of
-from raceway.studies.row_store import RowStore, row_key
 
 #: Points above which processes of their own are worth their start: importing the program takes as long as a hundred.
 _WORTH = 150

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from raceway.errors import ConvergenceError
-from raceway.registry import Registry
+from raceway.framework.registry import Registry
+from raceway.studies.many.processes import in_processes
 from raceway.studies.map.design import Design
 from raceway.studies.map.point import point_row
-from raceway.studies.processes import in_processes
 
 Numbered = list[tuple[int, dict[str, Any]]]
 

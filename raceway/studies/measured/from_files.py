@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from raceway.errors import RacewayError, SceneError
-from raceway.registry import Registry
-from raceway.rig import Rig
-from raceway.scene import Scene
+from raceway.framework.registry import Registry
+from raceway.scene.rig import Rig
+from raceway.scene.tables import Scene
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.recording import read_recording
 from raceway.studies.measured.run_out import given, slow_roll

@@ -10,8 +10,8 @@ import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.result import without_nan
-from raceway.rig import Rig
+from raceway.pipeline.result import without_nan
+from raceway.scene.rig import Rig
 from raceway.studies.measured.angle import Turning, turning
 from raceway.studies.measured.inversion import invert, scatter, sensitivities, values, with_tilt_of
 from raceway.studies.measured.orders import Order, order

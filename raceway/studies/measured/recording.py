@@ -13,9 +13,9 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.files import write_whole
-from raceway.number_table import NumberTable, read_numbers
-from raceway.options import nearest
+from raceway.framework.options import nearest
+from raceway.storage.files import write_whole
+from raceway.storage.number_table import NumberTable, read_numbers
 
 _UNITS = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6},

@@ -20,12 +20,12 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError, SceneError
-from raceway.plan import make_plan
-from raceway.registry import Registry
-from raceway.scene import Scene
-from raceway.scene_file import scene_from_dict
-from raceway.studies.axes import parse_axes, points
-from raceway.studies.points import refuse_mistakes, tables_at
+from raceway.framework.registry import Registry
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from raceway.scene.tables import Scene
+from raceway.studies.many.axes import parse_axes, points
+from raceway.studies.many.points import refuse_mistakes, tables_at
 
 STEPS = (45, 90, 180, 360, 720, 1440)
 TURNS = (3, 6, 12, 24, 48)

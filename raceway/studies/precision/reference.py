@@ -16,11 +16,11 @@ from typing import Any
 
 import attrs
 
-from raceway.registry import Registry
-from raceway.studies.measured_run import measured
-from raceway.studies.points import tables_at
+from raceway.framework.registry import Registry
+from raceway.studies.many.measured_run import measured
+from raceway.studies.many.points import tables_at
+from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.precision.design import Setting, is_steady, needs_motion, setting_at
-from raceway.studies.row_store import RowStore, row_key
 
 #: Steps of the reference over the finest steps of the rows, and its least steps and turns.
 FINER = 4

@@ -10,7 +10,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.studies.axes import shown
+from raceway.studies.many.axes import shown
 from raceway.studies.precision.reference import Reference, distance, main_size, minus
 
 THRESHOLDS = (0.01, 0.001, 0.0001)
@@ -207,7 +207,7 @@ class Precision:
         RacewayError
             A folder or disk that cannot be written, or matplotlib missing.
         """
-        from raceway.plugins.reports.precision import PrecisionReport
+        from raceway.studies.precision.picture import PrecisionReport
 
         return PrecisionReport(picture=pictures).write(self.as_dict(), folder)
 

@@ -12,16 +12,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.errors import SceneError
-from raceway.registry import Registry, default_registry
-from raceway.scene_file import parse_change
-from raceway.studies.measured_run import measured
+from raceway.framework.registry import Registry, default_registry
+from raceway.scene.file import parse_change
+from raceway.studies.many.measured_run import measured
+from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.precision.design import Setting, make_design, needs_motion, setting_at
 from raceway.studies.precision.reference import Reference, Runner, find_reference
 from raceway.studies.precision.result import Precision, words_of
-from raceway.studies.row_store import RowStore, row_key
 
 if TYPE_CHECKING:
-    from raceway.simulate import OnProgress
+    from raceway.pipeline.simulate import OnProgress
 
 #: Runs of each setting, and the longest predicted run [s].
 REPEATS = 3

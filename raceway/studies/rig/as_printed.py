@@ -19,7 +19,7 @@ from math import pi
 import attrs
 import numpy as np
 
-from raceway.rig import Rig
+from raceway.scene.rig import Rig
 from raceway.studies.measured.angle import Turning
 from raceway.studies.shaft.bearing import Bearing
 from raceway.studies.shaft.rotor import shaft

@@ -11,7 +11,7 @@ from math import radians
 import attrs
 import numpy as np
 
-from raceway.rig import Rig, Signals
+from raceway.scene.rig import Rig, Signals
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.identify import changed_rotors, identify
 from raceway.studies.measured.inversion import invert, with_moment, with_tilt_of

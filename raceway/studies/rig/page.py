@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from raceway import __version__
 from raceway.plugins.reports.pictures import save_figure
+from raceway.studies.many.page import Page
 from raceway.studies.measured.figures import orbits, signals, spectrum
-from raceway.studies.page import Page
 from raceway.studies.rig.figures import causes, procedures
 
 if TYPE_CHECKING:

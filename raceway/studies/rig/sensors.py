@@ -7,7 +7,7 @@ from math import pi, radians
 import attrs
 import numpy as np
 
-from raceway.rig import Rig, Signals
+from raceway.scene.rig import Rig, Signals
 from raceway.studies.measured.recording import Recording
 from raceway.studies.shaft.balance import State, balance
 from raceway.studies.shaft.bearing import Bearing

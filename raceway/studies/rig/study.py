@@ -11,10 +11,10 @@ from typing import Any
 import attrs
 
 from raceway.errors import ConvergenceError
-from raceway.registry import Registry
-from raceway.result import without_nan
-from raceway.rig import Rig
-from raceway.scene import Scene
+from raceway.framework.registry import Registry
+from raceway.pipeline.result import without_nan
+from raceway.scene.rig import Rig
+from raceway.scene.tables import Scene
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.recording import Recording, write_recording

@@ -17,7 +17,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import Mistake, RacewayError, SceneError
-from raceway.studies.axes import shown
+from raceway.studies.many.axes import shown
 from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent
 from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
 

@@ -23,7 +23,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
-from raceway.files import write_whole
+from raceway.storage.files import write_whole
 from raceway.studies.ross.coefficients import SPEED, SPIN, Coefficients
 
 DISTRIBUTION = "ross-rotordynamics"

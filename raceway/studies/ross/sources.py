@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
-from raceway.studies.axes import is_number
+from raceway.studies.many.axes import is_number
 from raceway.studies.sweep.selection import Selection, listed
 
 DIRECTION = "excitation.direction_deg"

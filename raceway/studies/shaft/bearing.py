@@ -1,4 +1,4 @@
-"""What the scene's bearing does under a turning force and moment, by ``raceway.run``."""
+"""What the scene's bearing does under a turning force and moment, by ``raceway.pipeline.run``."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.registry import Registry
-from raceway.result import Result
-from raceway.run import run
-from raceway.scene import Identifying, Rotor, Scene
+from raceway.framework.registry import Registry
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
+from raceway.scene.tables import Identifying, Rotor, Scene
 from raceway.studies.shaft.shaft_load import shaft_load
 
 

@@ -8,7 +8,7 @@ from math import ceil, pi
 import attrs
 import numpy as np
 
-from raceway.rig import Rig
+from raceway.scene.rig import Rig
 from raceway.studies.shaft.beam import Beam, beam
 
 #: Longest element over the shaft's diameter: halving it moves no answer of the rig by 1e-6.

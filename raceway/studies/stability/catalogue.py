@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from raceway.errors import SceneError
-from raceway.registry import Registry
+from raceway.framework.registry import Registry
 from raceway.studies.stability.case import Case
 from raceway.studies.stability.elastic import elastic_cases
 from raceway.studies.stability.extremes import CONDENSED, PENALTIES, REFUSALS, SCENES, WARNINGS, Changes, force

@@ -13,7 +13,7 @@ from typing import Any
 
 import attrs
 
-from raceway.registry import Registry
+from raceway.framework.registry import Registry
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
@@ -103,7 +103,7 @@ def elastic_cases(base: Changes, registry: Registry) -> Iterator[Case]:
 
 def calibrated_at_rest(case: Case, registry: Registry) -> list[Row]:
     """Axial displacement and radial stiffness against condensed bodies; what the seat carries against the load."""
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     a = case.arguments
     known = run(scene_at(a["tables"], {**STATIC, **a["changes"], "bodies.kind": "condensed"}, registry), registry)
@@ -139,7 +139,7 @@ def _carried(case: Case, load: float, result: Any) -> Row:
 
 def points_at_rest(case: Case, registry: Registry) -> list[Row]:
     """What the outer seat carries, and the stored energy over the axial way between two loads, against the load."""
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     a = case.arguments
     scene = scene_at(a["tables"], a["changes"], registry)
@@ -166,12 +166,12 @@ def points_at_rest(case: Case, registry: Registry) -> list[Row]:
 
 def motion(case: Case, registry: Registry) -> list[Row]:
     """Elastic bodies that a force meets at rest: a balance of energies; a step above the stable limit is refused."""
-    from raceway.core.record import Schedule
-    from raceway.core.start import at_rest
+    from raceway.bodies.model import build_model
+    from raceway.core.ring.start import at_rest
     from raceway.core.stepping.energy import drift
-    from raceway.model import build_model
-    from raceway.plan import make_plan
-    from raceway.statics import settle
+    from raceway.core.stepping.record import Schedule
+    from raceway.pipeline.settle import settle
+    from raceway.planning.plan import make_plan
 
     a = case.arguments
     model = build_model(scene := scene_at(a["tables"], a["changes"], registry), make_plan(scene))
@@ -203,13 +203,13 @@ def motion(case: Case, registry: Registry) -> list[Row]:
 
 def rubbing(case: Case, registry: Registry) -> list[Row]:
     """A force that meets contacts with friction at rest: the balance of energies, and that friction takes part."""
-    from raceway.core.record import Schedule
-    from raceway.core.start import at_rest
+    from raceway.bodies.model import build_model
+    from raceway.core.ring.start import at_rest
     from raceway.core.stepping.energy import drift
+    from raceway.core.stepping.record import Schedule
     from raceway.integrators.newmark import Newmark
-    from raceway.model import build_model
-    from raceway.plan import make_plan
-    from raceway.statics import settle
+    from raceway.pipeline.settle import settle
+    from raceway.planning.plan import make_plan
 
     a = case.arguments
     model = build_model(scene := scene_at(a["tables"], a["changes"], registry), make_plan(scene))

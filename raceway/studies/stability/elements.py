@@ -9,9 +9,9 @@ import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
-from raceway.core.linear_statics import solve_static
+from raceway.core.linear.statics import solve_static
 from raceway.errors import MeshError
-from raceway.registry import Registry
+from raceway.framework.registry import Registry
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
 
 _YOUNG, _POISSON, _DENSITY = 212e9, 0.29, 7810.0

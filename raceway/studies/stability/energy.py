@@ -8,12 +8,12 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.bodies.impact import impact_system
-from raceway.core.contact import stored_energy
-from raceway.core.energy import energy_balance
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.contact.damping import stored_energy
+from raceway.core.ring.energy import energy_balance
+from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError
-from raceway.registry import Registry
+from raceway.framework.registry import Registry
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged
 from raceway.studies.stability.systems import UNDAMPED, Still, scene_at, still
 

@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.bodies.impact import impact_system
-from raceway.core.orbit import Orbit, at_time, steady_orbit
-from raceway.core.record import Motion, Schedule
-from raceway.core.start import from_orbit
-from raceway.core.system import System
+from raceway.bodies.model import build_model
+from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.ring.orbit import Orbit, at_time, steady_orbit
+from raceway.core.ring.start import from_orbit
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Motion, Schedule
 from raceway.errors import ConvergenceError
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.registry import Registry
-from raceway.simulate import SAFETY
-from raceway.statics import settle
+from raceway.framework.registry import Registry
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import SAFETY
+from raceway.planning.plan import make_plan
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Expectation, Measured, Near, Row, judged
 from raceway.studies.stability.systems import UNDAMPED, scene_at, still
 

@@ -7,7 +7,7 @@ from math import sin, sqrt
 
 import numpy as np
 
-from raceway.model import Model
+from raceway.bodies.model import Model
 
 #: Halvings of an interval: to the last bit of a double from any first one.
 _HALVINGS = 200

@@ -9,14 +9,14 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import make_basis
+from raceway.bodies.model import build_model
 from raceway.errors import RacewayError, SceneError
-from raceway.estimate import series_factor
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.registry import Registry
-from raceway.result import Result
-from raceway.run import run
-from raceway.statics import settle
+from raceway.framework.registry import Registry
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.planning.closed_form import series_factor
+from raceway.planning.plan import make_plan
 from raceway.studies.stability.case import (
     AS_EXPECTED,
     FAILED,

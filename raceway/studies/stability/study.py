@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.errors import RacewayError, SceneError
-from raceway.options import nearest
-from raceway.registry import Registry, default_registry
-from raceway.studies.processes import processor_time
-from raceway.studies.row_store import RowStore, program_key
+from raceway.framework.options import nearest
+from raceway.framework.registry import Registry, default_registry
+from raceway.studies.many.processes import processor_time
+from raceway.studies.many.row_store import RowStore, program_key
 from raceway.studies.stability.case import FAILED, Case, Row
 from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.workers import in_parallel, rows_of
 
 if TYPE_CHECKING:
-    from raceway.simulate import OnProgress
+    from raceway.pipeline.simulate import OnProgress
 
 PROCESSES = 2
 
@@ -74,7 +74,7 @@ class Stability:
         RacewayError
             A folder or disk that cannot be written.
         """
-        from raceway.plugins.reports.stability import StabilityReport
+        from raceway.studies.stability.picture import StabilityReport
 
         return StabilityReport().write(self.as_dict(), folder)
 

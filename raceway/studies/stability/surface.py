@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from raceway.framework.registry import Registry
 from raceway.planning.patches import INTEGRATORS
-from raceway.registry import Registry
 from raceway.studies.stability.case import Case, Measured, Near, Row, judged
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
@@ -79,7 +79,7 @@ def _moving(base: Changes, law: str, name: str) -> Case:
 
 def condensed_at_rest(case: Case, registry: Registry) -> list[Row]:
     """The axial displacement against the calibrated law on the same bodies, and the balls' axial forces against the load."""
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     a = case.arguments
     changes = {**a["changes"], "excitation": None}
@@ -106,7 +106,7 @@ def condensed_at_rest(case: Case, registry: Registry) -> list[Row]:
 
 def turn(case: Case, registry: Registry) -> list[Row]:
     """One turn at surface points against the calibrated law on the same bodies."""
-    from raceway.run import run
+    from raceway.pipeline.run import run
 
     a = case.arguments
     changes = {**a["changes"], "integrator.kind": a["integrator"]}

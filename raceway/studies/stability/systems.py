@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.plan import make_plan
-from raceway.registry import Entry, Registry
-from raceway.scene import Scene
-from raceway.scene_file import scene_from_dict
-from raceway.studies.points import tables_at
+from raceway.framework.registry import Entry, Registry
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from raceway.scene.tables import Scene
+from raceway.studies.many.points import tables_at
 
 if TYPE_CHECKING:
-    from raceway.core.record import Motion
-    from raceway.core.system import System
-    from raceway.model import Model
-    from raceway.statics import Equilibrium
+    from raceway.bodies.model import Model
+    from raceway.core.ring.system import System
+    from raceway.core.stepping.record import Motion
+    from raceway.pipeline.settle import Equilibrium
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
 BASE: dict[str, Any] = {
@@ -83,7 +83,7 @@ class Still:
 
     def displaced(self, by: np.ndarray) -> Motion:
         """At rest, moved by (5,) [m, rad]."""
-        from raceway.core.record import Motion
+        from raceway.core.stepping.record import Motion
 
         system, q = self.system, self.equilibrium.displacement + by
         now = system.evaluate(q, ball=self.equilibrium.ball)
@@ -98,9 +98,9 @@ class Still:
 
 def still(scene: Scene) -> Still:
     """The bearing of a scene, in equilibrium, nothing exciting it."""
+    from raceway.bodies.model import build_model
     from raceway.core.excitations.harmonic import no_force
-    from raceway.model import build_model
-    from raceway.statics import settle
+    from raceway.pipeline.settle import settle
 
     model = build_model(scene, make_plan(scene))
     equilibrium = settle(model)

@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
-from raceway.registry import Registry, default_registry
+from raceway.framework.registry import Registry, default_registry
 from raceway.studies.stability.case import Case, Row, lost, short
 
 #: A case that takes longer has hung [s].  The longest takes 20 s, and compiling for the first time on busy cores some minutes.

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.errors import RacewayError, extra
-from raceway.files import scratch_file, write_whole
-from raceway.registry import Registry, default_registry
-from raceway.scene import Scene
-from raceway.scene_file import scene_from_dict
-from raceway.studies.axes import is_number
+from raceway.framework.registry import Registry, default_registry
+from raceway.scene.file import scene_from_dict
+from raceway.scene.tables import Scene
+from raceway.storage.files import scratch_file, write_whole
+from raceway.studies.many.axes import is_number
 from raceway.studies.sweep.store import Store
 from raceway.studies.sweep.survey import key_facts
 from raceway.studies.sweep.variables import ARRAYS, DOF, NUMBERS

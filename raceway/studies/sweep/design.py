@@ -13,9 +13,9 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.scene_file import parse_value, read_toml
-from raceway.studies.axes import Axis, parse_axes, shown
-from raceway.user_files import size_of
+from raceway.scene.file import parse_value, read_toml
+from raceway.storage.user_files import size_of
+from raceway.studies.many.axes import Axis, parse_axes, shown
 
 #: Most points of a sweep: beyond it, files of results are no longer something to open.
 MOST_POINTS = 1_000_000

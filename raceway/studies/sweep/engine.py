@@ -10,12 +10,12 @@ from typing import Any
 
 import attrs
 
-from raceway.contracts import Lost, Refused
 from raceway.errors import PluginError, RacewayError
-from raceway.plan import make_plan
+from raceway.framework.contracts import Lost, Refused
+from raceway.pipeline.simulate import OnProgress
+from raceway.planning.plan import make_plan
 from raceway.planning.sections import section_cost
 from raceway.planning.wall_time import START_S
-from raceway.simulate import OnProgress
 from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.identity import differences, identity
 from raceway.studies.sweep.store import Store, exists, open_store, written
@@ -106,7 +106,7 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
 
     Parameters
     ----------
-    executor : follows ``raceway.contracts.Executor``
+    executor : follows ``raceway.framework.contracts.Executor``
     on_progress : called as ``on_progress(what, done, total)``; an exception stops the sweep
 
     Raises

@@ -8,9 +8,9 @@ from importlib.metadata import version
 from typing import Any
 
 from raceway import __version__
-from raceway.registry import Registry
-from raceway.scene import Scene
-from raceway.studies.row_store import program_key
+from raceway.framework.registry import Registry
+from raceway.scene.tables import Scene
+from raceway.studies.many.row_store import program_key
 
 
 def plugins_of(scene: Scene) -> list[tuple[str, str]]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.errors import Mistake, RacewayError, SceneError
-from raceway.options import nearest
-from raceway.studies.axes import is_number, shown
+from raceway.framework.options import nearest
+from raceway.studies.many.axes import is_number, shown
 from raceway.studies.sweep.selection import LIST, Selection, listed
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Layout:
         RacewayError
             matplotlib is missing, or the file cannot be written.
         """
-        from raceway.plugins.reports.store_picture import draw, write
+        from raceway.studies.sweep.picture import draw, write
 
         return write(draw(self.data, self.kind, self.x, self.y, self.panels, self.title, self.remark), path)
 

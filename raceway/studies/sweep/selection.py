@@ -11,9 +11,9 @@ import attrs
 import numpy as np
 
 from raceway.errors import Mistake, RacewayError, SceneError
-from raceway.options import nearest
-from raceway.scene_file import parse_value
-from raceway.studies.axes import is_number, shown
+from raceway.framework.options import nearest
+from raceway.scene.file import parse_value
+from raceway.studies.many.axes import is_number, shown
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.errors import RacewayError
-from raceway.studies.axes import Axis
+from raceway.studies.many.axes import Axis
 from raceway.studies.sweep.design import Design
 
 if TYPE_CHECKING:

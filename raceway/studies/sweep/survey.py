@@ -10,11 +10,11 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.registry import Registry
-from raceway.scene import TABLES, Scene
-from raceway.scene_file import PLUGIN_TABLES, scene_from_dict
-from raceway.studies.points import tables_at
-from raceway.studies.row_store import files_of
+from raceway.framework.registry import Registry
+from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
+from raceway.scene.tables import TABLES, Scene
+from raceway.studies.many.points import tables_at
+from raceway.studies.many.row_store import files_of
 from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.identity import plugins_of
 

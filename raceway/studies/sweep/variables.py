@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from raceway.result import Result
+    from raceway.pipeline.result import Result
 
 #: Coordinates of the ring, in the order of ``displacement`` and ``stiffness``.
 DOF = ("x", "y", "z", "tilt_y", "tilt_z")
@@ -71,7 +71,7 @@ def values_of(result: Result) -> dict[str, Any]:
 
 def _loads(result: Result) -> dict[str, Any]:
     """Of the motion where there is one, else of the equilibrium."""
-    from raceway.motion import motion_table
+    from raceway.pipeline.motion import motion_table
 
     model, z = result.model, result.model.system.ball_count
     if result.simulation is not None:

@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.contracts import Refused
 from raceway.errors import PluginError, RacewayError
-from raceway.registry import Registry
-from raceway.scene_file import scene_from_dict
-from raceway.studies.points import tables_at
-from raceway.studies.row_store import row_key
+from raceway.framework.contracts import Refused
+from raceway.framework.registry import Registry
+from raceway.scene.file import scene_from_dict
+from raceway.studies.many.points import tables_at
+from raceway.studies.many.row_store import row_key
 from raceway.studies.sweep.identity import differences, identity, used_by
 from raceway.studies.sweep.variables import values_of
 
 if TYPE_CHECKING:
-    from raceway.result import Result
+    from raceway.pipeline.result import Result
 
 #: One point at a time in a process: kernels may be compiling, and a run's cost is the process's.
 _ONE = threading.Lock()
@@ -75,7 +75,7 @@ class Work:
     def _row(
         self, number: int, point: dict[str, Any], registry: Registry, before: Result | None
     ) -> tuple[dict[str, Any], Result | None]:
-        from raceway.run import run
+        from raceway.pipeline.run import run
 
         wall, cpu = time.perf_counter(), time.process_time()
         row = unfinished_row(number, "")

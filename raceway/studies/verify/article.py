@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from raceway.model import Model, build_model
-from raceway.plan import make_plan
-from raceway.registry import Registry
-from raceway.scene_file import scene_from_dict
-from raceway.statics import settle
-from raceway.studies.reference import Case, Number
+from raceway.bodies.model import Model, build_model
+from raceway.framework.registry import Registry
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from raceway.studies.many.reference import Case, Number
 
 
 def article_pressures(case: Case, registry: Registry) -> Iterator[Number]:

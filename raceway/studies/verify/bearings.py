@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.hertz import ellipse
-from raceway.model import build_model
-from raceway.plan import make_plan
-from raceway.registry import Registry
-from raceway.run import run
-from raceway.scene import Scene
-from raceway.scene_file import scene_from_dict
-from raceway.studies.reference import Case, Number
+from raceway.bodies.model import build_model
+from raceway.core.contact.hertz import ellipse
+from raceway.framework.registry import Registry
+from raceway.pipeline.run import run
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from raceway.scene.tables import Scene
+from raceway.studies.many.reference import Case, Number
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168361
 

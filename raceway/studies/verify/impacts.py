@@ -19,11 +19,11 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.bodies.impact import impact_system
-from raceway.core.hertz import contact_modulus, ellipse
-from raceway.core.record import Motion, Schedule
-from raceway.registry import Entry, Registry
-from raceway.studies.reference import Case, Number
+from raceway.core.contact.hertz import contact_modulus, ellipse
+from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.stepping.record import Motion, Schedule
+from raceway.framework.registry import Entry, Registry
+from raceway.studies.many.reference import Case, Number
 
 #: Peak force and contact time of an integrator at this many steps a contact, and how close they have to come: 0.1 %.
 STEPS_PER_CONTACT = 100
@@ -77,7 +77,7 @@ def transient_integrators(registry: Registry) -> list[Entry]:
 
 
 def impact_of_spheres(case: Case, registry: Registry) -> Iterator[Number]:
-    """Closed formulas with the factor of ``raceway.core.hertz``, then each integrator."""
+    """Closed formulas with the factor of ``raceway.core.contact.hertz``, then each integrator."""
     impact, out = impact_of(case.inputs), case.outputs
     yield Number("peak force, closed form [N]", out["Fmax_N"], impact.largest_force, case.rel_tol)
     yield Number("largest approach, closed form [m]", out["dmax_m"], impact.largest_approach, case.rel_tol)

@@ -9,9 +9,9 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, RacewayError, SceneError
-from raceway.options import nearest
-from raceway.registry import Registry, default_registry
-from raceway.studies.reference import BASES, Case, Number, reference_cases
+from raceway.framework.options import nearest
+from raceway.framework.registry import Registry, default_registry
+from raceway.studies.many.reference import BASES, Case, Number, reference_cases
 from raceway.studies.verify.article import article_pressures
 from raceway.studies.verify.bearings import ellipse_table, masta, nsk_pair, race_ellipse, rig_force
 from raceway.studies.verify.impacts import impact_of_spheres

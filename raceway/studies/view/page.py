@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from raceway.plugins.reports.view.bearing import Bearing, Part, State
-from raceway.plugins.reports.view.scene import LOADS, PRESSURES
-from raceway.plugins.reports.view.surfaces import Surface, ball, joined
-from raceway.studies.page import Page, data_uri
+from raceway.studies.many.page import Page, data_uri
+from raceway.studies.view.bearing import Bearing, Part, State
+from raceway.studies.view.scene import LOADS, PRESSURES
+from raceway.studies.view.surfaces import Surface, ball, joined
 
 #: Points of a shape: WebGL 1 counts them in 16 bits.  Contact ellipses that go into one.
 _MOST, _TOGETHER = 65535, 100

@@ -11,12 +11,12 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.plugins.reports.view.bearing import State
-from raceway.result import Result, equilibrium_table
-from raceway.statics import contact_angles
+from raceway.pipeline.result import Result, equilibrium_table
+from raceway.pipeline.settle import contact_angles
+from raceway.studies.view.bearing import State
 
 if TYPE_CHECKING:
-    from raceway.core.hertz import Ellipse
+    from raceway.core.contact.hertz import Ellipse
 
 #: The largest motion in an animation over the ball diameter.
 _LARGEST = 0.12

@@ -8,16 +8,16 @@ from typing import Any
 
 import attrs
 
-from raceway.files import write_whole
+from raceway.pipeline.result import Result
+from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.reports.pictures import ball_loads, orbit, save_figure
-from raceway.plugins.reports.view.animation import animate
-from raceway.plugins.reports.view.bearing import Bearing, State
-from raceway.plugins.reports.view.contacts import contacts
-from raceway.plugins.reports.view.scene import overview
-from raceway.result import Result
-from raceway.simulate import OnProgress
-from raceway.studies.page import Page
+from raceway.storage.files import write_whole
+from raceway.studies.many.page import Page
+from raceway.studies.view.animation import animate
+from raceway.studies.view.bearing import Bearing, State
+from raceway.studies.view.contacts import contacts
 from raceway.studies.view.page import view_page
+from raceway.studies.view.scene import overview
 from raceway.studies.view.states import at_peak, at_rest, last_turn
 
 
@@ -47,7 +47,7 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
     RacewayError
         A package that is missing, a folder that cannot be written; an animation of what does not move.
     """
-    from raceway.plugins.reports.mesh_picture import _png
+    from raceway.studies.view.mesh_picture import _png
 
     turn = last_turn(result, wanted.frames) if wanted.frames else None
     bearing = Bearing.of(result)

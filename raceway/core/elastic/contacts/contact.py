@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.contact import add_damping, stored_energy
+from raceway.core.contact.damping import add_damping, stored_energy
 from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps
 from raceway.core.elastic.contacts.traction import Friction
 

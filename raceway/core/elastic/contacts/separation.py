@@ -7,7 +7,7 @@ displacement u(z) and that of a half-space h(z) differ by a nearly constant amou
 (``raceway.core.condensed.structural``).  Of s, the part s - c is local: to be replaced by Hertz's.
 
 The depths lie further down than those of condensed bodies: there the field of the coarsest useful mesh, two cells through a
-ring's wall, is right.  A ball needs no depths: its c is that of the exact sphere (``raceway.core.sphere``).
+ring's wall, is right.  A ball needs no depths: its c is that of the exact sphere (``raceway.core.contact.sphere``).
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.core.contact.half_space import normal_displacement
 from raceway.core.elastic.contacts.footprint import Footprint, ellipse
 from raceway.core.elastic.contacts.interior import locate
-from raceway.core.half_space import normal_displacement
-from raceway.core.linear_statics import StaticSolver
+from raceway.core.linear.statics import StaticSolver
 
 #: Depths between which the fields are compared, over the body's reach, and how many.
 DEPTHS, COUNT = (0.5, 0.9), 7

@@ -1,0 +1,193 @@
+"""Elastic rings and balls, reduced to the compliances that the contacts feel; one force for each contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Built
+from raceway.bodies.condensed.calibration_error import calibration_error
+from raceway.bodies.condensed.compliances import elastic_bodies, element_sizes, typical_load
+from raceway.bodies.condensed.inertia import inertia_table
+from raceway.bodies.mounting import place_ring
+from raceway.bodies.rigid import build as rigid
+from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
+from raceway.core.condensed.structural import ring_section
+from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.system import System
+from raceway.errors import ConvergenceError, SceneError
+from raceway.planning.plan import Plan
+from raceway.scene.tables import Scene
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Model
+    from raceway.core.revolution.profile import Profile
+    from raceway.pipeline.settle import Equilibrium
+
+#: How much coarser the mesh is that error.mesh is estimated with.
+_COARSER = 2.0
+#: Entries of the stiffness below this part of sqrt(K_ii K_jj) are coupling that cancels out: no relative difference.
+_NOTHING = 1e-6
+
+
+def build(scene: Scene, plan: Plan) -> Built:
+    """The system of a scene with condensed bodies; see ``raceway.bodies.model.build_model``."""
+    stiff = rigid.build(scene, plan)
+    bodies = elastic_bodies(scene, stiff.basis)
+    _refuse_stiff_law(scene, stiff, bodies)
+    _refuse_dashpots(scene, plan, bodies)
+    angles = _angles(scene, stiff) if plan.coupled else None
+    system = elastic_system(stiff.system, bodies, angles)
+    system.table[:, ring.SHIFT] = 0.0
+    guess = place_ring(scene, stiff.basis, system)
+    return Built(stiff.basis, system, guess, Condensed(stiff, bodies, angles))
+
+
+@attrs.frozen(eq=False)
+class Condensed:
+    """What is known of condensed bodies beyond their system: the rigid-ring model beside it, compliances, mesh.
+
+    Attributes
+    ----------
+    rigid : the same scene with rigid rings and balls
+    compliances : of rings and balls
+    angles : (Z,) at which the compliances between balls were taken [rad]; None where they are left out
+    """
+
+    rigid: Built
+    compliances: ElasticBodies
+    angles: np.ndarray | None
+
+    def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+        """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""
+        system: System = self.rigid.system
+        q, ball, _ = system.settle(self.rigid.guess)
+        stiffness = system.evaluate(q, ball=ball).stiffness
+        angle = float(np.nanmean(equilibrium.angle_inner))
+        inner, outer = self.compliances.at(angle)
+        mesh_error, how = self.mesh_error(model, equilibrium)
+        names = ("x", "y", "z", "tilt_y", "tilt_z")
+        return {
+            "bodies": "condensed: elastic rings and balls, contacts as resultants calibrated to Hertz",
+            "rigid_rings": {
+                "displacement": dict(zip(names, q.tolist(), strict=True)),
+                "stiffness": stiffness.tolist(),
+            },
+            "elasticity": _differences(equilibrium.stiffness, stiffness),
+            "compliance": {
+                "contact_angle_deg": float(np.degrees(angle)),
+                "inner_m_per_n": inner,
+                "outer_m_per_n": outer,
+                "ball_own_m_per_n": self.compliances.ball_own,
+                "ball_opposite_m_per_n": self.compliances.ball_opposite,
+                "largest_between_balls_m_per_n": self.compliances.largest_across,
+                "between_balls": self.angles is not None,
+            },
+            "mesh": {
+                "elements_inner": self.compliances.inner.elements,
+                "elements_outer": self.compliances.outer.elements,
+                "nodes_per_semi_axis": self._nodes_per_semi_axis(model, equilibrium),
+                "change_from_coarser": mesh_error,
+                "how": how,
+            },
+            "inertia": inertia_table(model, equilibrium),
+        }
+
+    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+        """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
+        scene = model.scene
+        coarse = elastic_bodies(scene, self.rigid.basis, _COARSER)
+        system = elastic_system(self.rigid.system, coarse, self.angles)
+        system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
+        try:
+            q, ball, _ = attrs.evolve(system, load=model.system.load).settle(equilibrium.displacement)
+        except ConvergenceError as why:
+            return None, f"no equilibrium with the coarser mesh: {why}"
+        chosen = np.flatnonzero(model.system.free > 0.0)
+        fine = np.diag(equilibrium.stiffness)[chosen]
+        other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
+        return float(np.abs(other / fine - 1.0).max()), "largest change of a diagonal stiffness from a mesh twice as coarse"
+
+    def calibration_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+        """Relative error of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
+        return calibration_error(self.compliances, model, equilibrium)
+
+    def ring_section(self, model: Model, inner: bool) -> Profile:
+        """The mesh of a ring's section that its compliance was computed on, for pictures."""
+        basis, shape = self.rigid.basis, ring_shape(model.scene.bearing, inner)
+        half = float((basis.inner if inner else basis.outer).semi_axes(typical_load(basis))[0])
+        bulk, fine = element_sizes(model.scene, shape, half)
+        return ring_section(shape, model.scene.bearing.ball_diameter, bulk, min(fine, bulk))
+
+    def _nodes_per_semi_axis(self, model: Model, equilibrium: Equilibrium) -> float:
+        """Elements of the inner groove's surface along the semi-major axis of the most loaded contact."""
+        half = float(model.inner.semi_axes(np.max(equilibrium.contact_force[: model.system.ball_count]))[0])
+        return half / self.compliances.inner.surface
+
+
+def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | None]]:
+    """(5, 5) relative differences of stiffness entries; None where the entry is nothing."""
+    scale = np.sqrt(np.abs(np.outer(np.diag(stiff), np.diag(stiff))))
+    return [
+        [float(elastic[i, j] / stiff[i, j] - 1.0) if abs(stiff[i, j]) > _NOTHING * scale[i, j] else None for j in range(5)]
+        for i in range(5)
+    ]
+
+
+def _angles(scene: Scene, stiff: Built) -> np.ndarray:
+    """(Z,) contact angles with rigid rings: the free one where a ball carries nothing; their mean for balls that orbit."""
+    system: System = stiff.system
+    angles = np.full(system.ball_count, scene.bearing.contact_angle)
+    try:
+        q, ball, _ = system.settle(stiff.guess)
+    except ConvergenceError:
+        return angles
+    centre, _ = system.centre_vectors(q)
+    loaded = system.evaluate(q, ball=ball).contact_force[: system.ball_count] > 0.0
+    found = np.arctan2(centre[:, 0], centre[:, 1])
+    if scene.kinematics.orbiting and loaded.any():
+        return np.full(system.ball_count, found[loaded].mean())
+    return np.where(loaded, found, angles)
+
+
+def _refuse_stiff_law(scene: Scene, stiff: Built, bodies: ElasticBodies) -> None:
+    """A law so stiff that the bodies take off more compliance than its contact has."""
+    taken = min(bodies.at(scene.bearing.contact_angle))
+    if taken >= 0.0:
+        return
+    basis, system = stiff.basis, stiff.system
+    for load in (1.0, 5.0):
+        ellipse = basis.inner
+        gap = -ellipse.approach(load * basis.ball_load) * np.ones(2 * system.ball_count)
+        force, d_gap, d_rate = np.empty_like(gap), np.empty_like(gap), np.empty_like(gap)
+        system.law(
+            gap, np.zeros_like(gap), system.law_params, system.law_state, system.law_state.copy(), 0.0, force, d_gap, d_rate
+        )
+        if (-d_gap * -taken).max() >= 1.0:
+            thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
+            remedy = thin if scene.contact.kind == "hertz" else "Use 'hertz', or a softer law"
+            raise SceneError.at(
+                "contact.kind",
+                scene.contact.kind,
+                f"its contact of {1e-6 * -d_gap.min():.3g} N/µm is stiffer than elastic bodies allow: they take "
+                f"{-1e9 * taken:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
+            )
+
+
+def _refuse_dashpots(scene: Scene, plan: Plan, bodies: ElasticBodies) -> None:
+    """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
+    taken = -min(bodies.at(scene.bearing.contact_angle))
+    if plan.time_step_s is None or getattr(scene.integrator.method, "steady", False) or taken <= 0.0:
+        return
+    # A rate is 1.5 / dt of a displacement; the contact's own stiffness needs the other half.
+    bound = 0.5 * plan.time_step_s / (1.5 * taken)
+    if scene.contact.damping > bound:
+        raise SceneError.at(
+            "contact.damping",
+            scene.contact.damping,
+            f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take "
+            f"{1e9 * taken:.3g} nm/N off them. Take at most {bound:.3g} N s/m, or fewer steps a turn",
+        )

@@ -1,0 +1,39 @@
+"""What the calibration of contact resultants at surface points leaves, of a scene's loads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Model
+    from raceway.core.condensed.elastic_bodies import ElasticBodies
+    from raceway.pipeline.settle import Equilibrium
+
+
+def calibration_error(
+    compliances: ElasticBodies, model: Model, equilibrium: Equilibrium, more: float = 0.0
+) -> tuple[float | None, str]:
+    """Relative error of a ball's stiffness by what its contacts' calibration leaves, the largest of all loaded balls; and how.
+
+    Parameters
+    ----------
+    more : error of the compliance of each contact besides [m/N]
+    """
+    at_inner, at_outer = compliances.calibrations
+    if at_inner is None or at_outer is None:
+        return None, "compliances are matched at depth: no contact at surface points was found to calibrate them on"
+    z = model.system.ball_count
+    force = equilibrium.contact_force
+    loaded = (force[:z] > 0.0) & (force[z:] > 0.0)
+    if not loaded.any():
+        return None, "no ball carries anything"
+    inner, outer = force[:z][loaded], force[z:][loaded]
+    give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
+    give += sum(compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * compliances.ball_opposite
+    left = at_inner.error(inner) + at_outer.error(outer) + 2.0 * more
+    return float((left / give).max()), (
+        "calibrated on contacts at surface points: their own error and the change of compliance with the load, over a ball's "
+        "compliance"
+    )

@@ -1,0 +1,77 @@
+"""Whether meshes have the size of the bearing that they stand for: a file in millimetres is the usual mistake."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from math import log10
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import MeshError
+
+if TYPE_CHECKING:
+    from raceway.core.mesh.hex_mesh import HexMesh
+
+#: Larger or smaller by more than this is another unit (inches for millimetres are 25), not another bearing.
+_OTHER_UNIT = 5.0
+#: Coarse facets of a ball may miss its poles by a few percent.
+_OTHER_SIZE = 0.05
+
+
+def check_size(mesher: Any, bearing: Any, meshes: Mapping[str, HexMesh]) -> None:
+    """Compare rings and balls with the scene's [bearing]; warn of another size.
+
+    Parameters
+    ----------
+    meshes : ``inner_ring``, ``outer_ring``, ``ball_...`` are compared, other names are not
+
+    Raises
+    ------
+    MeshError
+        A body in other units, with the remedy.
+    """
+    told_of: set[str] = set()  # all balls but for one are copies: one warning is enough
+    for name, mesh in meshes.items():
+        for key, expected, found in _sizes(bearing, name, mesh.points):
+            ratio = found / expected
+            if not 1.0 / _OTHER_UNIT < ratio < _OTHER_UNIT:
+                told = f"the mesh of '{name}' measures {found:.4g} m, but {key} of the bearing is {expected:.4g} m"
+                raise _refusal(mesher, name, told, ratio)
+            if abs(ratio - 1.0) > _OTHER_SIZE and not key.startswith("the size") and key not in told_of:
+                told_of.add(key)
+                warnings.warn(
+                    f"the mesh of '{name}' measures {found:.4g} m where {key} of the bearing is {expected:.4g} m",
+                    stacklevel=3,
+                )
+
+
+def _sizes(bearing: Any, name: str, points: np.ndarray) -> list[tuple[str, float, float]]:
+    """What is compared: its name, the bearing's and the mesh's [m]."""
+    if name.startswith("ball"):
+        return [("`ball_diameter`", bearing.ball_diameter, float(np.ptp(points, axis=0).max()))]
+    reach = 2.0 * np.hypot(points[:, 1], points[:, 2])
+    if name.startswith("outer_ring"):
+        outer = bearing.outer_diameter
+        exact = [("`outer_diameter`", outer, float(reach.max()))]
+        return exact if outer else [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
+    if name.startswith("inner_ring"):
+        rough = [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
+        return rough + ([("`bore`", bearing.bore, float(reach.min()))] if bearing.bore and reach.min() > 0.0 else [])
+    return []
+
+
+def _refusal(mesher: Any, name: str, told: str, ratio: float) -> MeshError:
+    path = str(getattr(mesher, "ball" if name.startswith("ball") else name, ""))
+    if path.lower().endswith((".step", ".stp")):
+        return MeshError(f"{told}: '{path}' names its own unit; write it again in the right one")
+    if not any(field.name == "scale" for field in attrs.fields(type(mesher))):
+        return MeshError(f"{told}: mesher '{mesher.name}' must return metres")
+    # Powers of ten are units; anything else is told as it is.
+    power = round(log10(1.0 / ratio))
+    exact = abs(log10(1.0 / ratio) - power) < 0.2
+    scale = mesher.scale * (10.0**power if exact else 1.0 / ratio)
+    unit = " (the file is in millimetres)" if abs(scale / 1e-3 - 1.0) < 1e-6 else ""
+    return MeshError.at("mesh.scale", mesher.scale, f"{told}: write mesh.scale = {scale:.3g}{unit}")

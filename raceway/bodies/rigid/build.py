@@ -1,0 +1,122 @@
+"""Rigid rings and balls: only the contacts deform."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from raceway.bodies.basis import Basis, Built, changing_speed, excitation, law_params, linear_parts, make_basis
+from raceway.bodies.mounting import place_ring
+from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.hertz import Ellipse
+from raceway.core.kernel.plugin_kernel import plugin_kernel
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.system import System
+from raceway.core.signatures import LAW
+from raceway.framework.probe import probe_excitation, probe_law
+from raceway.planning.plan import Plan
+from raceway.scene.inner_ring import radial_growth
+from raceway.scene.tables import Scene
+
+
+def build(scene: Scene, plan: Plan) -> Built:
+    """The system of a scene with rigid bodies; see ``raceway.bodies.model.build_model``."""
+    basis = make_basis(scene)
+    system = rigid_system(scene, plan, basis)
+    probe(scene, basis, system)
+    return Built(basis, system, place_ring(scene, basis, system))
+
+
+def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
+    """Arrays and kernels; the preload of a pair is not built in yet (``raceway.bodies.mounting``)."""
+    kernel, base = _bodies_kernels(plan)
+    return System(
+        kernel=kernel,
+        base_kernel=base,
+        law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
+        law_params=law_params(scene, basis),
+        law_state=np.zeros((2 * len(basis.azimuth), scene.contact.law.state_size)),
+        scalars=_scalars(scene, plan, basis.geometry, basis.inner, basis.outer, basis.ball_load),
+        table=_ball_table(scene, plan, basis.geometry, basis.inner, basis.outer, basis.azimuth),
+        **linear_parts(scene, plan),
+        **excitation(scene),
+        spin=changing_speed(scene),
+    )
+
+
+def probe(scene: Scene, basis: Basis, system: System) -> None:
+    """Try the plug-ins' kernels as deep as the scene's own load presses, and well beyond.
+
+    Notes
+    -----
+    Loads of single balls are many times the mean.
+    """
+    load = basis.ball_load + 5.0 * max(np.abs(system.load[:3]).max(), 1.0) / len(basis.azimuth)
+    approach = float(basis.inner.approach(load))
+    depths = [factor * approach for factor in (0.3, 1.0, 3.0, 10.0)]
+    probe_law(scene.contact.law, system.law, system.law_params, system.law_state, depths=depths)
+    if scene.excitation is not None:
+        probe_excitation(scene.excitation, system.force, system.force_params)
+
+
+def _bodies_kernels(plan: Plan) -> tuple[Any, Any]:
+    """The plan's kernel, and the one whose forces have a potential."""
+    if plan.centrifugal:
+        from raceway.core.ring.kernels.rigid_inertial import rigid_inertial as base
+    else:
+        from raceway.core.ring.kernels.rigid_weightless import rigid_weightless as base
+    if plan.balls != "tangential":
+        return base, base
+    from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
+
+    return rigid_tangential, base
+
+
+def _scalars(
+    scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, reference: float
+) -> np.ndarray:
+    b, kinematics = scene.bearing, scene.kinematics
+    out = np.zeros(ring.SCALARS)
+    cage = geometry.cage_speed(scene.spin_speed)
+    out[ring.REST_AXIAL], out[ring.REST_RADIAL] = geometry.rest
+    out[ring.REST_RADIAL] += radial_growth(scene)
+    out[ring.OFFSET_INNER], out[ring.OFFSET_OUTER] = geometry.offset_inner, geometry.offset_outer
+    out[ring.TILT_ARM] = geometry.inner_centre_radius if b.tilt_arm == "groove" else 0.5 * b.pitch_diameter
+    out[ring.DAMPING] = scene.contact.damping
+    if kinematics.orbiting:
+        out[ring.CAGE] = cage
+    out[ring.DIAMETER] = geometry.ball_diameter
+    if scene.contact.friction > 0.0:
+        out[ring.FRICTION] = scene.contact.friction
+        out[ring.STICK] = scene.contact.stick_stiffness or _stick_stiffness(scene, inner, outer, reference)
+    if plan.gyroscopic:
+        shares = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0)}[kinematics.gyroscopic]
+        out[ring.SHARE_INNER], out[ring.SHARE_OUTER] = shares
+        out[ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
+        moment_of_inertia = geometry.ball_mass(b.balls.density) * geometry.ball_diameter**2 / 10.0
+        out[ring.GYROSCOPIC] = moment_of_inertia * scene.spin_speed * cage
+    return out
+
+
+def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) -> float:
+    """Tangential stiffness [N/m] of a contact that sticks along the groove, the ellipse's major axis; mean of both races."""
+    nu = 0.5 * (scene.bearing.rings.poisson + scene.bearing.balls.poisson)
+    return 0.5 * sum(e.stick_ratio(nu)[0] * 1.5 * load / float(e.approach(load)) for e in (inner, outer))
+
+
+def _ball_table(
+    scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, azimuth: np.ndarray
+) -> np.ndarray:
+    z = len(azimuth)
+    centrifugal = 0.0
+    if plan.centrifugal:
+        cage = geometry.cage_speed(scene.spin_speed)
+        centrifugal = geometry.ball_mass(scene.bearing.balls.density) * 0.5 * geometry.pitch_diameter * cage**2
+    softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
+    share = softness[1] / sum(softness)
+    table = np.zeros((z, ring.COLUMNS))
+    table[:, ring.COSINE], table[:, ring.SINE] = np.cos(azimuth), np.sin(azimuth)
+    table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = centrifugal, share, outer.factor
+    table[:, [ring.SIDE, ring.LEVER]] = np.repeat(scene.bearing.rows, geometry.ball_count, axis=0)
+    return table

@@ -1,0 +1,80 @@
+"""Lengths and curvatures of a ball bearing at rest, at the free contact angle.
+
+Notes
+-----
+B = (f_i + f_o - 1) D is the distance of the groove centres, R_i = d_m/2 + (f_i - 1/2) D cos(alpha) the radius of the
+inner ones.  With g = D cos(alpha)/d_m the curvature sums are (4 - 1/f + 2g/(1-g))/D inside and (4 - 1/f - 2g/(1+g))/D
+outside.  An internal radial clearance P_d sets cos(alpha) = 1 - P_d/(2B).
+
+References
+----------
+Harris & Kotzalas, Essential Concepts of Bearing Technology, chapters 2 and 6; ISO/TS 16281.
+"""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+import attrs
+
+from raceway.core.contact.hertz import Ellipse, ellipse
+
+
+@attrs.frozen
+class BallBearing:
+    """Geometry of one row, all in metres and radians."""
+
+    ball_diameter: float
+    pitch_diameter: float
+    ball_count: int
+    contact_angle: float
+    conformity_inner: float
+    conformity_outer: float
+
+    @property
+    def centre_distance(self) -> float:
+        """B: distance of the groove centres at rest."""
+        return (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+
+    @property
+    def inner_centre_radius(self) -> float:
+        """R_i: radius of the circle of the inner groove centres."""
+        return 0.5 * self.pitch_diameter + self.offset_inner * cos(self.contact_angle)
+
+    @property
+    def offset_inner(self) -> float:
+        """Distance of groove centre and ball centre at the first touch, inner."""
+        return (self.conformity_inner - 0.5) * self.ball_diameter
+
+    @property
+    def offset_outer(self) -> float:
+        """Distance of groove centre and ball centre at the first touch, outer."""
+        return (self.conformity_outer - 0.5) * self.ball_diameter
+
+    @property
+    def gamma(self) -> float:
+        """D cos(alpha) / d_m at the free contact angle."""
+        return self.ball_diameter * cos(self.contact_angle) / self.pitch_diameter
+
+    @property
+    def rest(self) -> tuple[float, float]:
+        """Axial and radial part of the vector from the outer to the inner groove centre at rest."""
+        distance = self.centre_distance
+        return distance * sin(self.contact_angle), distance * cos(self.contact_angle)
+
+    def ellipses(self, modulus: float) -> tuple[Ellipse, Ellipse]:
+        """Hertz contact of the inner and of the outer race, for a contact modulus E* [Pa]."""
+        g, d = self.gamma, self.ball_diameter
+        pair = []
+        for f, rolling in ((self.conformity_inner, 2 * g / (1 - g)), (self.conformity_outer, -2 * g / (1 + g))):
+            total = 4.0 - 1.0 / f + rolling
+            pair.append(ellipse(total / d, (1.0 / f + rolling) / total, modulus))
+        return pair[0], pair[1]
+
+    def cage_speed(self, spin_speed: float) -> float:
+        """Speed of the ball set [rad/s], inner ring turning at ``spin_speed``, free contact angle."""
+        return 0.5 * spin_speed * (1.0 - self.gamma)
+
+    def ball_mass(self, density: float) -> float:
+        """Mass of one ball [kg]."""
+        return density * pi * self.ball_diameter**3 / 6.0

@@ -1,0 +1,240 @@
+"""A ring as a solid of revolution: profile with the true groove arc, shoulders and bore, swept uniformly in azimuth.
+
+The profile is one mapped block: lines along the surface of lands and groove, from side face to side face, times layers
+from there to the seat (bore, or outer cylinder).  x is the axis of the bearing, the azimuth runs from +y to +z.
+"""
+
+from __future__ import annotations
+
+from math import acos, asin, cos, pi, sin, sqrt
+
+import attrs
+import numpy as np
+
+from raceway.core.mesh.hex_mesh import HexMesh, nodes_of
+from raceway.core.mesh.outline import Outline, plain_outline
+from raceway.errors import MeshError
+
+
+@attrs.frozen
+class RingShape:
+    """Profile of a ring, lengths in metres.
+
+    Attributes
+    ----------
+    inner : whether it is the inner ring (groove on its outside)
+    seat, land : radius of bore or outer cylinder, and of the shoulders
+    width : between the side faces at -width/2 and width/2
+    groove : radius of the groove
+    centre_x, centre_r : axial place and radius of the circle of groove centres
+    contact : angle from the groove's radial direction to the free contact [rad], along increasing x
+    given : what a user's polygon gives in place of seat, land and width; these three are then its extremes
+    """
+
+    inner: bool
+    seat: float
+    land: float
+    width: float
+    groove: float
+    centre_x: float
+    centre_r: float
+    contact: float
+    given: Outline | None = None
+
+    def __attrs_post_init__(self) -> None:
+        name = "inner ring" if self.inner else "outer ring"
+        if self.given is None:
+            self._check_plain(name)
+        if self.wall <= 0.0:
+            raise MeshError(f"{name}: no wall is left below the groove ({1e3 * self.wall:.4g} mm)")
+        low, high = self.edges
+        if not low < self.contact < high:
+            raise MeshError(
+                f"{name}: the contact angle of {abs(self.contact) * 180 / pi:.3g} deg lies outside the groove, which ends at "
+                f"{-low * 180 / pi:.3g} and {high * 180 / pi:.3g} deg: give a larger `bearing.shoulder_height`"
+            )
+
+    def _check_plain(self, name: str) -> None:
+        over = self.sign * (self.land - self.centre_r)
+        if not 0.0 < over < self.groove:
+            raise MeshError(
+                f"{name}: the shoulder at radius {1e3 * self.land:.4g} mm does not cut the groove between its bottom and its "
+                "centre: change `bearing.shoulder_height`"
+            )
+        half = self.groove * sin(self.edge)
+        if abs(self.centre_x) + half >= 0.5 * self.width:
+            raise MeshError(
+                f"{name}: a width of {1e3 * self.width:.4g} mm does not hold the groove, which reaches to "
+                f"{1e3 * (abs(self.centre_x) + half):.4g} mm from its middle: give a larger `bearing.width`"
+            )
+
+    @property
+    def sign(self) -> float:
+        """-1 for the inner ring, whose groove bottom lies below its centre, 1 for the outer one."""
+        return -1.0 if self.inner else 1.0
+
+    @property
+    def edge(self) -> float:
+        """Angle from the groove's bottom to its edge, of unequal shoulders to the lower one's [rad]."""
+        if self.given is not None:
+            return min(-self.given.edges[0], self.given.edges[1])
+        return acos(self.sign * (self.land - self.centre_r) / self.groove)
+
+    @property
+    def edges(self) -> tuple[float, float]:
+        """Angles of the groove's edges at smaller and larger x [rad]."""
+        return self.outline.edges
+
+    @property
+    def outline(self) -> Outline:
+        """The section without its groove."""
+        if self.given is not None:
+            return self.given
+        reach = self.groove * sin(self.edge)
+        return plain_outline(self.seat, self.land, self.width, (self.centre_x - reach, self.centre_x + reach), self.edge)
+
+    @property
+    def wall(self) -> float:
+        """Least thickness under the groove [m]; plain rings: under its bottom."""
+        if self.given is None:
+            return self.sign * (self.seat - (self.centre_r + self.sign * self.groove))
+        x, r = self.surface(np.linspace(*self.given.edges, 181)).T
+        return float((self.sign * (np.interp(x, *self.given.seat.T) - r)).min())
+
+    @property
+    def thickness(self) -> float:
+        """Thickness at the shoulders [m]."""
+        return abs(self.seat - self.land)
+
+    @property
+    def volume(self) -> float:
+        """Exact volume [m3]: hollow cylinder less the groove's circular segment (Pappus)."""
+        if self.given is not None:
+            return self.moments[0]
+        away = abs(self.centre_r - self.land)
+        half = sqrt(self.groove**2 - away**2)
+        area = self.groove**2 * asin(half / self.groove) - half * away
+        radius = self.centre_r + self.sign * 2.0 * half**3 / (3.0 * area)
+        tube = pi * abs(self.land**2 - self.seat**2) * self.width
+        return tube - 2.0 * pi * radius * area
+
+    @property
+    def raceway_area(self) -> float:
+        """Exact area of the groove [m2]: its arc swept at the radius of the arc's centroid (Pappus)."""
+        low, high = self.edges
+        radius = self.centre_r + self.sign * self.groove * (sin(high) - sin(low)) / (high - low)
+        return 2.0 * pi * radius * self.groove * (high - low)
+
+    @property
+    def moments(self) -> tuple[float, float, float]:
+        """Volume [m3], and the integrals of r^2 / 2 + x^2 and r^2 over it [m5]: inertia about y and x over density."""
+        at, weights = np.polynomial.legendre.leggauss(48)
+        out = np.zeros(3)
+
+        def add(x: np.ndarray, r: np.ndarray, slope: np.ndarray, side: float) -> None:
+            # Between the axis and the line, so that the section is the difference of its two lines.
+            for k, part in enumerate((r**2, r**4 / 4.0 + x**2 * r**2, r**4 / 2.0)):
+                out[k] += side * pi * float(weights @ (part * slope))
+
+        def along(line: np.ndarray, side: float) -> None:
+            for a, b in zip(line[:-1], line[1:], strict=True):
+                half = 0.5 * (b - a)
+                point = 0.5 * (a + b) + at[:, None] * half
+                add(point[:, 0], point[:, 1], np.full(len(at), half[0]), side)
+
+        outline, race = self.outline, -self.sign
+        along(outline.seat, -race)
+        along(outline.left, race)
+        along(outline.right, race)
+        low, high = outline.edges
+        angle = 0.5 * (low + high) + 0.5 * (high - low) * at
+        x, r = self.surface(angle).T
+        add(x, r, 0.5 * (high - low) * self.groove * np.cos(angle), race)
+        return float(out[0]), float(out[1]), float(out[2])
+
+    def surface(self, angles: np.ndarray) -> np.ndarray:
+        """(n, 2) x and radius of points of the groove, angle from its bottom towards +x [rad]."""
+        return np.column_stack(
+            [
+                self.centre_x + self.groove * np.sin(angles),
+                self.centre_r + self.sign * self.groove * np.cos(angles),
+            ]
+        )
+
+
+def ring_mesh(
+    shape: RingShape,
+    left: np.ndarray,
+    arc: np.ndarray,
+    right: np.ndarray,
+    layers: np.ndarray,
+    azimuths: np.ndarray,
+    band: tuple[float, float] | None = None,
+) -> HexMesh:
+    """The swept mesh.
+
+    Parameters
+    ----------
+    left, right : (n,) points 0 to 1 on the lands, left from the side face to the groove, right from the groove
+    arc : (n,) angles of points on the groove [rad], from edge to edge
+    layers : (n,) points 0 to 1 from the raceway to the seat
+    azimuths : (n,) of the nodes around the ring, ascending within one turn [rad]
+    band : angles between which facets belong to the set "band", the refined zone of the raceway
+
+    Notes
+    -----
+    Sets of facets and of nodes: raceway, band, land, seat, face_negative, face_positive.
+    """
+    divisions = len(azimuths)
+    if divisions < 3:
+        raise MeshError(f"a ring needs at least 3 cells around it, not {divisions}")
+    outline = shape.outline
+    top = np.concatenate([outline.top("left", left)[:-1], shape.surface(arc), outline.top("right", right)[1:]])
+    seat = np.interp(top[:, 0], *outline.seat.T)
+    ni, nj = len(top), len(layers)
+    # Radius outward with j: the inner ring's layers begin at its bore.
+    depth = 1.0 - layers[::-1] if shape.inner else layers
+    inside, outside = (seat, top[:, 1]) if shape.inner else (top[:, 1], seat)
+    radius = inside[None, :] + depth[:, None] * (outside - inside)[None, :]
+    psi = np.asarray(azimuths)
+    x = np.broadcast_to(top[:, 0], (divisions, nj, ni))
+    points = np.stack([x, np.cos(psi)[:, None, None] * radius, np.sin(psi)[:, None, None] * radius], axis=-1)
+    cells = _swept_cells(ni, nj, divisions)
+    facets = _facets(shape.inner, ni, nj, divisions, len(left) - 1, len(right) - 1, arc, band)
+    return HexMesh(points.reshape(-1, 3), cells, {name: nodes_of(cells, f) for name, f in facets.items()}, facets)
+
+
+def _swept_cells(ni: int, nj: int, nk: int) -> np.ndarray:
+    k, j, i = np.meshgrid(np.arange(nk), np.arange(nj - 1), np.arange(ni - 1), indexing="ij")
+    here, there = (k * nj + j) * ni + i, ((k + 1) % nk * nj + j) * ni + i
+    return np.stack([n + o for n in (here, there) for o in (0, 1, ni + 1, ni)], axis=-1).reshape(-1, 8)
+
+
+def _facets(
+    inner: bool, ni: int, nj: int, nk: int, left: int, right: int, arc: np.ndarray, band: tuple[float, float] | None
+) -> dict[str, np.ndarray]:
+    """Facets of the named surfaces; local faces: 2 towards the axis, 4 away from it, 5 at -x, 3 at +x."""
+    number = np.arange(nk * (nj - 1) * (ni - 1)).reshape(nk, nj - 1, ni - 1)
+    raceway, seat = (number[:, -1], number[:, 0]) if inner else (number[:, 0], number[:, -1])
+    up, down = (4, 2) if inner else (2, 4)
+
+    def facets(cells: np.ndarray, face: int) -> np.ndarray:
+        return np.column_stack([cells.ravel(), np.full(cells.size, face)])
+
+    groove = raceway[:, left : ni - 1 - right]
+    out = {
+        "raceway": facets(groove, up),
+        "land": facets(np.concatenate([raceway[:, :left], raceway[:, ni - 1 - right :]], axis=1), up),
+        "seat": facets(seat, down),
+        "face_negative": facets(number[:, :, 0], 5),
+        "face_positive": facets(number[:, :, -1], 3),
+    }
+    if band is not None:
+        middle = 0.5 * (arc[1:] + arc[:-1])
+        out["band"] = facets(groove[:, (middle > band[0]) & (middle < band[1])], up)
+    return out
+
+
+def azimuth_step(shape: RingShape, divisions: int) -> float:
+    """Distance of neighbouring nodes along the rolling direction at the contact [m]."""
+    return 2.0 * (shape.centre_r + shape.sign * shape.groove * cos(shape.contact)) * sin(pi / divisions)

@@ -1,0 +1,277 @@
+"""All balls between both races: places and contact forces that are in equilibrium, and what the ring feels of them.
+
+Notes
+-----
+Contacts are numbered as in ``raceway.core.ring.kernels``: inner races first.  A contact sees the ball at
+
+    D_inner = p - e,    D_outer = p,    each plus  W F,
+
+p the ball's centre and e the inner groove centre, both seen from the outer groove centre, F (2 Z, 2) the forces of all
+contacts on the balls, and W the compliance between contacts: of a ball from pole to pole, of a ring from ball to ball.  W
+acts on resultants: far from a contact the field of its pressure is that of its resultant.  With K the contacts' own
+stiffness, S = (1 + K W)^-1 K is what they show together; the balls' balance F_inner + F_outer + F_c = 0 then is a system
+in p alone.
+
+Friction also feels the turn of the inner ring's section at every ball: B = (1 + K W)^-1 b, b the contacts' derivatives, and
+a couple acts on that section; so do gyroscopic moments, which tie both contacts of a ball together in K.  The balls' inertia is
+a force that falls with their place, ``Given``.
+"""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.core.patches.contact import Contact, Held, Pressed
+from raceway.core.patches.gyroscopic import Gyroscopic
+from raceway.errors import ConvergenceError
+
+_LIMIT = 60
+#: Share of the regularisation that gives an unloaded ball a stiffness, of the largest one.
+_IDLE = 1e-12
+
+
+@attrs.frozen(eq=False)
+class Given:
+    """What acts on balls and contacts beside their places.
+
+    Attributes
+    ----------
+    turn : (Z,) of the inner ring's section at every ball [rad]
+    slip : of the points of all contacts, each (rows * columns,) [m]; empty: no friction
+    push, spring : (Z, 2) [N] and [N/m]: force push - spring * place on the balls, their inertia
+    gyroscopic : moments of the balls; None: none
+    """
+
+    turn: np.ndarray
+    slip: list[np.ndarray] = attrs.field(factory=list)
+    push: np.ndarray | float = 0.0
+    spring: float = 0.0
+    gyroscopic: Gyroscopic | None = None
+
+    @property
+    def with_couples(self) -> bool:
+        """Whether couples act on the ring's section."""
+        return bool(self.slip) or self.gyroscopic is not None
+
+    def of(self, contact: int) -> Held | None:
+        """What a contact has to know."""
+        if not self.slip:
+            return None
+        return Held(float(self.turn[contact % len(self.turn)]), self.slip[contact])
+
+
+@attrs.frozen(eq=False)
+class Linear:
+    """The balls linearised at one state.
+
+    Attributes
+    ----------
+    pressed : (2 Z) answers of the contacts
+    force : (2 Z, 2) forces on the balls that are carried on [N];  rest : (2 Z, 2) what the contacts give beyond them
+    shown : (4 Z, 4 Z) S [N/m];  held : (2 Z, 2 Z) the balls' own stiffness H = P^T S P
+    balance : (2 Z,) forces on the balls, contact forces at W F included to first order [N]
+    turned : (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
+    couple : (Z,) on that section [N m]
+    couple_by_place : (Z, 4 Z) its derivative by D [N]; None where there are no couples
+    crossed : (4 Z, 4 Z) what gyroscopic moments add to K [N/m]; 0 without
+    seen : (2 Z, 2) D, the balls seen from the grooves [m]
+    """
+
+    pressed: list[Pressed]
+    force: np.ndarray
+    rest: np.ndarray
+    carried: np.ndarray
+    shown: np.ndarray
+    held: np.ndarray
+    balance: np.ndarray
+    turned: np.ndarray
+    couple: np.ndarray
+    couple_by_place: np.ndarray | None
+    crossed: np.ndarray | float
+    seen: np.ndarray
+
+
+class Balls:
+    """Balls of all rows with their contacts.
+
+    Parameters
+    ----------
+    contacts : 2 Z contacts, inner races first
+    coupling : (4 Z, 4 Z) W [m/N], symmetric
+    loads : (Z, 2) forces on the balls themselves, axial and radial [N]: centrifugal
+    step : largest step of a ball in an iteration [m]
+    """
+
+    def __init__(self, contacts: list[Contact], coupling: np.ndarray, loads: np.ndarray, step: float) -> None:
+        self.contacts, self.coupling, self.loads, self.step = contacts, coupling, loads, step
+        self.count = len(contacts) // 2
+        n = 2 * self.count
+        self._both = np.concatenate([np.eye(n), np.eye(n)])  # P: both contacts follow the ball
+        self._inner = np.concatenate([np.eye(n), np.zeros((n, n))])  # E: the inner one follows the ring
+        self._ones = np.eye(2 * n)
+        self.evaluations = 0
+
+    def linear(
+        self, centre: np.ndarray, place: np.ndarray, force: np.ndarray, rate: np.ndarray, given: Given | None = None
+    ) -> Linear:
+        """Press all contacts.
+
+        Parameters
+        ----------
+        centre, place : (Z, 2) e and p [m];  force : (2 Z, 2) F [N];  rate : (2 Z, 2) velocities of D [m/s]
+        """
+        given = given or Given(np.zeros(self.count))
+        moved = (self.coupling @ force.reshape(-1)).reshape(-1, 2)
+        seen = np.concatenate([place - centre, place]) + moved
+        pressed = [
+            contact.press(d, r, given.of(k)) for k, (contact, d, r) in enumerate(zip(self.contacts, seen, rate, strict=True))
+        ]
+        self.evaluations += 1
+        answer = np.array([one.force for one in pressed])
+        z = self.count
+        couple, by_place = np.array([one.couple for one in pressed[:z]]), None
+        crossed: np.ndarray | float = 0.0
+        if given.with_couples:
+            by_place = np.zeros((z, 4 * z))
+            for k, one in enumerate(pressed[:z]):
+                by_place[k, 2 * k : 2 * k + 2] = one.couple_by_place
+        if given.gyroscopic is not None and by_place is not None:
+            crossed = np.zeros_like(self.coupling)
+            for k, one in enumerate(pressed[:z]):
+                more = given.gyroscopic.of(seen[k], seen[z + k], one)
+                at = np.r_[2 * k : 2 * k + 2, 2 * (z + k) : 2 * (z + k) + 2]
+                answer[[k, z + k]] += more.force.reshape(2, 2)
+                crossed[np.ix_(at, at)] = more.stiffness
+                couple[k] += more.couple
+                by_place[k, at] += more.couple_by_place
+        rest = (answer - force).reshape(-1)
+        stiffness = [one.stiffness for one in pressed]
+        shown, held, carried, turned = self._together(stiffness, rest, pressed, crossed, given.spring)
+        acting = self.loads + given.push - given.spring * place
+        balance = self._both.T @ (force.reshape(-1) + carried) + acting.reshape(-1)
+        return Linear(
+            pressed, force, rest.reshape(-1, 2), carried, shown, held, balance, turned, couple, by_place, crossed, seen
+        )
+
+    def without_ripple(self, now: Linear, centre: np.ndarray, place: np.ndarray) -> Linear:
+        """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""
+        moved = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
+        seen = np.concatenate([place - centre, place]) + moved
+        stiffness = [
+            contact.mean_stiffness(d) + one.along for contact, d, one in zip(self.contacts, seen, now.pressed, strict=True)
+        ]
+        shown, held, carried, turned = self._together(stiffness, now.rest.reshape(-1), now.pressed, now.crossed)
+        return attrs.evolve(now, shown=shown, held=held, carried=carried, turned=turned)
+
+    def _together(
+        self,
+        stiffness: list[np.ndarray],
+        rest: np.ndarray,
+        pressed: list[Pressed],
+        crossed: np.ndarray | float,
+        spring: float = 0.0,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """S, H, (1 + K W)^-1 rest and B, for the stiffness (2, 2) of every contact."""
+        stiff, turned = np.zeros_like(self.coupling), np.zeros((len(rest), self.count))
+        for k, one in enumerate(stiffness):
+            stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one
+        stiff += crossed
+        for k, other in enumerate(pressed[: self.count]):
+            turned[2 * k : 2 * k + 2, k] = other.by_turn
+        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, turned, rest]))
+        shown = both[:, : len(rest)]
+        if isinstance(crossed, float) and all(one.gripped is None for one in pressed):
+            shown = 0.5 * (shown + shown.T)
+        held = self._both.T @ shown @ self._both
+        held += (spring + _IDLE * max(np.abs(held).max(), 1.0)) * np.eye(len(held))
+        return shown, held, both[:, -1], both[:, len(rest) : -1]
+
+    def follow(self, now: Linear) -> np.ndarray:
+        """(2 Z, 2 Z) motion of the balls that follows a motion of the inner groove centres."""
+        return np.linalg.solve(now.held, self._both.T @ now.shown @ self._inner)
+
+    def tangent(self, now: Linear) -> np.ndarray:
+        """(2 Z, 2 Z) stiffness against motions of the inner groove centres."""
+        carried = self._both.T @ now.shown @ self._inner
+        lost = self._inner.T @ now.shown @ self._both @ np.linalg.solve(now.held, carried)
+        return np.asarray(self._inner.T @ now.shown @ self._inner - lost)
+
+    def tangent_with_turns(self, now: Linear) -> np.ndarray:
+        """(3 Z, 3 Z) the same against those motions and, behind them, turns of the inner ring's section."""
+        n, by_place = 2 * self.count, now.couple_by_place
+        assert by_place is not None
+        by_turn = np.array([one.couple_by_turn for one in now.pressed[: self.count]])
+        # D moves by P p' - E e' + W F';  F' = -S (P p' - E e') - B t'.
+        seen = by_place @ (self._ones - self.coupling @ now.shown)
+        given = np.concatenate([now.shown @ self._inner, -now.turned], axis=1)
+        balls = np.linalg.solve(now.held, self._both.T @ given)
+        force = given - now.shown @ self._both @ balls
+        couple = seen @ self._both @ balls
+        couple[:, :n] -= seen @ self._inner
+        couple[:, n:] += np.diag(by_turn) - by_place @ self.coupling @ now.turned
+        return np.concatenate([self._inner.T @ force, couple])
+
+    def couple(self, now: Linear) -> np.ndarray:
+        """(Z,) couples on the ring's section that equilibrium of the balls will bring, to first order."""
+        if now.couple_by_place is None:
+            return now.couple
+        step, change = self.move(now, np.zeros(2 * self.count))
+        moved = self._both @ step.reshape(-1) + self.coupling @ change.reshape(-1)
+        return now.couple + now.couple_by_place @ moved
+
+    def slip(self, now: Linear) -> np.ndarray:
+        """(4 Z, 2 Z) change of D that a motion of the inner groove centres brings, the balls following."""
+        return self._both @ self.follow(now) - self._inner
+
+    def carried(self, now: Linear) -> np.ndarray:
+        """(2 Z,) forces of the inner races on the balls that equilibrium of the balls will bring, to first order."""
+        lost = self._inner.T @ now.shown @ self._both @ np.linalg.solve(now.held, now.balance)
+        return (now.force.reshape(-1) + now.carried)[: 2 * self.count] - lost
+
+    def move(self, now: Linear, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Steps of places (Z, 2) and forces (2 Z, 2) when the inner groove centres move by (2 Z,), by Newton."""
+        driven = self._both.T @ now.shown @ self._inner @ moved
+        step = np.linalg.solve(now.held, now.balance + driven)
+        force = now.carried - now.shown @ (self._both @ step - self._inner @ moved)
+        return step.reshape(-1, 2), force.reshape(-1, 2)
+
+    def residual(self, now: Linear) -> float:
+        """Largest force out of balance of any ball or contact [N]."""
+        return float(max(np.abs(now.balance).max(), np.abs(now.rest).max()))
+
+    def settle(
+        self,
+        centre: np.ndarray,
+        place: np.ndarray,
+        force: np.ndarray,
+        rate: np.ndarray,
+        tolerance: float,
+        given: Given | None = None,
+    ) -> tuple[np.ndarray, np.ndarray, Linear]:
+        """Equilibrium of the balls while the ring stands: places, forces and the state there.
+
+        Raises
+        ------
+        ConvergenceError
+        """
+        still = np.zeros(2 * self.count)
+        now = self.linear(centre, place, force, rate, given)
+        for _ in range(_LIMIT):
+            size = self.residual(now)
+            scale = max(np.abs(now.force).max(), np.abs(self.loads).max(), 1.0)
+            if size <= tolerance * scale:
+                return place, force, now
+            step, change = self.move(now, still)
+            part = min(1.0, self.step / max(np.abs(step).max(), 1e-300))
+            for _ in range(8):
+                other = self.linear(centre, place + part * step, force + part * change, rate, given)
+                if self.residual(other) < (1.0 - 0.1 * part) * size or part < 0.02:
+                    break
+                part *= 0.4
+            place, force, now = place + part * step, force + part * change, other
+            if self.residual(now) >= size and size <= 1e3 * tolerance * scale:
+                return place, force, now
+        raise ConvergenceError(
+            "the balls find no equilibrium between the races", {"place": place, "residual": self.residual(now)}
+        )

@@ -1,0 +1,357 @@
+"""The ring on balls whose contacts are nodal patches: the interface of ``raceway.core.ring.system.System``, stepped from Python."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.patches.balls import Balls, Given, Linear
+from raceway.core.patches.gyroscopic import Gyroscopic
+from raceway.core.patches.history import History
+from raceway.core.patches.pool import STEP, Pool, Row
+from raceway.core.ring.kernels.layout import (
+    BALL_OVER_PITCH,
+    CENTRIFUGAL,
+    DAMPING,
+    DIAMETER,
+    FRICTION,
+    GYROSCOPIC,
+    LEVER,
+    OFFSET_INNER,
+    OFFSET_OUTER,
+    OUTER_SHARE,
+    SHARE_INNER,
+    SHARE_OUTER,
+    SIDE,
+    TILT_ARM,
+    place,
+)
+from raceway.core.ring.system import TOLERANCE, Evaluation, System
+from raceway.core.stepping.record import Record
+from raceway.errors import ConvergenceError
+
+_LIMIT = 60
+#: Balls' residual over the largest contact force at which they are in equilibrium.
+_BALLS = 1e-11
+
+
+@attrs.define(eq=False)
+class PatchSystem(System):
+    """M q'' + C q' + K q + f(q, q') = load + force(t), f from pressures at surface points of finite elements.
+
+    The kernels of the base class are those of rigid rings with Hertz's contacts: they give first guesses.
+
+    Attributes
+    ----------
+    pool : patches and solvers, shared by all copies of this system
+    ball_mass : of one ball [kg]; 0 leaves out its inertia in steps of time
+
+    Notes
+    -----
+    ``memory`` (2 Z, 5 + points) is empty at first.  Columns: energy that friction has taken [J]; how many velocities of
+    the balls are known; the last one and the one before, axial in the inner races' rows and radial in the outer ones'
+    [m/s]; number of the patches; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
+    """
+
+    pool: Pool = attrs.field(kw_only=True)
+    ball_mass: float = attrs.field(kw_only=True, default=0.0)
+
+    @property
+    def companion(self) -> System:
+        """The same ring with rigid bodies and Hertz's contacts, compiled."""
+        fields = [f.name for f in attrs.fields(System)]
+        return System(**{name: getattr(self, name) for name in fields})
+
+    @property
+    def conservative(self) -> bool:
+        return self.pool.friction == 0.0 and self.scalars[GYROSCOPIC] == 0.0
+
+    @property
+    def gyroscopic(self) -> Gyroscopic | None:
+        """Moments of the balls, where the scene has them."""
+        s = self.scalars
+        if s[GYROSCOPIC] == 0.0:
+            return None
+        groove = self.pool.patches[0].race.groove
+        return Gyroscopic(
+            float(s[GYROSCOPIC]), float(s[BALL_OVER_PITCH]), (float(s[SHARE_INNER]), float(s[SHARE_OUTER])), float(s[DIAMETER]),
+            groove,
+        )  # fmt: skip
+
+    @property
+    def ball_columns(self) -> int:
+        return 2 if self.conservative else 4
+
+    @property
+    def rubbing(self) -> bool:
+        """Whether friction acts where its history is known."""
+        return self.pool.friction > 0.0 and bool(self.scalars[FRICTION] > 0.0)
+
+    def evaluate(
+        self,
+        q: np.ndarray,
+        v: np.ndarray | None = None,
+        ball: np.ndarray | None = None,
+        ball_rate: np.ndarray | None = None,
+        t: float = 0.0,
+        *,
+        dt: float = 0.0,
+        ball_gain: float = 0.0,
+        memory: np.ndarray | None = None,
+    ) -> Evaluation:
+        q = np.asarray(q, dtype=float)
+        v = np.zeros(5) if v is None else np.asarray(v, dtype=float)
+        history = History.of(self.law_state if memory is None else memory, self.ball_count)
+        return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, ball_gain, dt, history))
+
+    def _evaluate(
+        self, q: np.ndarray, v: np.ndarray, ball: np.ndarray | None, ball_rate: np.ndarray | None, t: float, gain: float,
+        dt: float, history: History,
+    ) -> Evaluation:  # fmt: skip
+        rubbing = self.rubbing and ball is not None  # without a history nothing sticks
+        row = self.pool.row(self.table, rubbing)
+        centre, jacobian, velocity = self._groove(q, v, t)
+        where = self._places(centre, ball)
+        moving = bool(v.any()) or ball_rate is not None
+        rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
+        turning = self._turning(t)
+        given = Given(turning @ q, gyroscopic=self.gyroscopic)
+        if rubbing and ball is not None:
+            given = attrs.evolve(given, slip=history.slips(ball[:, 2:4].T.reshape(-1), self.pool.generations))
+        if self.ball_mass > 0.0 and dt > 0.0 and ball_rate is not None:
+            given = history.with_inertia(given, self.ball_mass, dt, gain, ball_rate[:, :2])
+        where, now = row.settle(centre, where, rate, _BALLS, given)
+        answer = self._answer(row.balls, centre, jacobian, turning, where, rate, now)
+        known = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
+        reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
+        after = history.after(
+            known, [one.gripped for one in now.pressed], reference.T.reshape(-1), len(self.pool.generations) - 1
+        )
+        columns = where if self.conservative else np.concatenate([where, reference], axis=1)
+        return attrs.evolve(answer, ball=columns, memory=after)
+
+    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
+
+        def found() -> np.ndarray:
+            self._evaluate(
+                np.asarray(q, dtype=float), np.zeros(5), now.ball, None, 0.0, 0.0, 0.0,
+                History.of(self.law_state, self.ball_count),
+            )  # fmt: skip
+            row = self.pool.row(self.table, self.rubbing)
+            _, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
+            assert row.last is not None
+            return self._stiffness(
+                row.balls, row.balls.without_ripple(row.last, row.centre, row.where), jacobian, self._turning(0.0)
+            )
+
+        return self.pool.widened(found)
+
+    def settle(
+        self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Equilibrium under ``load``: ring and balls together by Newton, from the equilibrium of rigid bodies.
+
+        Friction is left out: the balls have rolled into place, and their slips are such that no point carries traction.
+
+        Raises
+        ------
+        ConvergenceError
+            With the last state.
+        """
+        if ball is not None and np.any(ball):
+            try:
+                return self._rolled(*self.pool.widened(lambda: self._newton(q, np.asarray(ball), self.load, tolerance)))
+            except ConvergenceError:
+                pass  # from rigid bodies, then
+        for parts in (1, 4, 16):
+            try:
+                return self._rolled(*self._by_load(q, parts, tolerance))
+            except ConvergenceError as why:
+                if parts == 16 or "nothing holds" in str(why):
+                    raise
+        raise AssertionError("unreachable")
+
+    def _rolled(self, q: np.ndarray, ball: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, int]:
+        if not self.conservative:
+            ball = np.concatenate([ball, self.rolled_in(q, ball)], axis=1)
+        return q, ball, count
+
+    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
+        still = self.without(FRICTION)
+        still.evaluate(q, ball=ball, t=t)
+        row = self.pool.row(self.table)
+        turn = self._turning(t) @ q
+        assert row.last is not None
+        places = [
+            contact.along(seen, float(turn[k % self.ball_count]))
+            for k, (contact, seen) in enumerate(zip(row.balls.contacts, row.last.seen, strict=True))
+        ]
+        return np.array(places).reshape(2, -1).T
+
+    def friction_lost(self, record: Record) -> float:
+        """Energy that friction has taken at the end of a record that began without history [J]."""
+        memory = self.law_state if record.final.memory is None else record.final.memory
+        return float(History.of(memory, self.ball_count).lost.sum())
+
+    def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
+        """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
+        first = attrs.evolve(self.companion, load=self.load / parts)
+        place, ball, _ = first.settle(q)
+        if not self.table[:, CENTRIFUGAL].any():
+            ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
+        total = 0
+        for part in range(1, parts + 1):
+            task = partial(self._newton, place, ball, self.load * (part / parts), tolerance)
+            place, ball, count = self.pool.widened(task)
+            total += count
+        return place, ball, total
+
+    def _newton(
+        self, q: np.ndarray, ball: np.ndarray, load: np.ndarray, tolerance: float
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Ring and balls in one iteration."""
+        row, none = self.pool.row(self.table), np.zeros(5)
+        balls = row.balls
+        still = np.zeros((2 * self.ball_count, 2))
+        q = q.copy()
+        centre, jacobian, _ = self._groove(q, none, 0.0)
+        where, force = self._places(centre, ball), np.zeros((2 * self.ball_count, 2))
+        turning, gyroscopic = self._turning(0.0), self.gyroscopic
+        now = balls.linear(centre, where, force, still, Given(turning @ q, gyroscopic=gyroscopic))
+        weight = np.array([1.0, 1.0, 1.0, 1.0 / self.arm, 1.0 / self.arm]) * self.free
+        limit = STEP * self.pool.diameter
+        chosen = self.free > 0.0
+        best = np.inf
+        for iteration in range(1, _LIMIT + 1):
+            rest = jacobian.T @ balls.carried(now) + turning.T @ balls.couple(now) + self.stiffness @ q - load
+            out = jacobian.T @ now.force[: self.ball_count].reshape(-1) + turning.T @ now.couple + self.stiffness @ q - load
+            size = max(float(np.abs(out * weight).max()), balls.residual(now))
+            scale = float(np.abs(now.force[: self.ball_count]).sum() + np.abs(load * weight).sum())
+            relative = size / max(scale, 1e-300)
+            if relative <= tolerance or (relative <= 1e3 * tolerance and size >= best):
+                row.force, row.last, row.centre, row.where = now.force, now, centre, where
+                return q, where, iteration
+            best = min(best, size)
+            tangent = self._stiffness(balls, now, jacobian, turning) + self.stiffness
+            dq = np.zeros(5)
+            matrix = self.reduced(tangent)
+            matrix += 1e-12 * max(np.trace(matrix), 1.0) * np.eye(len(matrix))
+            dq[chosen] = np.linalg.solve(matrix, -rest[chosen])
+            step, change = balls.move(now, jacobian @ dq)
+            reach = max(float(np.abs(jacobian @ dq).max()), float(np.abs(step).max()))
+            if not np.isfinite(reach):
+                break
+            part = min(1.0, limit / max(reach, 1e-300))
+            before = size
+            for _ in range(6):
+                other_q = q + part * dq
+                centre, _, _ = self._groove(other_q, none, 0.0)
+                given = Given(turning @ other_q, gyroscopic=gyroscopic)
+                other = balls.linear(centre, where + part * step, force + part * change, still, given)
+                out = jacobian.T @ other.force[: self.ball_count].reshape(-1) + turning.T @ other.couple
+                out += self.stiffness @ other_q - load
+                if max(float(np.abs(out * weight).max()), balls.residual(other)) < 2.0 * before:
+                    break
+                part *= 0.4
+            q, where, force, now = other_q, where + part * step, force + part * change, other
+        raise ConvergenceError(
+            f"no static equilibrium of the nodal contacts found after {_LIMIT} iterations, relative residual {relative:.1e}",
+            {"q": q, "ball": where},
+        )
+
+    def pressures(self) -> list[Any]:
+        """Answers of all contacts (``raceway.core.patches.contact.Pressed``), inner races first, at the last state."""
+        last = self.pool.row(self.table, self.rubbing).last
+        return [] if last is None else last.pressed
+
+    def _answer(
+        self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, turning: np.ndarray, where: np.ndarray, rate: np.ndarray,
+        now: Linear,
+    ) -> Evaluation:  # fmt: skip
+        force = now.force + now.rest  # of pressures, friction and gyroscopic moments
+        pressures = np.array([one.force if one.gripped is None else one.normal for one in now.pressed])
+        size = np.hypot(pressures[:, 0], pressures[:, 1])
+        viscous = np.zeros((4 * self.ball_count, 4 * self.ball_count))
+        for k, one in enumerate(now.pressed):
+            block = one.viscous
+            if self.scalars[DAMPING] > 0.0 and size[k] > 0.0:
+                normal = pressures[k] / size[k]
+                dashpot = self.scalars[DAMPING] * np.outer(normal, normal)
+                pull = -float(normal @ dashpot @ rate[k])
+                if size[k] + pull > 0.0:
+                    force[k] += pull * normal
+                    size[k] += pull
+                    block = block + dashpot
+            viscous[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = block
+        along = balls.slip(now) @ jacobian
+        inner = force[: self.ball_count]
+        reach = np.concatenate([centre - where, where])
+        rest = np.repeat([self.scalars[OFFSET_INNER], self.scalars[OFFSET_OUTER]], self.ball_count)
+        return Evaluation(
+            jacobian.T @ inner.reshape(-1) + turning.T @ now.couple,
+            self._stiffness(balls, now, jacobian, turning),
+            along.T @ viscous @ along,
+            rest - np.hypot(reach[:, 0], reach[:, 1]),
+            size,
+            where,
+            self.law_state.copy(),
+        )
+
+    @staticmethod
+    def _stiffness(balls: Balls, now: Linear, jacobian: np.ndarray, turning: np.ndarray) -> np.ndarray:
+        """(5, 5) against motions of the ring."""
+        if now.couple_by_place is None:
+            return np.asarray(jacobian.T @ balls.tangent(now) @ jacobian)
+        both = np.concatenate([jacobian, turning])
+        return np.asarray(both.T @ balls.tangent_with_turns(now) @ both)
+
+    def _turning(self, t: float) -> np.ndarray:
+        """(Z, 5) turn of the ring's section at every ball by the ring's motion."""
+        work = np.zeros((3, 2 * self.ball_count))
+        place(float(t), np.zeros(5), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
+        out = np.zeros((self.ball_count, 5))
+        out[:, 3], out[:, 4] = (
+            self.table[:, SIDE] * work[0, self.ball_count :],
+            -self.table[:, SIDE] * work[0, : self.ball_count],
+        )
+        return out
+
+    def _groove(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(Z, 2) inner groove centres, (2 Z, 5) their derivatives by q, (Z, 2) their velocities."""
+        work = np.zeros((3, 2 * self.ball_count))
+        place(float(t), np.ascontiguousarray(q, dtype=float), v, self.scalars, self.table, work, 0, 1, 2)
+        (c, s), centre, velocity = work[0].reshape(2, -1), work[1].reshape(2, -1).T.copy(), work[2].reshape(2, -1).T.copy()
+        side, lever, arm = self.table[:, SIDE], self.table[:, LEVER], self.scalars[TILT_ARM]
+        jacobian = np.zeros((self.ball_count, 2, 5))
+        jacobian[:, 0, 0], jacobian[:, 0, 3], jacobian[:, 0, 4] = side, side * arm * s, -side * arm * c
+        jacobian[:, 1, 1], jacobian[:, 1, 2] = c, s
+        jacobian[:, 1, 3], jacobian[:, 1, 4] = -lever * s, lever * c
+        return centre, jacobian.reshape(-1, 5), velocity
+
+    def _places(self, centre: np.ndarray, ball: np.ndarray | None) -> np.ndarray:
+        """(Z, 2) first guess of the balls' places; rows of zeros are guessed from the groove centres."""
+        out = np.zeros((self.ball_count, 2)) if ball is None else np.array(ball[:, :2], dtype=float)
+        unknown = ~out.any(axis=1)
+        if unknown.any():
+            reach = np.hypot(centre[:, 0], centre[:, 1])
+            li, lo = self.scalars[OFFSET_INNER], self.scalars[OFFSET_OUTER]
+            over = reach - li - lo
+            share = np.where(over > 0.0, (lo + self.table[:, OUTER_SHARE] * over) / reach, lo / (li + lo))
+            out[unknown] = (share[:, None] * centre)[unknown]
+        return out
+
+    def _rates(
+        self, row: Row, velocity: np.ndarray, where: np.ndarray, ball_rate: np.ndarray | None, gain: float
+    ) -> np.ndarray:
+        """(2 Z, 2) velocities of the balls seen from both grooves; balls follow the ring where no rate is given."""
+        if ball_rate is not None:
+            own = gain * where + ball_rate[:, :2]
+        elif row.last is not None:
+            own = (row.balls.follow(row.last) @ velocity.reshape(-1)).reshape(-1, 2)
+        else:
+            own = self.table[:, [OUTER_SHARE]] * velocity
+        return np.concatenate([own - velocity, own])

@@ -1,0 +1,174 @@
+"""Takes the steps of a schedule: compiled systems by a compiled loop, in chunks; others step by step from Python.
+
+Progress can be shown between chunks, and a stop is honoured.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from raceway.core.ring.address import by_address
+from raceway.core.ring.loops import (
+    BALLS,
+    CONTACT_FORCE,
+    COUNTERS,
+    EVALUATIONS,
+    PENETRATION,
+    REASON,
+    RESIDUAL,
+    ROWS,
+    UNBOUNDED,
+)
+from raceway.core.ring.system import System
+from raceway.core.stepping.protocol import SteppedSystem
+from raceway.core.stepping.record import Motion, OnChunk, Record, Schedule
+from raceway.core.stepping.states import check_start
+from raceway.errors import ConvergenceError, PluginError, StabilityError
+
+__all__ = ["OnChunk", "advance"]
+_CHUNK = 20_000
+
+
+def advance(
+    loop: Any,
+    system: System | SteppedSystem,
+    start: Motion,
+    schedule: Schedule,
+    coefficients: np.ndarray,
+    on_chunk: OnChunk | None = None,
+) -> Record:
+    """Take all steps of a schedule.
+
+    Parameters
+    ----------
+    loop : kernel with the signature ``raceway.core.signatures.LOOP``
+    system : compiled, or one that is stepped from Python by the loop of the same name in ``raceway.core.stepping``: a
+        ``SteppedSystem``, or one of the ring's five coordinates that is no compiled one (its ``companion`` is another)
+    coefficients : (k,) the method's own numbers
+
+    Raises
+    ------
+    ConvergenceError, StabilityError
+        With the reason, the time and the last good motion in ``state``.
+    """
+    if not isinstance(system, System) or system.companion is not system:
+        return _step(loop, system, start, schedule, coefficients, on_chunk)
+    check_start(system, start)
+    z = system.ball_count
+    rows = np.zeros((schedule.steps // schedule.stride, 16))
+    probes = np.zeros((len(rows), 2 + system.ball_columns // 2, 2 * z))
+    counters = np.zeros(COUNTERS)
+    motion = np.zeros((4, 5))
+    motion[0], motion[1], motion[2] = start.q, start.v, start.a
+    motion[3] = -system.mass @ start.a if start.rest is None else start.rest
+    ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
+    if start.memory is not None:
+        memory[:] = start.memory
+    done, last = schedule.first, schedule.first + schedule.steps
+    # A speed that changes is another one in every step, which ends at its time.
+    addressed, longest = by_address(system), _CHUNK if system.spin is None else 1
+    while done < last:
+        count = min(longest, last - done)
+        now = addressed.at_speed((done + count) * schedule.dt)
+        taken = loop(
+            now.kernel, now.law, now.force, now.law_params, now.scalars, now.table,
+            now.force_params, now.mass, now.damping, now.stiffness, now.free, now.load,
+            coefficients, schedule.dt, schedule.ramp, done, count, motion, ball, before, memory,
+            schedule.stride, rows, probes, counters,
+        )  # fmt: skip
+        done += taken
+        if taken < count:
+            raise _failure(system, schedule, done, motion, ball, counters)
+        if on_chunk is not None and (longest == _CHUNK or done == last or done % _CHUNK == 0):
+            try:
+                on_chunk(done - schedule.first, schedule.steps)
+            except ConvergenceError as why:
+                why.state = {**_state(schedule, done, motion, ball), **why.state}
+                raise
+    kept = int(counters[ROWS])
+    rows, probes = rows[:kept], probes[:kept]
+    places = [part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
+    return Record(
+        time=rows[:, 0],
+        displacement=rows[:, 1:6],
+        velocity=rows[:, 6:11],
+        force=rows[:, 11:16],
+        gap=probes[:, 0],
+        contact_force=probes[:, 1],
+        ball=places[0] if len(places) == 1 else np.concatenate(places, axis=2),
+        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy(), memory),
+        schedule=schedule,
+        counts={
+            "steps": schedule.steps,
+            "evaluations": int(counters[EVALUATIONS]),
+            "max_penetration_m": float(counters[PENETRATION]),
+            "peak_contact_force_n": float(counters[CONTACT_FORCE]),
+        },
+    )
+
+
+def _step(
+    loop: Any, system: Any, start: Motion, schedule: Schedule, coefficients: np.ndarray, on_chunk: OnChunk | None
+) -> Record:
+    from raceway.core.ring.loops.central_difference import central_difference
+    from raceway.core.ring.loops.implicit import implicit
+    from raceway.core.ring.loops.quasi_static import quasi_static
+    from raceway.core.stepping import central_difference as explicit_loop
+    from raceway.core.stepping import implicit as implicit_loop
+    from raceway.core.stepping import quasi_static as static_loop
+    from raceway.core.stepping.recorder import Recorder
+
+    known = [
+        (implicit, implicit_loop.implicit),
+        (central_difference, explicit_loop.central_difference),
+        (quasi_static, static_loop.quasi_static),
+    ]
+    if not system.conservative:
+        from raceway.core.ring.loops.quasi_static_tangential import quasi_static_tangential
+
+        known.append((quasi_static_tangential, static_loop.quasi_static))
+    for compiled, stepped in known:
+        if loop is compiled:
+            stepper: SteppedSystem = system.stepped() if isinstance(system, System) else system
+            recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
+            stepped(stepper, recorder, coefficients)
+            return recorder.record()
+    raise PluginError(
+        f"loop `{loop.__name__}` has no counterpart for bodies that are stepped from Python: use a built-in one"
+    )
+
+
+def _state(schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray) -> dict[str, Any]:
+    """What a run that ends early leaves, by name."""
+    return {
+        "t": done * schedule.dt,
+        "q": motion[0].copy(),
+        "v": motion[1].copy(),
+        "a": motion[2].copy(),
+        "ball": ball.copy(),
+    }
+
+
+def _failure(
+    system: System, schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
+) -> ConvergenceError:
+    turn = done // schedule.steps_per_turn + 1
+    when = f"after {done - schedule.first} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
+    state = _state(schedule, done, motion, ball)
+    if counters[REASON] == UNBOUNDED:
+        limit = system.critical_time_step(system.evaluate(motion[0]).stiffness) if np.isfinite(motion).all() else None
+        hint = f"; stable limit of explicit steps there {limit:.3g} s" if limit else ""
+        return StabilityError(
+            f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Take more `integrator.steps_per_turn`, "
+            "add damping, or move away from a resonance.",
+            state,
+        )
+    if counters[REASON] == BALLS:
+        return ConvergenceError(f"the balls found no equilibrium between the races {when}", state)
+    residual = counters[RESIDUAL]
+    left = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
+    return ConvergenceError(
+        f"the iteration of a step did not converge {when}, {left}. Take more `integrator.steps_per_turn`.", state
+    )

@@ -1,0 +1,80 @@
+"""A spin speed that changes: what of a system follows it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, GYROSCOPIC, REST_RADIAL, SHIFT, SIDE, SINE
+
+if TYPE_CHECKING:
+    from raceway.core.ring.system import System
+
+#: Half the interval over which a phase is differentiated [s]: its rounding then makes 1e-9 of the speed.
+_INTERVAL = 1e-5
+
+
+@attrs.frozen(eq=False)
+class ChangingSpeed:
+    """The speed w(t) of the inner ring, and the parts of a system that belong to a reference speed w_r.
+
+    Attributes
+    ----------
+    phase : function of times (n,) [s] -> angle of the rotor (n,) [rad]
+    reference : w_r that the system's constants were made for [rad/s]
+    growth : of the inner raceway at w_r, as far as it goes with w^2 [m]
+    gyroscopic : (5, 5) part of the system's damping at w_r that goes with w
+    shift : function of speeds (n,) [rad/s] -> shift of a sprung second row (n,) [m]; None where rows stay
+
+    Notes
+    -----
+    Centrifugal forces, gyroscopic moments of the balls and centrifugal growth go with w^2, the cage speed and gyroscopic moments
+    of the rotor with w.  A sprung row slides to where the spring's force is met at w, as in a steady run.
+    """
+
+    phase: Callable[[np.ndarray], np.ndarray]
+    reference: float
+    growth: float
+    gyroscopic: np.ndarray
+    shift: Callable[[np.ndarray], np.ndarray] | None = None
+
+    def speed(self, time: np.ndarray) -> np.ndarray:
+        """w (n,) [rad/s] at times (n,) [s] from zero on."""
+        before, after = np.maximum(time - _INTERVAL, 0.0), time + _INTERVAL
+        return np.asarray((self.phase(after) - self.phase(before)) / (after - before))
+
+    def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray:
+        """(n,) [rad] by which balls have travelled since time zero; ``cage``: their speed at w_r [rad/s]."""
+        return np.asarray(cage / self.reference * (self.phase(time) - self.phase(np.zeros(1))))
+
+    def at(self, system: System, t: float) -> System:
+        """The system with the constants of one moment; its kernels take a steady speed, so the azimuths at time zero are those
+        from which balls at the speed of now would have come to their places of now."""
+        now = np.array([t])
+        speed = float(self.speed(now)[0])
+        found = self.constants(system, speed)
+        if system.scalars[CAGE] != 0.0:
+            ahead = float(self.cage_angle(system.scalars[CAGE], now)[0]) - found.scalars[CAGE] * t
+            c, s = np.cos(ahead), np.sin(ahead)
+            found.table[:, COSINE], found.table[:, SINE] = (
+                system.table[:, COSINE] * c - system.table[:, SINE] * s,
+                system.table[:, SINE] * c + system.table[:, COSINE] * s,
+            )
+        return found
+
+    def constants(self, system: System, speed: float) -> System:
+        """The system at a steady speed [rad/s]."""
+        ratio = speed / self.reference
+        scalars, table = system.scalars.copy(), system.table.copy()
+        scalars[REST_RADIAL] += self.growth * (ratio**2 - 1.0)
+        scalars[GYROSCOPIC] *= ratio**2
+        scalars[CAGE] *= ratio
+        table[:, CENTRIFUGAL] *= ratio**2
+        if self.shift is not None:
+            second = table[:, SIDE] != table[0, SIDE]
+            table[second, SHIFT] = self.shift(np.array([speed]))[0]
+        damping = system.damping + (ratio - 1.0) * self.gyroscopic
+        return attrs.evolve(system, scalars=scalars, table=table, damping=damping, spin=None)

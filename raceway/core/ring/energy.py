@@ -1,0 +1,76 @@
+"""Energy of a recorded motion and how well it balances with the work of the excitation."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.core.contact.damping import stored_energy
+from raceway.core.ring.friction import friction_energy
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, DAMPING
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Record
+
+
+@attrs.frozen(eq=False)
+class EnergyBalance:
+    """Energies (n,) [J] along a record and their drift.
+
+    Attributes
+    ----------
+    drift : largest change of kinetic + stored - work + losses, over the largest kinetic energy, work or change stored
+    """
+
+    kinetic: np.ndarray
+    stored: np.ndarray
+    work: np.ndarray
+    losses: np.ndarray
+    drift: float
+
+
+def energy_balance(system: System, record: Record) -> EnergyBalance:
+    """Balance of kinetic and stored energy against the work of loads and excitation and the losses in dampers.
+
+    Notes
+    -----
+    For laws without memory, balls that do not orbit, and no gyroscopic moments.  The stored energy is integrated from the
+    law itself, not from the motion, so that the balance measures the integrator; work and losses are integrals in time of
+    fourth order, those of friction sums over steps of first order.
+    """
+    n, pairs = record.gap.shape
+    energy = np.empty(n * pairs)
+    tiled = np.tile(system.law_params, (n, 1))
+    memory = np.tile(system.law_state, (n, 1))
+    gap = np.ascontiguousarray(record.gap).reshape(-1)
+    stored_energy(system.law, tiled, memory, memory.copy(), gap, np.empty((6, n * pairs)), energy)
+    q, v = record.displacement, record.velocity
+    stored = energy.reshape(n, pairs).sum(axis=1)
+    stored -= (record.ball[:, :, 1] * system.table[:, CENTRIFUGAL]).sum(axis=1)
+    stored += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
+    if system.condensed:
+        stored += 0.5 * np.einsum("nc,nc->n", record.contact_force, system.structural_approach(record.ball))
+        stored += system.ring_energy(record.ball)
+    friction = friction_energy(system, record)
+    stored += friction.stored
+    kinetic = 0.5 * np.einsum("ni,ij,nj->n", v, system.mass, v)
+    dt = record.time[1] - record.time[0]
+    work = cumulative(np.einsum("ni,ni->n", record.force, v), dt)
+    lost = np.einsum("ni,ij,nj->n", v, system.damping, v)
+    if system.scalars[DAMPING] > 0.0:
+        speed = np.gradient(record.gap, dt, axis=0)
+        lost = lost + system.scalars[DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
+    losses = cumulative(lost, dt) + friction.lost
+    total = kinetic + stored - work + losses
+    size = max(kinetic.max(), np.ptp(stored), np.ptp(work), np.ptp(losses), 1e-300)
+    return EnergyBalance(kinetic, stored, work, losses, float(np.abs(total - total[0]).max() / size))
+
+
+def cumulative(values: np.ndarray, dt: float) -> np.ndarray:
+    """Integral from the first sample to each sample, of fourth order inside."""
+    parts = 0.5 * dt * (values[1:] + values[:-1])
+    if len(values) > 3:
+        inner = 13.0 * (values[1:-2] + values[2:-1]) - values[:-3] - values[3:]
+        parts[1:-1] = dt / 24.0 * inner
+        parts[0] = dt / 12.0 * (5.0 * values[0] + 8.0 * values[1] - values[2])
+        parts[-1] = dt / 12.0 * (5.0 * values[-1] + 8.0 * values[-2] - values[-3])
+    return np.concatenate([[0.0], np.cumsum(parts)])

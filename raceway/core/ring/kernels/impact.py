@@ -1,0 +1,104 @@
+"""One mass against one contact: published impacts, and the simplest motion that a law or an integrator can be tried on.
+
+Notes
+-----
+The mass moves along x, the first coordinate of the ring; gap = clearance - x, and the contact pushes along -x.  With
+the contact far away and a linear stiffness the same system is a linear oscillator.  Laws work on two contacts at least
+(a bearing has two races), so the second one is there and stays open.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from raceway.core.contact.damping import add_damping
+from raceway.core.excitations.harmonic import no_force
+from raceway.core.jit import jit
+from raceway.core.ring.kernels.layout import COLUMNS, DAMPING, OFFSET_INNER, REST_AXIAL, SCALARS, TILT_ARM
+from raceway.core.ring.system import System
+from raceway.core.signatures import SYSTEM
+
+#: Entry of ``scalars`` in which this kernel finds the gap at x = 0 [m]; there is no groove whose offset it could be.
+CLEARANCE = OFFSET_INNER
+#: Where the contact that is not used stays [m].
+_OPEN = 1.0
+
+
+@jit(SYSTEM)
+def impact(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
+    """See ``raceway.core.ring.kernels``; q[0] is the only coordinate that counts, the balls do not move."""
+    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    for i in range(gap.size):
+        gap[i] = _OPEN
+        rate[i] = 0.0
+    gap[0] = scalars[CLEARANCE] - q[0]
+    rate[0] = -v[0]
+    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
+    add_damping(scalars[DAMPING], gap, rate, force, d_gap, d_rate)
+    for i in range(5):
+        f[i] = 0.0
+    f[0] = force[0]
+    if K.size == 0:
+        return 0
+    for i in range(5):
+        for j in range(5):
+            K[i, j] = 0.0
+            C[i, j] = 0.0
+    K[0, 0] = -d_gap[0]
+    C[0, 0] = -d_rate[0]
+    return 0
+
+
+def impact_system(
+    mass: float,
+    law: Any,
+    law_params: np.ndarray,
+    *,
+    state_size: int = 0,
+    clearance: float = 0.0,
+    stiffness: float = 0.0,
+    damping: float = 0.0,
+    contact_damping: float = 0.0,
+    load: float = 0.0,
+    force: Any = no_force,
+    force_params: np.ndarray | None = None,
+) -> System:
+    """A mass that can move along x against one contact, ready for every integrator.
+
+    Parameters
+    ----------
+    mass : [kg]
+    law : compiled ``LAW``;  law_params : (k,), (1, k) or (2, k) its parameters
+    state_size : columns of memory that the law keeps
+    clearance : gap at x = 0 [m]; negative: overlap
+    stiffness, damping : linear spring [N/m] and dashpot [N s/m] between the mass and the ground
+    contact_damping : dashpot of the closed contact [N s/m]
+    load : constant force along x [N]
+    force : compiled ``FORCE``, the excitation, with its force_params (k,)
+    """
+    params = np.atleast_2d(np.asarray(law_params, dtype=float))
+    scalars = np.zeros(SCALARS)
+    # Only the length that the first trust radius of an equilibrium is taken from: a typical approach of a contact.
+    scalars[REST_AXIAL] = 1e-4
+    scalars[TILT_ARM] = 1.0
+    scalars[DAMPING] = contact_damping
+    scalars[CLEARANCE] = clearance
+    first = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+    return System(
+        kernel=impact,
+        base_kernel=impact,
+        law=law,
+        law_params=np.array(np.broadcast_to(params[:2], (2, params.shape[1])), order="C"),
+        law_state=np.zeros((2, state_size)),
+        scalars=scalars,
+        table=np.zeros((1, COLUMNS)),
+        mass=mass * np.eye(5),
+        damping=damping * np.diag(first),
+        stiffness=stiffness * np.diag(first),
+        free=first,
+        load=load * first,
+        force=force,
+        force_params=np.zeros(1) if force_params is None else np.ascontiguousarray(force_params, dtype=float),
+    )

@@ -1,0 +1,150 @@
+"""The inner ring's rigid motion seen from each ball's meridian plane.
+
+Notes
+-----
+A row of balls has a side (+1: a positive axial motion of the inner ring seats it, -1: the mirror image), a lever X (its
+axial distance from the reference point) and a shift (axial approach built in by the preload of a pair).  With
+u = tilt_y sin - tilt_z cos and rho = y cos + z sin, the vector from the outer to the inner groove centre is
+e = (e_rest + shift + side (x + R u), e_rest + rho - X u).
+"""
+
+import numpy as np
+from numba import float64, int64, void
+
+from raceway.core.jit import jit
+from raceway.core.ring.kernels import MOVED, MOVED_RATE
+from raceway.core.signatures import MATRIX, VECTOR
+
+#: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
+#: friction coefficient, stick stiffness [N/m], shares of the gyroscopic moment (inner + outer = 2), D / d_m,
+#: J * spin * cage speed [N m], ball diameter [m].
+(
+    REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, DAMPING, CAGE,
+    FRICTION, STICK, SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER,
+) = range(14)  # fmt: skip
+SCALARS = 14
+#: Columns of ``table``, one row a ball: direction of the azimuth at time zero, centrifugal force [N], share of the
+#: approach that the outer race takes under Hertz, Hertz factor of the outer race [N/m^1.5], side, lever [m], shift [m].
+COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT = range(8)
+COLUMNS = 8
+
+
+# Kernels below take rows of ``work`` by their number: a view of an array costs two atomic operations, and a kernel's
+# views together cost as much as its arithmetic.
+
+
+@jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64, int64, int64))
+def place(t, q, v, scalars, table, work, direction, centre, velocity):
+    """Of every ball: the azimuth's cos and sin, e (axial, radial) and its velocity, into three rows of ``work``.
+
+    Notes
+    -----
+    A ball that orbits meets the ring at another place every moment: de/dt has a part of the cage speed.
+    """
+    n = table.shape[0]
+    rest_a, rest_r, arm, cage = scalars[0], scalars[1], scalars[4], scalars[6]
+    turn_c, turn_s = 1.0, 0.0
+    if cage != 0.0:
+        turn_c, turn_s = np.cos(cage * t), np.sin(cage * t)
+    # Everything that the balls share is read before the first row is written: afterwards it would be read again for each.
+    x, y, z, tilt_y, tilt_z = q[0], q[1], q[2], q[3], q[4]
+    vx, vy, vz, turn_y, turn_z = v[0], v[1] + cage * z, v[2] - cage * y, v[3] + cage * tilt_z, v[4] - cage * tilt_y
+    for k in range(n):
+        cosine, sine, side, lever, shift = table[k, 0], table[k, 1], table[k, 5], table[k, 6], table[k, 7]
+        c, s = cosine * turn_c - sine * turn_s, sine * turn_c + cosine * turn_s
+        u, u_rate = tilt_y * s - tilt_z * c, turn_y * s - turn_z * c
+        work[direction, k], work[direction, n + k] = c, s
+        work[centre, k], work[centre, n + k] = rest_a + shift + side * (x + arm * u), rest_r + y * c + z * s - lever * u
+        work[velocity, k] = side * (vx + arm * u_rate)
+        work[velocity, n + k] = vy * c + vz * s - lever * u_rate
+
+
+@jit(void(MATRIX, int64, int64))
+def move_centres(work, centre, velocity):
+    """Add to e and its velocity what the rings' elasticity moves the groove centres of condensed bodies by."""
+    for c in range(work.shape[1]):
+        work[centre, c] += work[MOVED, c]
+        work[velocity, c] += work[MOVED_RATE, c]
+
+
+@jit(void(float64, VECTOR, MATRIX))
+def stop(t, scalars, table):
+    """Let orbiting balls stand still where they are at a time: a static state has no rates."""
+    c, s = np.cos(scalars[6] * t), np.sin(scalars[6] * t)
+    for k in range(table.shape[0]):
+        table[k, 0], table[k, 1] = table[k, 0] * c - table[k, 1] * s, table[k, 1] * c + table[k, 0] * s
+    scalars[6] = 0.0
+
+
+@jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR), inline=True)
+def ring_force(table, arm, work, direction, row, f):
+    """f (5,): the balls' forces on the ring [N], from work[row] = axial (Z,), radial (Z,); f = sum J^T (axial, radial).
+
+    ``direction`` is the row that ``place`` put the azimuths in.
+    """
+    n = table.shape[0]
+    x, y, z, tilt_y, tilt_z = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(n):
+        c, s = work[direction, k], work[direction, n + k]
+        axial, radial = table[k, 5] * work[row, k], work[row, n + k]
+        couple = arm * axial - table[k, 6] * radial
+        x += axial
+        y += radial * c
+        z += radial * s
+        tilt_y += couple * s
+        tilt_z += couple * c
+    f[0], f[1], f[2], f[3], f[4] = x, y, z, tilt_y, -tilt_z
+
+
+@jit(void(MATRIX, float64, MATRIX, int64, int64, MATRIX))
+def ring_tangent(table, arm, work, direction, row, K):
+    """K (5, 5): sum of J^T [[aa, ar], [ra, rr]] J over the balls.
+
+    Parameters
+    ----------
+    work : work[row] = aa (Z,), ar (Z,);  work[row + 1] = ra (Z,), rr (Z,)
+
+    Notes
+    -----
+    Each ball's tangent is taken to the three coordinates x, rho and u first; all entries are then sums times 1, cos, sin
+    and their products, kept in registers: three times as fast as adding each ball to K in memory.
+    """
+    xx, xr_c, xr_s, rx_c, rx_s = 0.0, 0.0, 0.0, 0.0, 0.0
+    xu_c, xu_s, ux_c, ux_s = 0.0, 0.0, 0.0, 0.0
+    rr_cc, rr_cs, rr_ss = 0.0, 0.0, 0.0
+    ru_cc, ru_cs, ru_ss, ur_cc, ur_cs, ur_ss = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    uu_cc, uu_cs, uu_ss = 0.0, 0.0, 0.0
+    z = table.shape[0]
+    for k in range(z):
+        c, s, lever = work[direction, k], work[direction, z + k], table[k, 6]
+        aa, ar, ra, rr = work[row, k], table[k, 5] * work[row, z + k], table[k, 5] * work[row + 1, k], work[row + 1, z + k]
+        cc, cs, ss = c * c, c * s, s * s
+        xu, ux = arm * aa - lever * ar, arm * aa - lever * ra
+        ru, ur = arm * ra - lever * rr, arm * ar - lever * rr
+        uu = arm * xu - lever * ru
+        xx += aa
+        xr_c += ar * c
+        xr_s += ar * s
+        rx_c += ra * c
+        rx_s += ra * s
+        xu_c += xu * c
+        xu_s += xu * s
+        ux_c += ux * c
+        ux_s += ux * s
+        rr_cc += rr * cc
+        rr_cs += rr * cs
+        rr_ss += rr * ss
+        ru_cc += ru * cc
+        ru_cs += ru * cs
+        ru_ss += ru * ss
+        ur_cc += ur * cc
+        ur_cs += ur * cs
+        ur_ss += ur * ss
+        uu_cc += uu * cc
+        uu_cs += uu * cs
+        uu_ss += uu * ss
+    K[0, 0], K[0, 1], K[0, 2], K[0, 3], K[0, 4] = xx, xr_c, xr_s, xu_s, -xu_c
+    K[1, 0], K[1, 1], K[1, 2], K[1, 3], K[1, 4] = rx_c, rr_cc, rr_cs, ru_cs, -ru_cc
+    K[2, 0], K[2, 1], K[2, 2], K[2, 3], K[2, 4] = rx_s, rr_cs, rr_ss, ru_ss, -ru_cs
+    K[3, 0], K[3, 1], K[3, 2], K[3, 3], K[3, 4] = ux_s, ur_cs, ur_ss, uu_ss, -uu_cs
+    K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = -ux_c, -ur_cc, -ur_cs, -uu_cs, uu_cc

@@ -1,0 +1,348 @@
+"""Elastic rings and balls around any of the rigid kernels: contacts and structural compliances in series.
+
+Notes
+-----
+The bodies add w = C(beta) Q to the gaps: Q (2 Z,) are the contact forces, C the structural compliances [m/N], what
+finite elements give beyond the half-spaces that the law knows already: the rings' and balls' own share c(beta), tabulated
+over the angle beta of the line of groove centres, with a continuous slope, constant beyond its ends, and a load on the
+ball's other race (constant).  Where balls act on each other through the rings, groove centres move as vectors, too, and c
+is what is left beyond that: see ``between``.
+
+A rigid kernel finds balls and forces for given w, and their derivatives S = dQ/dw ball by ball; Newton's method on
+w - C Q(w) = 0 with I - C S does the rest.  Potential: U(gaps) + Q.C Q / 2, so the change of c with the angle turns the
+ring with -Q^2 c'/2 about each ball's groove, and the tangent, by implicit differentiation, is symmetric.
+
+References
+----------
+The separation into near and far field: docs/physics.md, condensed bodies.
+"""
+
+import numpy as np
+from numba import boolean, float64, int64, void
+
+from raceway.core.jit import jit
+from raceway.core.ring.kernels import (
+    AXIAL_BY_SHIFT,
+    BY_AXIAL,
+    BY_AXIAL_SPEED,
+    BY_OTHER,
+    BY_OWN,
+    BY_RADIAL,
+    BY_RADIAL_SPEED,
+    BY_TURN,
+    COUPLE_BY_CENTRE,
+    COUPLE_BY_SHIFT,
+    FORCE_BY_CENTRE,
+    FORCE_BY_SPEED,
+    MOVED,
+    MOVED_RATE,
+    RADIAL_BY_SHIFT,
+    SHIFT,
+    SHIFT_RATE,
+    STORED,
+)
+from raceway.core.ring.kernels.between import centrifugal_displacement, forces, reduce_tangents, step
+from raceway.core.ring.kernels.columns import BALL_CROSS, COUPLED, DISTANCE, FIRST, KNOTS, VALUES, slips_end
+from raceway.core.ring.kernels.layout import LEVER, SIDE, TILT_ARM, place
+from raceway.core.ring.kernels.section import add_ball, to_ring
+from raceway.core.ring.kernels.structural_rows import (
+    BY_Q,
+    BY_V,
+    CENTRE,
+    CURVE,
+    DIRECTION,
+    INVERSE,
+    INVERSE_2,
+    LAST,
+    MOVED_LAST,
+    MOVED_REST,
+    MOVED_STEP,
+    NORM,
+    OWN,
+    RING,
+    SLOPE,
+    SPEED,
+    STEP,
+    TURN,
+    TURNING,
+    WEIGHT,
+)
+from raceway.core.signatures import MATRIX, VECTOR
+
+#: Iterations until it is given up, and answers of ``correct``.
+ITERATIONS = 60
+GOES_ON, SETTLED, FAILED = range(3)
+
+
+@jit(void(VECTOR, MATRIX))
+def _compliances(scalars, work):
+    """Angles of the lines of groove centres, with the compliances, their slopes and curvatures there."""
+    z = work.shape[1] // 2
+    knots = int(scalars[KNOTS])
+    for k in range(z):
+        a, r = work[CENTRE, k] + work[MOVED, k], work[CENTRE, z + k] + work[MOVED, z + k]
+        inverse = 1.0 / max(a * a + r * r, 1e-300)
+        work[TURNING, k], work[TURNING, z + k] = r * inverse, -a * inverse
+        x = (np.arctan2(a, r) - scalars[FIRST]) / scalars[DISTANCE]
+        inside = 0.0 < x < knots - 1.0
+        x = min(max(x, 0.0), knots - 1.0)
+        i = min(int(x), knots - 2)
+        u = x - i
+        for c in (k, z + k):
+            first = VALUES + i + (0 if c == k else 2 * knots)
+            p, q1, m, n = scalars[first], scalars[first + 1], scalars[first + knots], scalars[first + knots + 1]
+            a2, a3 = 3.0 * (q1 - p) - 2.0 * m - n, 2.0 * (p - q1) + m + n
+            work[OWN, c] = p + u * (m + u * (a2 + u * a3))
+            work[SLOPE, c] = (m + u * (2.0 * a2 + u * 3.0 * a3)) / scalars[DISTANCE] if inside else 0.0
+            work[CURVE, c] = (2.0 * a2 + 6.0 * a3 * u) / (scalars[DISTANCE] * scalars[DISTANCE]) if inside else 0.0
+
+
+@jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX))
+def begin(t, q, v, scalars, table, work):
+    """Lines of groove centres and the compliances there."""
+    place(t, q, v, scalars, table, work, DIRECTION, CENTRE, SPEED)
+    work[NORM, 0] = np.inf
+    if scalars[COUPLED] == 0.0:
+        _compliances(scalars, work)
+    else:
+        centrifugal_displacement(scalars, table, work)
+
+
+@jit(void(VECTOR, MATRIX, float64, MATRIX, MATRIX))
+def shift(scalars, ball, ball_gain, ball_known, work):
+    """Hand structural approaches and displacements of groove centres, the last columns of ``ball``, to the rigid kernel."""
+    z, first = ball.shape[0], slips_end(scalars, ball)
+    for k in range(z):
+        for side in range(2):
+            w = ball[k, first + side]
+            work[SHIFT, k + side * z] = w
+            work[SHIFT_RATE, k + side * z] = ball_gain * w + ball_known[k, first + side]
+    if scalars[COUPLED] == 0.0:
+        return
+    for k in range(z):
+        for c in range(2):
+            d = ball[k, first + 2 + c]
+            work[MOVED, k + c * z] = d
+            work[MOVED_RATE, k + c * z] = ball_gain * d + ball_known[k, first + 2 + c]
+    _compliances(scalars, work)
+
+
+@jit(float64(VECTOR, MATRIX, int64, int64))
+def _compliance_times(scalars, work, row, c):
+    """Entry c of C x with x = work[row]."""
+    z = work.shape[1] // 2
+    return work[OWN, c] * work[row, c] + scalars[BALL_CROSS] * work[row, c + z if c < z else c - z]
+
+
+@jit(boolean(VECTOR, MATRIX))
+def _factorise(scalars, work):
+    """I - C S as inverses ball by ball; False where the bodies take off more than there is.
+
+    Notes
+    -----
+    The matrix is similar to a positive definite one, and close to the identity.
+    """
+    z, cross = work.shape[1] // 2, scalars[BALL_CROSS]
+    for k in range(z):
+        ci, co = work[OWN, k], work[OWN, z + k]
+        sii, sio, soi, soo = work[BY_OWN, k], work[BY_OTHER, k], work[BY_OTHER, z + k], work[BY_OWN, z + k]
+        mii, mio = 1.0 - ci * sii - cross * soi, -ci * sio - cross * soo
+        moi, moo = -cross * sii - co * soi, 1.0 - cross * sio - co * soo
+        det = mii * moo - mio * moi
+        if not det > 0.0:
+            return False
+        work[INVERSE, k], work[INVERSE, z + k] = moo / det, -mio / det
+        work[INVERSE_2, k], work[INVERSE_2, z + k] = -moi / det, mii / det
+    return True
+
+
+@jit(void(MATRIX, int64))
+def _solve(work, row):
+    """work[row] := (I - C S)^-1 work[row]."""
+    z = work.shape[1] // 2
+    for k in range(z):
+        a, b = work[row, k], work[row, z + k]
+        work[row, k] = work[INVERSE, k] * a + work[INVERSE, z + k] * b
+        work[row, z + k] = work[INVERSE_2, k] * a + work[INVERSE_2, z + k] * b
+
+
+@jit(void(MATRIX, int64))
+def _solve_transposed(work, row):
+    """work[row] := work[row] (I - C S)^-1."""
+    z = work.shape[1] // 2
+    for k in range(z):
+        a, b = work[row, k], work[row, z + k]
+        work[row, k] = a * work[INVERSE, k] + b * work[INVERSE_2, k]
+        work[row, z + k] = a * work[INVERSE, z + k] + b * work[INVERSE_2, z + k]
+
+
+@jit(int64(VECTOR, MATRIX, MATRIX, float64, MATRIX, VECTOR))
+def correct(scalars, table, ball, ball_gain, work, f):
+    """One Newton step on structural approaches and displacements after a rigid kernel; the last one is a linear correction.
+
+    Returns
+    -------
+    int
+        ``GOES_ON``, ``SETTLED`` (forces and f are corrected; ``tangents`` may follow) or ``FAILED``.
+    """
+    z, first = table.shape[0], slips_end(scalars, ball)
+    coupled = scalars[COUPLED] != 0.0
+    norm, deepest = 0.0, 0.0
+    for c in range(2 * z):
+        k, side = (c, 0) if c < z else (c - z, 1)
+        w = ball[k, first + side]
+        rest = _compliance_times(scalars, work, 2, c) - w
+        work[STEP, c] = rest
+        # Second order in what is left: the force times w, less half of what its part C Q would store.
+        work[STORED, c] = 0.5 * work[2, c] * (w - rest)
+        norm = max(norm, abs(rest))
+        deepest = max(deepest, -work[0, c])
+    if coupled:
+        forces(scalars, table, work)
+        for c in range(2 * z):
+            norm = max(norm, abs(work[MOVED_REST, c]))
+    if not np.isfinite(norm):
+        return FAILED
+    if norm > work[NORM, 0] and norm > 1e-9 * deepest:
+        # Worse than before the last step: go half-way back.
+        for c in range(2 * z):
+            k, side = (c, 0) if c < z else (c - z, 1)
+            work[LAST, c] *= 0.5
+            ball[k, first + side] -= work[LAST, c]
+            if coupled:
+                work[MOVED_LAST, c] *= 0.5
+                ball[k, first + 2 + side] -= work[MOVED_LAST, c]
+        return GOES_ON
+    work[NORM, 0] = norm
+    if not _factorise(scalars, work):
+        return FAILED
+    _solve(work, STEP)
+    if coupled and not step(scalars, table, ball_gain, work):
+        return FAILED
+    settled = True
+    for c in range(2 * z):
+        k, side = (c, 0) if c < z else (c - z, 1)
+        ball[k, first + side] += work[STEP, c]
+        work[LAST, c] = work[STEP, c]
+        settled = settled and abs(work[STEP, c]) <= max(1e-8 * -work[0, c], 1e-10 * deepest)
+        if coupled:
+            ball[k, first + 2 + side] += work[MOVED_STEP, c]
+            work[MOVED_LAST, c] = work[MOVED_STEP, c]
+            settled = settled and abs(work[MOVED_STEP, c]) <= 1e-8 * deepest
+    if not settled:
+        return GOES_ON
+    for k in range(z):
+        a, b = work[STEP, k], work[STEP, z + k]
+        inner = work[2, k] + work[BY_OWN, k] * a + work[BY_OTHER, k] * b
+        outer = work[2, z + k] + work[BY_OTHER, z + k] * a + work[BY_OWN, z + k] * b
+        axial = work[AXIAL_BY_SHIFT, k] * a + work[AXIAL_BY_SHIFT, z + k] * b
+        radial = work[RADIAL_BY_SHIFT, k] * a + work[RADIAL_BY_SHIFT, z + k] * b
+        turn = work[COUPLE_BY_SHIFT, k] * a + work[COUPLE_BY_SHIFT, z + k] * b
+        if coupled:
+            da, dr = work[MOVED_STEP, k], work[MOVED_STEP, z + k]
+            inner += (work[BY_AXIAL, k] + ball_gain * work[BY_AXIAL_SPEED, k]) * da
+            inner += (work[BY_RADIAL, k] + ball_gain * work[BY_RADIAL_SPEED, k]) * dr
+            outer += (work[BY_AXIAL, z + k] + ball_gain * work[BY_AXIAL_SPEED, z + k]) * da
+            outer += (work[BY_RADIAL, z + k] + ball_gain * work[BY_RADIAL_SPEED, z + k]) * dr
+            axial += (work[FORCE_BY_CENTRE, k] + ball_gain * work[FORCE_BY_SPEED, k]) * da
+            axial += (work[FORCE_BY_CENTRE, z + k] + ball_gain * work[FORCE_BY_SPEED, z + k]) * dr
+            radial += (work[FORCE_BY_CENTRE + 1, k] + ball_gain * work[FORCE_BY_SPEED + 1, k]) * da
+            radial += (work[FORCE_BY_CENTRE + 1, z + k] + ball_gain * work[FORCE_BY_SPEED + 1, z + k]) * dr
+            turn += work[COUPLE_BY_CENTRE, k] * da + work[COUPLE_BY_CENTRE, z + k] * dr
+        work[2, k], work[2, z + k] = max(inner, 0.0), max(outer, 0.0)
+        axial *= table[k, SIDE]
+        couple = scalars[TILT_ARM] * axial - table[k, LEVER] * radial + table[k, SIDE] * turn
+        cosine, sine = work[DIRECTION, k], work[DIRECTION, z + k]
+        f[0] += axial
+        f[1] += radial * cosine
+        f[2] += radial * sine
+        f[3] += couple * sine
+        f[4] -= couple * cosine
+    return SETTLED
+
+
+@jit(void(VECTOR, MATRIX, float64, MATRIX, VECTOR, MATRIX, MATRIX))
+def tangents(scalars, table, ball_gain, work, f, K, C):
+    """Complete f (5,), and K and C (5, 5) where they are asked for, with what the bodies' elasticity adds.
+
+    Notes
+    -----
+    df = K dq + B dw + D^T dQ and dQ = A dq + S dw, w = C Q: dw = (I - C S)^-1 (C A - D) dq, where D holds -Q c' dbeta/dq.
+    """
+    z, arm = table.shape[0], scalars[TILT_ARM]
+    empty = K.size == 0
+    for k in range(z):
+        ga, gr = work[TURNING, k], work[TURNING, z + k]
+        by_angle, twice = 0.0, 0.0
+        for c in (k, z + k):
+            half = -0.5 * work[2, c] * work[2, c]
+            by_angle += half * work[SLOPE, c]
+            twice += half * work[CURVE, c]
+        if by_angle == 0.0 and twice == 0.0:
+            continue
+        haa, har = 2.0 * ga * gr, gr * gr - ga * ga
+        add_ball(
+            work[DIRECTION, k], work[DIRECTION, z + k], arm, table[k, SIDE], table[k, LEVER], by_angle * ga, by_angle * gr,
+            twice * ga * ga + by_angle * haa, twice * ga * gr + by_angle * har,
+            twice * ga * gr + by_angle * har, twice * gr * gr - by_angle * haa, 0.0, 0.0, 0.0, 0.0, f, K, C,
+        )  # fmt: skip
+    if empty:
+        return
+    rates = 0.0
+    for k in range(z):
+        ga, gr = work[TURNING, k], work[TURNING, z + k]
+        for c in (k, z + k):
+            other = z + k if c == k else k
+            to_ring(
+                work[DIRECTION, k],
+                work[DIRECTION, z + k],
+                table,
+                work,
+                k,
+                arm,
+                work[BY_AXIAL, c],
+                work[BY_RADIAL, c],
+                work[BY_TURN, c],
+                BY_Q,
+                c,
+            )
+            to_ring(
+                work[DIRECTION, k],
+                work[DIRECTION, z + k],
+                table,
+                work,
+                k,
+                arm,
+                work[BY_AXIAL_SPEED, c],
+                work[BY_RADIAL_SPEED, c],
+                0.0,
+                BY_V,
+                c,
+            )
+            rates += abs(work[BY_AXIAL_SPEED, c]) + abs(work[BY_RADIAL_SPEED, c])
+            d = -work[2, c] * work[SLOPE, c]
+            to_ring(work[DIRECTION, k], work[DIRECTION, z + k], table, work, k, arm, d * ga, d * gr, 0.0, TURN, c)
+            # B + D^T S: a shift changes the forces that turn the ring, too.
+            d = d * work[BY_OWN, c] - work[2, other] * work[SLOPE, other] * work[BY_OTHER, other]
+            to_ring(
+                work[DIRECTION, k], work[DIRECTION, z + k], table, work, k, arm, work[AXIAL_BY_SHIFT, c] + d * ga, work[RADIAL_BY_SHIFT, c] + d * gr,
+                work[COUPLE_BY_SHIFT, c], RING, c,
+            )  # fmt: skip
+    for i in range(5):
+        _solve_transposed(work, RING + i)
+        for c in range(2 * z):
+            # C is symmetric.
+            work[WEIGHT + i, c] = _compliance_times(scalars, work, RING + i, c) + work[TURN + i, c]
+    for i in range(5):
+        for j in range(5):
+            total = 0.0
+            for c in range(2 * z):
+                total += work[WEIGHT + i, c] * work[BY_Q + j, c] - work[RING + i, c] * work[TURN + j, c]
+            K[i, j] += total
+            if rates != 0.0:
+                total = 0.0
+                for c in range(2 * z):
+                    total += work[WEIGHT + i, c] * work[BY_V + j, c]
+                C[i, j] += total
+    if scalars[COUPLED] != 0.0:
+        reduce_tangents(scalars, table, ball_gain, work, K, C)

@@ -1,0 +1,210 @@
+"""The steady orbit under a periodic force, by Fourier collocation in time.
+
+Notes
+-----
+At N equidistant times of one period M D2 q + C D q + K q + f(q, D q) = load + force(t), with D the spectral
+differentiation matrix; Newton on all N states at once.  It contains the inertia forces, so that a transient that
+starts on it starts without a jump: the contacts carry F0 + m w^2 r, not F0.
+
+References
+----------
+Trefethen, Spectral Methods in MATLAB (2000), chapter 3; Krack, Gross, Harmonic Balance for Nonlinear Vibration Problems
+(2019), chapter 2.
+"""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+from numba import int64
+
+from raceway.core.jit import jit
+from raceway.core.ring.kernels.columns import work_rows
+from raceway.core.ring.system import System
+from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
+from raceway.errors import ConvergenceError
+
+#: Times of a period, and residual, of systems that are evaluated from Python: each takes a millisecond or a hundred, and
+#: pressures at points make forces that are smooth to 1e-5 only.
+_SAMPLES_PYTHON, _TOLERANCE_PYTHON = 17, 1e-7
+
+
+@jit(
+    int64(
+        SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, CUBE, CUBE
+    ),
+    allocates=True,
+)
+def evaluate_many(system, law, law_params, scalars, table, law_state, times, q, v, ball, ball_rate, f, K, C):
+    """Contact forces (n, 5) and tangents (n, 5, 5) at n states; the index of the first that fails, or n."""
+    work = np.zeros((work_rows(scalars, table), 2 * table.shape[0]))
+    law_new = law_state.copy()
+    for i in range(times.size):
+        status = system(
+            times[i], 0.0, q[i], v[i], ball[i], 0.0, ball_rate[i], law, law_params, law_state, law_new, scalars, table,
+            work, f[i], K[i], C[i],
+        )  # fmt: skip
+        if status != 0:
+            return i
+    return times.size
+
+
+@attrs.frozen(eq=False)
+class Orbit:
+    """A periodic motion at N equidistant times.
+
+    Attributes
+    ----------
+    period : float [s];  displacement, velocity, acceleration, force : (N, 5);  ball : (N, Z, 2)
+    stiffness : (N, 5, 5) contact tangents;  residual : largest imbalance over the largest force;  iterations : int
+    """
+
+    period: float
+    displacement: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    force: np.ndarray
+    ball: np.ndarray
+    stiffness: np.ndarray
+    residual: float
+    iterations: int
+
+
+def differentiation(count: int, period: float) -> np.ndarray:
+    """Spectral first-derivative matrix (N, N) on N (odd) equidistant times of a period."""
+    j = np.arange(count)
+    difference = j[:, None] - j[None, :]
+    with np.errstate(divide="ignore"):
+        matrix = 0.5 * (-1.0) ** difference / np.sin(np.pi * difference / count)
+    matrix[j, j] = 0.0
+    return matrix * (2.0 * np.pi / period)
+
+
+def steady_orbit(
+    system: System,
+    period: float,
+    start: np.ndarray,
+    samples: int = 65,
+    inertial: bool = True,
+    tolerance: float = 1e-8,
+) -> Orbit:
+    """The periodic motion near a first guess.
+
+    Parameters
+    ----------
+    start : (5,) static equilibrium; the guess is the series of equilibria under load and force, and failing that the
+        static equilibrium at all times.  A guess that is far off lets Newton end on another, resonant orbit.
+    samples : odd number of times per period
+    inertial : False leaves out inertia and damping: a series of equilibria
+
+    Raises
+    ------
+    ConvergenceError
+        With the last residual.
+    """
+    if system.companion is not system:
+        samples = min(samples, _SAMPLES_PYTHON)
+        # The nearest start is the compiled companion's orbit, moved to this system's equilibrium.
+        near = steady_orbit(system.companion, period, start, samples, inertial)
+        at_rest = near.displacement - near.displacement.mean(axis=0) + start
+        return _solve(system, period, at_rest, samples, inertial, max(tolerance, _TOLERANCE_PYTHON))
+    if inertial:
+        try:
+            slow = steady_orbit(system, period, start, samples, inertial=False)
+            return _solve(system, period, slow.displacement, samples, True, tolerance)
+        except ConvergenceError:
+            pass
+    return _solve(system, period, np.tile(start, (samples, 1)), samples, inertial, tolerance)
+
+
+def _solve(system: System, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float) -> Orbit:
+    """Newton on all times at once from a first guess (samples, 5)."""
+    z = system.ball_count
+    times = np.arange(samples) * (period / samples)
+    force = np.array([system.outer_force(t) for t in times])
+    first = differentiation(samples, period)
+    second = first @ first
+    chosen = np.flatnonzero(system.free > 0.0)
+    n = len(chosen)
+    part = np.ix_(chosen, chosen)
+    mass, damping, stiffness = system.mass[part], system.damping[part], system.stiffness[part]
+    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
+    q = start.copy()
+    ball = np.zeros((samples, z, system.ball_columns))
+    rate = np.zeros_like(ball)
+    rated = system.rated_columns
+    f, K, C = np.empty((samples, 5)), np.empty((samples, 5, 5)), np.empty((samples, 5, 5))
+    scale = max(np.abs(force).max(), np.abs(system.load).max(), 1e-300)
+    linear = np.zeros((samples, n, samples, n))
+    if inertial:
+        linear += np.einsum("ij,ab->iajb", second, mass) + np.einsum("ij,ab->iajb", first, damping)
+    diagonal = np.arange(samples)
+    linear[diagonal, :, diagonal, :] += stiffness
+    residual, worst, iterations = np.inf, np.inf, 0
+    step = np.zeros_like(q)
+    damping_factor = 1.0
+    for iterations in range(1, 61):
+        v = first @ q if inertial else np.zeros_like(q)
+        if inertial and iterations > 1:
+            rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
+        if system.companion is system:
+            done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
+        else:
+            done = _evaluate_each(system, times, q, v, ball, f, K, C)
+        imbalance = f + q @ system.stiffness.T - system.load - force
+        if inertial:
+            imbalance += v @ system.damping.T + (second @ q) @ system.mass.T
+        r = imbalance[:, chosen]
+        residual = float(np.abs(r * weight).max() / scale) if done == samples and np.isfinite(r).all() else np.inf
+        if residual <= tolerance and iterations > 2:
+            break
+        if residual > 2.0 * worst and damping_factor > 1e-3:
+            damping_factor *= 0.5
+            step *= 0.5
+            q = q - step
+            continue
+        worst, damping_factor = residual, min(1.0, 2.0 * damping_factor)
+        matrix = linear.copy()
+        matrix[diagonal, :, diagonal, :] += K[:, chosen[:, None], chosen[None, :]]
+        if inertial:
+            matrix += np.einsum("iab,ij->iajb", C[:, chosen[:, None], chosen[None, :]], first)
+        size = samples * n
+        try:
+            delta = -np.linalg.solve(matrix.reshape(size, size), r.reshape(size)).reshape(samples, n)
+        except np.linalg.LinAlgError:  # nothing is in contact, or a resonance is met
+            raise ConvergenceError("no periodic orbit found: its equations are singular", {"q": q}) from None
+        step = np.zeros_like(q)
+        step[:, chosen] = damping_factor * delta
+        q = q + step
+    else:
+        left = f"relative residual {residual:.1e}" if np.isfinite(residual) else "forces beyond all numbers"
+        raise ConvergenceError(f"no periodic orbit found after {iterations} iterations, {left}", {"q": q})
+    return Orbit(period, q, first @ q, second @ q, force, ball, K, residual, iterations)
+
+
+def _evaluate_each(
+    system: System,
+    times: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
+    ball: np.ndarray,
+    f: np.ndarray,
+    K: np.ndarray,
+    C: np.ndarray,
+) -> int:
+    """``evaluate_many`` for a system that is evaluated from Python; its balls follow the ring."""
+    for i, t in enumerate(times):
+        try:
+            now = system.evaluate(q[i], v[i], ball[i] if ball[i].any() else None, None, float(t))
+        except ConvergenceError:
+            return i
+        f[i], K[i], C[i], ball[i] = now.force, now.stiffness, now.damping, now.ball
+    return len(times)
+
+
+def at_time(values: np.ndarray, period: float, t: float) -> np.ndarray:
+    """Trigonometric interpolation of samples (N, ...) of a period at a time [s]."""
+    lines = np.fft.rfft(values, axis=0) / len(values)
+    harmonic = np.exp(2j * np.pi * np.arange(len(lines)) * t / period)
+    harmonic[1:] *= 2.0
+    return np.tensordot(harmonic, lines, axes=(0, 0)).real

@@ -1,0 +1,42 @@
+"""Where a time integration begins."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.core.ring.orbit import Orbit, at_time
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Motion
+
+
+def from_orbit(system: System, orbit: Orbit, dt: float) -> Motion:
+    """On a steady orbit, at the first of its times, moving with it."""
+    if system.starts is not None:
+        return system.starts.from_orbit(system, orbit, dt)
+    before = at_time(orbit.ball, orbit.period, -dt)
+    ball = orbit.ball[0].copy()
+    if not system.conservative:
+        ball[:, 2:4] = before[:, 2:4] = system.rolled_in(orbit.displacement[0], ball)
+    now = system.evaluate(orbit.displacement[0], orbit.velocity[0], ball=ball)
+    a = system.acceleration(orbit.displacement[0], orbit.velocity[0], orbit.force[0], now)
+    return Motion(orbit.displacement[0], orbit.velocity[0], a, now.ball, before)
+
+
+def at_rest(system: System, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+    """At rest in a static equilibrium; under a ramp the excitation is still zero, else it acts at once."""
+    if system.starts is not None:
+        return system.starts.at_rest(system, q, ball, ramped)
+    outer = np.zeros(5) if ramped else system.outer_force(0.0)
+    a = system.acceleration(q, np.zeros(5), outer, system.evaluate(q, ball=ball))
+    return Motion(q, np.zeros(5), a, ball, ball.copy())
+
+
+def static_orbit(system: System, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+    """The equilibrium under the constant load and the excitation's force at time zero: for series of equilibria."""
+    if system.starts is not None:
+        return system.starts.static_orbit(system, q, ball, ramped)
+    outer = np.zeros(5) if ramped else system.outer_force(0.0)
+    loaded = attrs.evolve(system, load=system.load + outer)
+    q, ball, _ = loaded.settle(q, ball)
+    return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())

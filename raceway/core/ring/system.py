@@ -1,0 +1,405 @@
+"""The arrays and kernels of one small model (five coordinates of the ring, balls condensed), ready for integrators."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core.ring.changing_speed import ChangingSpeed
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
+from raceway.core.ring.kernels.columns import BLOCK, ROW, are_condensed, elastic_columns, work_rows
+from raceway.core.ring.kernels.layout import (
+    CAGE,
+    CENTRIFUGAL,
+    DIAMETER,
+    FRICTION,
+    GYROSCOPIC,
+    OFFSET_INNER,
+    OFFSET_OUTER,
+    REST_RADIAL,
+    SIDE,
+    TILT_ARM,
+    place,
+    stop,
+)
+from raceway.core.stepping.record import Record
+from raceway.core.stepping.states import check_state
+from raceway.errors import ConvergenceError
+
+#: Relative residual that an equilibrium is solved to.
+TOLERANCE = 1e-11
+COORDINATES = ("x", "y", "z", "tilt_y", "tilt_z")
+
+
+@attrs.frozen(eq=False)
+class Evaluation:
+    """Contact forces at one state.
+
+    Attributes
+    ----------
+    force : (5,) internal force of the contacts [N, N m]
+    stiffness, damping : (5, 5) its derivatives by displacement and velocity
+    gap, contact_force : (2 Z,) inner races first, then outer [m, N]
+    ball : (Z, 2 to 8) positions of the balls in their meridian planes, slips, structural approaches and displacements [m]
+    memory : (2 Z, m) what the law would remember
+    """
+
+    force: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    ball: np.ndarray
+    memory: np.ndarray
+
+
+@attrs.define(eq=False)
+class System:
+    """M q'' + C q' + K q + f(q, q') = load + force(t) for the ring's reference point.
+
+    Attributes
+    ----------
+    kernel : compiled ``SYSTEM``;  law : compiled ``LAW``
+    base_kernel : the same bodies without gyroscopic moments and friction, whose forces have a potential; ``kernel``
+        itself where there are none
+    law_params : (2 Z, k);  law_state : (2 Z, m) committed memory of the law
+    scalars, table : constants, see ``raceway.core.ring.kernels``
+    mass, damping, stiffness : (5, 5) linear parts
+    free : (5,) 1 for unknowns, 0 for coordinates that are held
+    load : (5,) constant load [N, N m]
+    force : compiled ``FORCE``, the excitation;  force_params : (k,)
+    spin : how the speed changes that constants belong to; None for a steady one
+    """
+
+    kernel: Any
+    base_kernel: Any
+    law: Any
+    law_params: np.ndarray
+    law_state: np.ndarray
+    scalars: np.ndarray
+    table: np.ndarray
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    free: np.ndarray
+    load: np.ndarray
+    force: Any
+    force_params: np.ndarray
+    spin: ChangingSpeed | None = None
+
+    @property
+    def ball_count(self) -> int:
+        return self.table.shape[0]
+
+    @property
+    def arm(self) -> float:
+        """Arm of the tilts [m]."""
+        return float(self.scalars[TILT_ARM])
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
+        return self.base_kernel is self.kernel
+
+    @property
+    def companion(self) -> System:
+        """A compiled system of the same ring: this one; another, near it, where this one is stepped from Python."""
+        return self
+
+    @property
+    def starts(self) -> Any:
+        """The functions of ``raceway.core.ring.start`` for a system that has more unknowns than these; None where they are all."""
+        return None
+
+    def follow(self, on_residual: Callable[[float], None] | None) -> None:
+        """What to call with the residual of every iteration of an equilibrium that takes long."""
+
+    def stepped(self) -> Any:
+        """The ``SteppedSystem`` that loops in Python step."""
+        from raceway.core.ring.stepped import SteppedBearing
+
+        return SteppedBearing(self)
+
+    @property
+    def ball_columns(self) -> int:
+        return (2 if self.conservative else 4) + self._elastic_columns
+
+    @property
+    def _elastic_columns(self) -> int:
+        return int(elastic_columns(self.scalars))
+
+    @property
+    def condensed(self) -> bool:
+        """Whether rings and balls are elastic: ``ball`` then has columns for that behind positions and slips."""
+        return bool(are_condensed(self.scalars))
+
+    @property
+    def coupled(self) -> bool:
+        """Whether balls act on each other through elastic rings, which move groove centres."""
+        return self._elastic_columns == 4
+
+    @property
+    def rated_columns(self) -> list[int]:
+        """Columns of ``ball`` that have rates: positions and what elasticity adds, not slips."""
+        return [0, 1, *range(self.ball_columns - self._elastic_columns, self.ball_columns)]
+
+    def structural_approach(self, ball: np.ndarray) -> np.ndarray:
+        """(..., 2 Z) what the elasticity of the bodies adds to the approach of each contact [m], from ball (..., Z, k)."""
+        first = self.ball_columns - self._elastic_columns
+        return np.concatenate([ball[..., first], ball[..., first + 1]], axis=-1)
+
+    def groove_displacement(self, ball: np.ndarray) -> np.ndarray:
+        """(..., Z, 2) motion (axial, radial) of the inner groove centres against the outer ones by elastic rings [m]."""
+        return ball[..., -2:] if self.coupled else np.zeros((*ball.shape[:-1], 2))
+
+    def between_balls(self) -> tuple[np.ndarray, np.ndarray]:
+        """M and M_o (2 Z, 2 Z) between groove centres, axial and radial ball by ball [m/N]; see ``raceway.core.ring.kernels.between``.
+
+        Of M_o only the columns of radial forces are known.
+        """
+        row, count = int(self.scalars[ROW]), self.ball_count
+        blocks = self.scalars[-BLOCK * row :].reshape(row, BLOCK)
+        both, outer = np.zeros((count, 2, count, 2)), np.zeros((count, 2, count, 2))
+        for k in range(count):
+            for j in range(k // row * row, k // row * row + row):
+                axial, cross, radial, *by_radial = blocks[(k - j) % row]
+                both[k, :, j] = [[axial, cross], [cross, radial]]
+                outer[k, :, j, 1] = by_radial
+        return both.reshape(2 * count, -1), outer.reshape(2 * count, -1)
+
+    def ring_energy(self, ball: np.ndarray) -> np.ndarray:
+        """(...) energy F.M F / 2 that rings store by balls acting on each other [J], but for a constant, from ball (..., Z, k)."""
+        if not self.coupled:
+            return np.zeros(ball.shape[:-2])
+        both, outer = self.between_balls()
+        push = np.zeros((self.ball_count, 2))
+        push[:, 1] = self.table[:, CENTRIFUGAL]
+        carried = -(self.groove_displacement(ball).reshape(*ball.shape[:-2], -1) + outer @ push.reshape(-1))
+        return 0.5 * np.einsum("...i,ij,...j->...", carried, np.linalg.pinv(both, rcond=1e-12), carried)
+
+    def _work(self) -> np.ndarray:
+        return np.zeros((work_rows(self.scalars, self.table), 2 * self.ball_count))
+
+    @property
+    def model(self) -> tuple[Any, ...]:
+        """The arguments that every compiled loop begins with, less the excitation."""
+        return self.kernel, self.law, self.law_params, self.scalars, self.table
+
+    def outer_force(self, t: float) -> np.ndarray:
+        """(5,) the excitation at a time, without ramp."""
+        out = np.zeros(5)
+        self.force(float(t), self.force_params, out)
+        return out
+
+    def evaluate(
+        self,
+        q: np.ndarray,
+        v: np.ndarray | None = None,
+        ball: np.ndarray | None = None,
+        ball_rate: np.ndarray | None = None,
+        t: float = 0.0,
+        *,
+        dt: float = 0.0,
+        ball_gain: float = 0.0,
+        memory: np.ndarray | None = None,
+    ) -> Evaluation:
+        """Contact forces and tangents at displacement q (5,) and velocity v (5,).
+
+        Parameters
+        ----------
+        ball : (Z, ``ball_columns``) a first guess, and the slips that were committed last
+        ball_rate, ball_gain : the rate of a ball is ball_gain * ball + ball_rate [m/s]
+        dt : step since the law's ``memory`` (2 Z, m) was committed [s]; None for ``law_state``
+
+        Raises
+        ------
+        ConvergenceError
+            When the balls find no equilibrium between the races.
+        PluginError
+            An array of another shape: a compiled kernel would write beyond it.
+        """
+        check_state(self, "System.evaluate()", q=q, v=v, ball=ball, ball_rate=ball_rate, memory=memory)
+        z = self.ball_count
+        scalars = self.scalars
+        rate = np.zeros((z, self.ball_columns))
+        if ball is None:
+            # Without a history nothing sticks.
+            ball, scalars = np.zeros((z, self.ball_columns)), self.without(FRICTION).scalars
+        else:
+            ball = np.array(ball, dtype=float)
+            if not self.conservative:
+                rate[:, 2:4] = ball[:, 2:4]
+        if ball_rate is not None:
+            rate[:, self.rated_columns] = ball_rate[:, self.rated_columns]
+        v = np.zeros(5) if v is None else np.ascontiguousarray(v, dtype=float)
+        work = self._work()
+        f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
+        old = self.law_state if memory is None else memory
+        new = old.copy()
+        status = self.kernel(
+            t, dt, np.ascontiguousarray(q, dtype=float), v, ball, ball_gain, rate, self.law, self.law_params,
+            old, new, scalars, self.table, work, f, K, C,
+        )  # fmt: skip
+        if status != 0:
+            raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
+        return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball, new)
+
+    def at_speed(self, t: float) -> System:
+        """With the speed of a time: itself where the speed is steady."""
+        return self if self.spin is None else self.spin.at(self, t)
+
+    def stopped(self, t: float) -> System:
+        """A copy whose orbiting balls stand still where they are at a time."""
+        scalars, table = self.scalars.copy(), self.table.copy()
+        stop(float(t), scalars, table)
+        return attrs.evolve(self, scalars=scalars, table=table)
+
+    def without(self, *entries: int) -> System:
+        """A copy with some ``scalars`` (FRICTION, GYROSCOPIC, CAGE of ``raceway.core.ring.kernels.layout``) set to zero."""
+        scalars = self.scalars.copy()
+        scalars[list(entries)] = 0.0
+        return attrs.evolve(self, scalars=scalars)
+
+    def as_mounted(self, growth: float) -> System:
+        """A copy at standstill whose inner raceway has not grown by ``growth`` [m]: the state in which bearings are mounted."""
+        scalars, table = self.scalars.copy(), self.table.copy()
+        scalars[[GYROSCOPIC, CAGE]] = 0.0
+        scalars[REST_RADIAL] -= growth
+        table[:, CENTRIFUGAL] = 0.0
+        return attrs.evolve(self, scalars=scalars, table=table)
+
+    def settle(
+        self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Equilibrium under ``load`` from a first guess q (5,): displacement, balls, iterations.
+
+        Notes
+        -----
+        A load that the trust region does not reach at once is raised in steps.  Gyroscopic moments are added to the
+        equilibrium without them, all at once or in steps.  Friction is left out: the balls have rolled into place, and
+        their slips are set so that no contact carries a tangential force.
+
+        Raises
+        ------
+        ConvergenceError
+            With the last state and its residual.
+        PluginError
+            An array of another shape.
+        """
+        check_state(self, "System.settle()", q=q, ball=ball)
+        base = attrs.evolve(self, kernel=self.base_kernel)
+        start = None if ball is None or not self.conservative else ball
+        q_now, ball_now, total = base._by_parts(settle, q, start, tolerance, base.load, (1, 4, 16))
+        if self.conservative:
+            return q_now, ball_now, total
+        from raceway.core.ring.root import find_root
+
+        whole = self.without(FRICTION, CAGE)
+        guess = np.zeros((self.ball_count, self.ball_columns))
+        if self.scalars[GYROSCOPIC] != 0.0:
+            q_now, guess, more = whole._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
+            total += more
+        guess = whole.evaluate(q_now, ball=guess).ball
+        guess[:, 2:4] = self.rolled_in(q_now, guess)
+        return q_now, guess, total
+
+    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""
+        return now.stiffness
+
+    def _by_parts(
+        self, solver: Any, q: np.ndarray, ball: np.ndarray | None, tolerance: float, load: np.ndarray | None, parts: Any
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Solve at once, or with a growing part of the load (load given) or of the gyroscopic moment (load None)."""
+        total = 0
+        report = np.zeros(2)
+        status = CONVERGED
+        for count in parts:
+            q_now = np.array(q, dtype=float)
+            ball_now = np.zeros((self.ball_count, self.ball_columns)) if ball is None else np.array(ball, dtype=float)
+            for part in range(1, count + 1):
+                scalars, now = self.scalars.copy(), self.load
+                if load is None:
+                    scalars[GYROSCOPIC] *= part / count
+                else:
+                    now = load * (part / count)
+                status = solver(
+                    self.kernel, self.law, self.law_params, scalars, self.table, self.stiffness, self.free, now,
+                    tolerance, 0.0, q_now, ball_now, self.law_state, self._work(), np.empty(5), np.empty((5, 5)), report,
+                )  # fmt: skip
+                total += int(report[0]) + 1
+                if status != CONVERGED:
+                    break
+            if status == CONVERGED:
+                return q_now, ball_now, total
+            if status == RUN_AWAY:
+                free = COORDINATES[int(np.argmax(np.abs(q_now) * [1.0, 1.0, 1.0, self.arm, self.arm]))]
+                raise ConvergenceError(
+                    f"there is no static equilibrium: nothing holds the ring against the load along {free}. Hold it or load "
+                    "more balls.",
+                    {"q": np.array(q, dtype=float), "ball": ball_now},
+                )
+        what = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
+        left = f"relative residual {report[1]:.1e}"
+        if not np.isfinite(report[1]):
+            left = "the forces leave what can be computed with: check the units of loads and materials"
+        raise ConvergenceError(
+            f"no static equilibrium found after {total} iterations: {what}, {left}",
+            {"q": q_now, "ball": ball_now},
+        )
+
+    def centre_vectors(self, q: np.ndarray, t: float = 0.0, ball: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """(Z, 2) vector (axial, radial) from the outer to the inner groove centre of every ball, and its azimuth's
+        direction (Z, 2) as cosine and sine; ``ball`` (Z, k): with what elastic rings add there."""
+        work = np.zeros((3, 2 * self.ball_count))
+        place(float(t), np.ascontiguousarray(q, dtype=float), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
+        direction, centre, _ = work.reshape(3, 2, -1)
+        moved = 0.0 if ball is None else self.groove_displacement(ball)
+        return centre.T + moved, direction.T.copy()
+
+    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
+        """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
+        e, direction = self.centre_vectors(q, t, ball)
+        inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
+        outer = np.arctan2(ball[:, 0], ball[:, 1])
+        turned = self.table[:, SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
+        groove = self.scalars[OFFSET_INNER] + 0.5 * self.scalars[DIAMETER]
+        return np.column_stack([self.scalars[OFFSET_INNER] * inner - groove * turned, self.scalars[OFFSET_OUTER] * outer])
+
+    def friction_lost(self, record: Record) -> float:
+        """Energy that friction has taken at the end of a record [J]."""
+        from raceway.core.ring.friction import friction_energy
+
+        return float(friction_energy(self, record).lost[-1])
+
+    def at_standstill(self) -> System:
+        """Without friction and with balls that do not orbit: for periodic motions that a transient may start on."""
+        return self.without(FRICTION, CAGE)
+
+    def reduced(self, matrix: np.ndarray) -> np.ndarray:
+        """The part of a (5, 5) matrix that belongs to the unknowns."""
+        chosen = self.free > 0.0
+        return matrix[np.ix_(chosen, chosen)]
+
+    def acceleration(self, q: np.ndarray, v: np.ndarray, outer: np.ndarray, now: Evaluation) -> np.ndarray:
+        """(5,) acceleration from the balance of forces at one state."""
+        chosen = self.free > 0.0
+        rest = self.load + outer - now.force - self.damping @ v - self.stiffness @ q
+        a = np.zeros(5)
+        a[chosen] = np.linalg.solve(self.reduced(self.mass), rest[chosen])
+        return a
+
+    def natural_frequencies(self, tangent: np.ndarray) -> np.ndarray:
+        """Undamped natural frequencies [rad/s], ascending, with a contact tangent (5, 5)."""
+        mass = self.reduced(self.mass)
+        root = np.linalg.inv(np.linalg.cholesky(mass))
+        squares = np.linalg.eigvalsh(root @ self.reduced(0.5 * (tangent + tangent.T) + self.stiffness) @ root.T)
+        return np.sqrt(np.maximum(squares, 0.0))
+
+    def critical_time_step(self, tangent: np.ndarray) -> float:
+        """2 / (largest natural frequency) [s]: the stable limit of central differences."""
+        highest = self.natural_frequencies(tangent)[-1]
+        return 2.0 / highest if highest > 0.0 else float("inf")

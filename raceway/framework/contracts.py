@@ -1,0 +1,268 @@
+"""What a plug-in of each kind must do, as numbered duties.
+
+A plug-in is a frozen attrs class: its fields are its options (declared with ``raceway.framework.options.option``), its class
+attribute ``name`` is the word that a scene writes as ``kind``.  The class is light; ``kernel()`` imports what is
+compiled.  These protocols are one level deep: nothing has to inherit from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+import attrs
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.core.ring.advance import OnChunk
+    from raceway.core.ring.system import System
+    from raceway.core.signals.identification import Identification
+    from raceway.core.stepping.record import Motion, Record, Schedule
+
+
+class ContactLaw(Protocol):
+    """Normal force of a contact as a function of gap and gap rate.  Damping and friction are the core's.
+
+    1. ``discretisations``: a subset of {"resultant", "nodal"}: what the force means (N a pair, or Pa a point).
+    2. ``state_size``: columns of memory a contact; 0 for none.  ``dissipative``: whether a closed cycle loses energy.
+    3. ``build(pairs)``: parameters, an array (n, k) of float64, from ``ContactPairs``.
+    4. ``kernel()``: a function compiled with ``@jit(LAW)``: zero force for gap >= 0, never negative, monotonic in the
+       approach, derivatives exact, ``state_old`` untouched, outputs overwritten whole, no allocation.
+    5. A law for both discretisations tells them apart by ``pairs.area``, which is None for resultants.
+    6. ``constraint`` = True, if it is there, says that the law stands for no penetration at all: condensed bodies then hold
+       the gap exactly and do not call the kernel.
+    7. ``foundation`` = True, if it is there, says that a resultant is the integral of a pressure that follows from the overlap
+       at each place: results then tell the law's own peak pressure and semi-axes, sqrt(A B) / pi dQ/ddelta and the overlap
+       ellipse's, instead of Hertz's at the same load.
+    """
+
+    name: ClassVar[str]
+    discretisations: ClassVar[frozenset[str]]
+    state_size: ClassVar[int]
+    dissipative: ClassVar[bool]
+
+    def build(self, pairs: ContactPairs) -> np.ndarray: ...
+    def kernel(self) -> Any: ...
+
+
+@attrs.frozen(eq=False)
+class ContactPairs:
+    """What a law may know of its contacts; arrays (n,), inner races first, then outer.
+
+    Attributes
+    ----------
+    curvature_a, curvature_b : gap = A x^2 + B y^2 [1/m], x along the major semi-axis
+    contact_modulus : E* [Pa]
+    hertz_factor : K of Q = K delta^1.5 [N/m^1.5]
+    reference_load : load of a ball under the axial load alone [N]
+    area : area of a surface point [m2], None for resultants; each row then stands for the points of a contact
+    """
+
+    curvature_a: np.ndarray
+    curvature_b: np.ndarray
+    contact_modulus: np.ndarray
+    hertz_factor: np.ndarray
+    reference_load: np.ndarray
+    area: np.ndarray | None = None
+
+
+class Excitation(Protocol):
+    """A force on the inner ring's reference point as a function of time.
+
+    1. ``frequency_hz``, ``period_s``, ``amplitude_n``: the fundamental line; ``period_s`` None when not periodic.
+    2. ``sense``: +1 turns forward (from +y towards +z), -1 backward, 0 along a fixed direction.
+    3. ``parameters()``: an array (k,) of float64 that the kernel gets.
+    4. ``kernel()``: a function compiled with ``@jit(FORCE)`` that overwrites out (5,) = F_x, F_y, F_z, M_y, M_z.
+    5. ``speed_rpm``, if there is one, is the default of ``kinematics.spin_speed_rpm``; ``ramp_turns``, if there is one,
+       is the time over which the core lets the force grow; ``duration_s``, if there is one and it is not None, is the
+       time that is integrated, instead of ``integrator.turns``; ``phase(time)``, if there is one, is the angle of the
+       1x line (n,) [rad], which identifiers of changing speeds need, and without a period the angle that the spin speed
+       follows; ``steady()``, if there is one, is a periodic excitation whose orbit the motion starts on;
+       ``at_whirl(speed_rpm)``, if there is one, is the same force at another whirl speed, for identifiers of several speeds:
+       else they change ``speed_rpm``.
+    """
+
+    name: ClassVar[str]
+
+    @property
+    def frequency_hz(self) -> float: ...
+    @property
+    def period_s(self) -> float | None: ...
+    @property
+    def amplitude_n(self) -> float: ...
+    @property
+    def sense(self) -> int: ...
+    def parameters(self) -> np.ndarray: ...
+    def kernel(self) -> Any: ...
+
+
+class Integrator(Protocol):
+    """A way through time.
+
+    1. ``order``: the exponent of the step in the error, for smooth motions.
+    2. ``implicit``: whether steps above ``System.critical_time_step`` are allowed.  ``inertial``: whether the motion
+       contains inertia forces (K = Re Z + m w^2) or is a series of equilibria.
+    3. ``dissipative``: whether the method removes energy by itself.  ``steady``, if there is one and it is True: the method
+       solves for the motion that repeats itself every turn of the schedule, whatever it starts from; ``counts["error"]`` is
+       the error of its displacement over the amplitude, ``counts["floquet"]``, if there is one, goes to result.json,
+       ``counts["orbits"]``, a list of all steady motions that were found, to its ``motion.orbits``, and a scene that has no
+       such motion is refused with a ``SceneError``.
+    4. ``advance(system, start, schedule, on_chunk)``: take the steps of the schedule and return a ``Record``; call
+       ``on_chunk(done, total)`` now and then, whose exceptions pass through; on failure raise ``ConvergenceError`` or
+       ``StabilityError`` with the last good state.
+    5. ``start.near``, if it is not None, is the ``solution`` that the same integrator left in the record of a similar motion:
+       it may be started from, and must not change the answer beyond the method's tolerance; unless ``start.stay`` asks for
+       the continuation of that motion where several exist.
+    """
+
+    name: ClassVar[str]
+    order: ClassVar[int]
+    implicit: ClassVar[bool]
+    inertial: ClassVar[bool]
+    dissipative: ClassVar[bool]
+
+    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record: ...
+
+
+class Identifier(Protocol):
+    """From recorded motion, or from the equilibrium, to a dynamic stiffness.
+
+    1. ``needs``: a subset of {"record", "speeds", "equilibrium", "period", "phase"}: recorded motion; a record for each
+       of its option ``speeds_rpm``; the equilibrium alone; an excitation at one frequency (not a run-up); an
+       excitation that knows its phase.
+    2. ``definition``: one sentence: secant or tangent, of which signals.
+    3. ``identify(records, equilibrium, model)``: an ``Identification``; ``model`` offers ``mass_used``,
+       ``excitation``, ``scene`` and ``system``.
+    4. Where ``series`` holds several speeds of one record, ``series_error`` may hold the relative error of each Z; of a changing
+       speed it is replaced by the distance from the steady motion where that can be solved for.
+    5. An option ``harmonics``, if there is one, is how many multiples of the frequency are fitted with mean and drift: the plan
+       refuses more than the samples of a turn tell.
+    """
+
+    name: ClassVar[str]
+    needs: ClassVar[frozenset[str]]
+    definition: ClassVar[str]
+
+    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification: ...
+
+
+class Mesher(Protocol):
+    """Bodies to hexahedra.
+
+    1. ``mesh(bearing)``: body -> mesh with ``points`` (n, 3) [m] and ``cells`` (m, 8) in VTK's order, best a
+       ``raceway.core.mesh.hex_mesh.HexMesh`` with sets; ``bearing`` is the scene's [bearing] table.  Names of bodies:
+       ``inner_ring``, ``outer_ring``, ``ball_0`` and so on; a set of facets on the groove is called ``raceway``, on the
+       bore or the outer cylinder ``seat``, on a contact of a ball ``inner_patch`` and ``outer_patch``.
+    2. No cell is inverted or flat; what cannot be meshed raises ``MeshError``.
+    3. The same bearing gives the same mesh.
+    4. An option ``ball_load`` that is None gets the static load of a ball [N] from the scene.
+    5. Optional ``predict(bearing)``: body -> number of cells, without meshing, for the plan (or a
+       ``raceway.core.mesh.size.Prediction``; None: it cannot tell); what cannot be meshed raises ``MeshError`` here
+       already.  It executes nothing, starts no process and writes no file: ``raceway check`` calls it on foreign scenes.
+    """
+
+    name: ClassVar[str]
+
+    def mesh(self, bearing: Any) -> Mapping[str, Any]: ...
+
+
+class Format(Protocol):
+    """A file format, of meshes (``HexMesh``) or of anything else.
+
+    1. ``suffixes``: file endings with the dot.
+    2. ``write(path, what)``, ``read(path)``: what is written is read back the same, sets too, real numbers at least to ten figures.
+    3. A file that is missing or malformed raises a ``RacewayError`` that names it.
+    """
+
+    name: ClassVar[str]
+    suffixes: ClassVar[tuple[str, ...]]
+
+    def read(self, path: Any) -> Any: ...
+    def write(self, path: Any, what: Any) -> None: ...
+
+
+class Report(Protocol):
+    """A result for a person.
+
+    1. ``write(result, folder)``: writes files into the folder and returns their paths.
+    """
+
+    name: ClassVar[str]
+
+    def write(self, result: Any, folder: Any) -> list[Any]: ...
+
+
+#: A batch of a sweep: its number, and the points in it as plain values.
+Batch = tuple[int, list[Any]]
+
+
+@attrs.frozen
+class Refused:
+    """Answer of a worker that is not fit for the work: another version, a plug-in that it lacks."""
+
+    worker: str
+    reason: str
+
+
+@attrs.frozen
+class Lost:
+    """Answer for a batch that was given up: its workers died."""
+
+    reason: str
+
+
+class Executor(Protocol):
+    """Where the points of a sweep are computed: in this process, in others, on other machines.
+
+    1. ``compute(work, batches)`` yields ``(number, answer)`` for every ``(number, points)`` of ``batches``, each as soon as
+       it is there, in any order; ``answer`` is what ``work(points)`` returned.
+    2. ``work`` can be pickled and called anywhere; it answers for numerical failures itself, and what else it raises passes
+       through.  ``work.fault()`` says in words why the process that it is called in is not fit for it, or None; such a
+       process answers ``Refused``, which an executor with other workers may give to those and else passes on.
+    3. ``batches`` is an iterable that is taken from as workers get free, a few for each of them: sweeps are long.
+    4. A batch whose worker died is computed again; one that is given up is answered with ``Lost``.
+    5. Closing the iterator (Ctrl-C, an error) stops what is in flight and leaves no process behind.
+    6. Options ``workers`` and ``scheduler``, if there are any, are what ``raceway sweep --workers --scheduler`` give.
+       A package that is missing, or a scheduler that does not answer, is a ``PluginError`` before a batch is taken.
+    """
+
+    name: ClassVar[str]
+
+    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]: ...
+
+
+#: kind -> (registration hook, what a class of that kind must have)
+KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "contact_law": (
+        "raceway_contact_laws",
+        ("discretisations", "state_size", "dissipative", "build", "kernel"),
+    ),
+    "excitation": (
+        "raceway_excitations",
+        ("frequency_hz", "period_s", "amplitude_n", "sense", "parameters", "kernel"),
+    ),
+    "integrator": ("raceway_integrators", ("order", "implicit", "inertial", "dissipative", "advance")),
+    "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
+    "mesher": ("raceway_meshers", ("mesh",)),
+    "format": ("raceway_formats", ("suffixes", "read", "write")),
+    "report": ("raceway_reports", ("write",)),
+    "executor": ("raceway_executors", ("compute",)),
+}
+
+
+def broken_duties(kind: str, plugin: Any) -> list[str]:
+    """What keeps a class from being a plug-in of a kind; empty when nothing does."""
+    if not isinstance(plugin, type):
+        return [f"{plugin!r} is not a class"]
+    faults = []
+    if not isinstance(plugin.__dict__.get("name"), str):
+        faults.append("has no class attribute `name` (a string)")
+    if not attrs.has(plugin):
+        faults.append("is not an attrs class (decorate it with @attrs.frozen)")
+    faults += [f"has no `{duty}`" for duty in KINDS[kind][1] if not hasattr(plugin, duty) and not _is_field(plugin, duty)]
+    return faults
+
+
+def _is_field(plugin: type, name: str) -> bool:
+    return attrs.has(plugin) and name in attrs.fields_dict(plugin)

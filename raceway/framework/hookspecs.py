@@ -1,0 +1,71 @@
+"""Every hook that a plug-in may implement.  None of them is called inside a time loop."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pluggy
+
+# A specification has no body: pluggy never calls it.  Mypy misses the return of those that declare one: empty-body.
+hookspec = pluggy.HookspecMarker("raceway")
+hookimpl = pluggy.HookimplMarker("raceway")
+
+
+@hookspec
+def raceway_contact_laws() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.ContactLaw``."""
+
+
+@hookspec
+def raceway_excitations() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Excitation``."""
+
+
+@hookspec
+def raceway_integrators() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Integrator``."""
+
+
+@hookspec
+def raceway_identifiers() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Identifier``."""
+
+
+@hookspec
+def raceway_meshers() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Mesher``."""
+
+
+@hookspec
+def raceway_formats() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Format``."""
+
+
+@hookspec
+def raceway_reports() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Report``."""
+
+
+@hookspec
+def raceway_executors() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Executor``."""
+
+
+@hookspec
+def raceway_plan_made(plan: Any) -> None:
+    """A plan is ready; nothing has been built yet."""
+
+
+@hookspec
+def raceway_chunk_done(done: int, total: int) -> None:
+    """A part of the time steps is done, or of a search, where ``total`` is 0; an exception stops the run."""
+
+
+@hookspec
+def raceway_run_finished(result: Any) -> None:
+    """A run ended with a result."""
+
+
+@hookspec
+def raceway_run_failed(error: Exception) -> None:
+    """A run ended with an error; ``error.state`` may hold the last good arrays."""

@@ -1,0 +1,184 @@
+"""Calls a plug-in's kernel a few times before a run, so that a broken one is refused by name and not met inside a loop.
+
+This takes less than a millisecond.  It finds what would corrupt a run; ``raceway check-plugin`` finds the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from raceway.core.kernel.plugin_kernel import check_compiled
+from raceway.errors import PluginError
+
+#: Gaps [m] and rates [m/s] that are tried, all contacts at once.
+_GAPS = (1e-3, 1e-9, 0.0, -1e-9, -1e-6, -1e-5)
+_RATES = (0.0, -0.02, 0.02)
+#: Relative step of the differences that slopes are held against, and how far they may be apart: the force is not a line, and
+#: one side of a kink may be given.
+_STEP, _SLOPE = 1e-4, 1e-3
+#: Stands in outputs before a call; no force is so small.
+_MARK = -7.25e-301
+
+
+def probe_law(
+    law: Any, kernel: Any, params: Any, state: Any, distribution: str | None = None, depths: Iterable[float] = ()
+) -> None:
+    """Refuse a contact law that breaks its contract on a few gaps and rates.
+
+    Parameters
+    ----------
+    law : the plug-in, for its name;  kernel : what its ``kernel()`` returned
+    params : what its ``build()`` returned, (n, k);  state : (n, m), a row for each contact; not changed
+    distribution : whose it is; looked up in the registry when left out
+    depths : approaches [m] of the scene at hand, tried besides the fixed ones
+
+    Raises
+    ------
+    PluginError
+        Which plug-in of which distribution, what was found, and what the contract says.
+    """
+    from raceway.core.signatures import LAW
+
+    who = _who("contact law", "contact_law", law, distribution)
+    n = len(state)
+    _check_array(params, who, "build()", f"({n}, k): a row for each contact", (n, None))
+    check_compiled(kernel, who, LAW, "LAW")
+    state = np.ascontiguousarray(state, dtype=float)
+    _probe_alone(kernel, params, state, who)  # first: what lies behind all rows may be anything
+    depths = [float(depth) for depth in depths if depth > 0.0]
+    for gap in (*_GAPS, *(-depth for depth in depths)):
+        for rate in _RATES:
+            where = f"at gap {gap:g} m, rate {rate:g} m/s"
+            force, d_gap, d_rate, new = _call_law(kernel, params, state, gap, rate, who, where)
+            outputs = {"force": force, "d_gap": d_gap, "d_rate": d_rate, "state_new": new}
+            _check_outputs(outputs, who, where)
+            if gap >= 0.0 and force.any():
+                worst = force[np.argmax(np.abs(force))]
+                raise PluginError(f"{who}: force {worst:.4g} {where}, outside contact; the contract says zero for gap >= 0")
+            if (force < 0.0).any():
+                raise PluginError(f"{who}: force {force.min():.4g} {where}; the contract says never negative")
+
+    for depth in depths or [-min(_GAPS)]:
+        _probe_slopes(kernel, params, state, -depth, _RATES[1], who)
+
+
+def _probe_slopes(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str) -> None:
+    """Refuse derivatives that differences of the force contradict: with them an iteration converges, if it does, to a wrong stiffness."""
+    where = f"at gap {gap:g} m, rate {rate:g} m/s"
+    force, *given, _ = _call_law(kernel, params, state, gap, rate, who, where)
+    for word, slope, step in (("d_gap", given[0], (_STEP * gap, 0.0)), ("d_rate", given[1], (0.0, _STEP * rate))):
+        size = abs(sum(step))
+        sides = []
+        for sign in (1.0, -1.0):
+            there = _call_law(kernel, params, state, gap + sign * abs(step[0]), rate + sign * abs(step[1]), who, where)[0]
+            sides.append(sign * (there - force) / size)
+        low, high = np.minimum(*sides), np.maximum(*sides)
+        # Rounding of the differences: 1e-16 of the force over the step.
+        slack = _SLOPE * np.maximum(np.abs(low), np.abs(high)) + 1e-12 * np.abs(force) / size
+        off = np.maximum(low - slack - slope, slope - high - slack)
+        if len(off) and off.max() > 0.0:
+            worst = int(np.argmax(off))
+            raise PluginError(
+                f"{who}: `{word}` = {slope[worst]:.6g} {where}, where differences of the force give {high[worst]:.6g}; the "
+                "contract says the derivative, memory held"
+            )
+
+
+def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: str | None = None) -> None:
+    """Refuse an excitation that breaks its contract at a few times.
+
+    Parameters
+    ----------
+    kernel : what its ``kernel()`` returned;  params : what its ``parameters()`` returned, (k,)
+
+    Raises
+    ------
+    PluginError
+        As ``probe_law``.
+    """
+    from raceway.core.signatures import FORCE
+
+    who = _who("excitation", "excitation", excitation, distribution)
+    _check_array(params, who, "parameters()", "(k,)", (None,))
+    check_compiled(kernel, who, FORCE, "FORCE")
+    period = excitation.period_s or 1.0 / excitation.frequency_hz
+    for part in (0.0, 0.13, 0.5, 3.7):
+        out = np.full(5, _MARK)
+        where = f"at t = {part * period:g} s"
+        _guarded(kernel, who, where, part * period, params, out)
+        _check_outputs({"out": out}, who, where)
+
+
+def _probe_alone(kernel: Any, params: Any, state: Any, who: str) -> None:
+    """One contact whose parameters are followed by NaN in memory: a kernel that reads beyond its columns shows it."""
+    if not len(state):
+        return
+    columns = params.shape[1]
+    for gap in _GAPS:
+        where = f"at gap {gap:g} m, one contact alone"
+        finite = []
+        for behind in (np.nan, 0.0):
+            memory = np.full(columns + 64, behind)
+            memory[:columns] = params[0]
+            alone = memory[:columns].reshape(1, columns)
+            force, d_gap, d_rate, _ = _call_law(kernel, alone, state[:1].copy(), gap, 0.0, who, where)
+            finite.append(bool(np.isfinite([force[0], d_gap[0], d_rate[0]]).all()))
+        if finite == [False, True]:
+            raise PluginError(
+                f"{who}: not finite {where}: the kernel reads beyond the {columns} columns of parameters that build() returned"
+            )
+
+
+def _call_law(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str, where: str) -> tuple[Any, ...]:
+    n = len(state)
+    force, d_gap, d_rate = np.full((3, n), _MARK)
+    new, old = np.full_like(state, _MARK), state.copy()
+    _guarded(kernel, who, where, np.full(n, gap), np.full(n, rate), params, old, new, 1e-6, force, d_gap, d_rate)
+    if not np.array_equal(old, state):
+        raise PluginError(f"{who}: changes state_old {where}; the contract says it is read only")
+    return force, d_gap, d_rate, new
+
+
+def _guarded(kernel: Any, who: str, where: str, *arguments: Any) -> None:
+    try:
+        kernel(*arguments)
+    except Exception as why:  # the plug-in's own code
+        raise PluginError(
+            f"{who}: the kernel raises {type(why).__name__}: {why} {where}; the contract says it never raises: inside a "
+            "compiled loop an exception is lost"
+        ) from why
+
+
+def _check_outputs(outputs: dict[str, Any], who: str, where: str) -> None:
+    for word, values in outputs.items():
+        if (values == _MARK).any():
+            raise PluginError(
+                f"{who}: the kernel leaves `{word}` as it was {where}; the contract says that outputs are overwritten whole"
+            )
+        if not np.isfinite(values).all():
+            bad = values[~np.isfinite(values)][0]
+            raise PluginError(f"{who}: the kernel gives `{word}` = {bad:g} {where}; the contract says finite")
+
+
+def _check_array(values: Any, who: str, source: str, wanted: str, shape: tuple[int | None, ...]) -> None:
+    array = isinstance(values, np.ndarray)
+    found = f"{values.dtype} of shape {values.shape}" if array else type(values).__name__
+    fits = array and values.ndim == len(shape) and all(w in (None, s) for w, s in zip(shape, values.shape, strict=False))
+    if not fits or values.dtype != np.float64 or not values.flags.c_contiguous:
+        raise PluginError(f"{who}: {source} returned {found}; the contract says a C-contiguous float64 array {wanted}")
+    if not np.isfinite(values).all():
+        raise PluginError(f"{who}: {source} returned values that are not finite")
+
+
+def _who(words: str, kind: str, plugin: Any, distribution: str | None) -> str:
+    if distribution is None:
+        from raceway.framework.registry import default_registry
+
+        owners = [
+            e.distribution for e in default_registry().entries.get((kind, plugin.name), []) if e.plugin is type(plugin)
+        ]
+        distribution = owners[0] if owners else type(plugin).__module__
+    return f"{words} '{plugin.name}' of {distribution}"

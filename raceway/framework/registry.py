@@ -1,0 +1,304 @@
+"""The plug-in manager: loads plug-ins one by one and finds them by kind and name.
+
+A plug-in that cannot be loaded is remembered with its reason and takes nothing else down.  Two plug-ins of one kind and
+name shadow each other: the name cannot be used until one of them goes.
+
+``Registry.load_file`` adds one-off plug-ins from a file; ``Registry.notify`` calls life-cycle hooks and says whose failed.
+
+Environment: ``RACEWAY_DISABLE`` (names of distributions or entry points to leave out, commas), ``RACEWAY_PLUGINS`` (the
+exact set of third-party plug-ins to load), ``RACEWAY_TRACE`` (set: every hook call on standard error).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import pluggy
+
+from raceway.errors import PluginError, RacewayError
+from raceway.framework import hookspecs
+from raceway.framework.contracts import KINDS, broken_duties
+from raceway.framework.options import nearest
+from raceway.framework.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
+
+
+@attrs.frozen
+class Entry:
+    """One registered class."""
+
+    kind: str
+    name: str
+    plugin: type
+    distribution: str
+    version: str
+    source: str = ""  # entry point, module or file
+
+
+@attrs.frozen
+class Fault:
+    """Why a plug-in, or a part of one, is not there."""
+
+    source: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"plug-in `{self.source}`: {self.reason}"
+
+
+class Registry:
+    """Plug-ins of all kinds.
+
+    Parameters
+    ----------
+    third_party : whether to load what is installed under the entry point group "raceway"
+    """
+
+    def __init__(self, third_party: bool = True) -> None:
+        self.manager = pluggy.PluginManager("raceway")
+        self.manager.add_hookspecs(hookspecs)
+        if os.environ.get("RACEWAY_TRACE"):
+            self.manager.trace.root.setwriter(_trace)
+            self.manager.enable_tracing()
+        self.entries: dict[tuple[str, str], list[Entry]] = {}
+        self.faults: list[Fault] = []
+        for module in BUILT_IN:
+            self._register(import_module(module), module, "raceway", _version())
+        if third_party:
+            points, missing = chosen_entry_points()
+            self.faults += [Fault(name, "named in RACEWAY_PLUGINS, but not installed") for name in missing]
+            for point in points:
+                self._load(point)
+
+    @property
+    def hook(self) -> Any:
+        return self.manager.hook
+
+    def add(self, plugin: Any, source: str = "", distribution: str = "", version: str = "") -> None:
+        """Register a module or object with hook implementations; a fault is kept, not raised."""
+        source = source or str(getattr(plugin, "__name__", type(plugin).__qualname__))
+        self._register(plugin, source, distribution or source, version)
+
+    def load_file(self, path: str | Path) -> list[Entry]:
+        """Load one-off plug-ins from a Python file with hook implementations, for this registry only.
+
+        Returns
+        -------
+        list of Entry : what the file adds; its ``version`` is a hash of the file
+
+        Raises
+        ------
+        PluginError
+            A file that is missing, fails to import, or adds nothing; the registry is as it was before.
+        """
+        path = Path(path)
+        module, version = import_file(path)
+        if self.manager.is_registered(module):
+            return [e for e in self.all() if e.source == str(path)]
+        known = len(self.faults)
+        self._register(module, str(path), path.name, version)
+        faults, self.faults = self.faults[known:], self.faults[:known]
+        added = [e for e in self.all() if e.source == str(path)]
+        hooks = (self.manager.get_hookcallers(module) or []) if self.manager.is_registered(module) else []
+        if not faults and not hooks:
+            faults = [
+                Fault(str(path), "has no hook: write for instance @hookimpl def raceway_contact_laws(): return [MyLaw]")
+            ]
+        if faults:
+            self._remove(module, added)
+            raise PluginError("; ".join(str(fault) for fault in faults))
+        return added
+
+    def _remove(self, plugin: Any, entries: list[Entry]) -> None:
+        if self.manager.is_registered(plugin):
+            self.manager.unregister(plugin)
+        for entry in entries:
+            same = self.entries[entry.kind, entry.name]
+            same.remove(entry)
+            if not same:
+                del self.entries[entry.kind, entry.name]
+
+    def notify(self, hook: str, **arguments: Any) -> None:
+        """Call a life-cycle hook of every plug-in, in the order of registration.
+
+        Raises
+        ------
+        PluginError
+            A plug-in's hook raised; the message names it.  A ``RacewayError`` of its own passes through as it is.
+        """
+        names = {id(plugin): name for name, plugin in self.manager.list_name_plugin()}
+        for implementation in getattr(self.manager.hook, hook).get_hookimpls():
+            others = [p for p in self.manager.get_plugins() if p is not implementation.plugin]
+            try:
+                self.manager.subset_hook_caller(hook, others)(**arguments)
+            except RacewayError:
+                raise
+            except BaseException as why:  # a third party's own code
+                if not is_foreign_fault(why):
+                    raise
+                raise PluginError(
+                    f"plug-in `{names[id(implementation.plugin)]}`: `{hook}` raises {type(why).__name__}: {why}. "
+                    "Name it in RACEWAY_DISABLE to run without it."
+                ) from why
+
+    def find_any(self, text: str) -> Entry:
+        """The plug-in that ``[KIND:]NAME`` means.
+
+        Raises
+        ------
+        PluginError
+            An unknown kind or name, a name that several kinds have, or one that two plug-ins claim; lists the choices.
+        """
+        kind, colon, name = text.rpartition(":")
+        if colon:
+            kind = kind.strip().replace("-", "_").replace(" ", "_")
+            if kind not in KINDS:
+                raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, KINDS)}; kinds: {', '.join(KINDS)}")
+            return self.find(kind, name.strip())
+        kinds = [k for k in KINDS if (k, name) in self.entries]
+        if len(kinds) == 1:
+            return self.find(kinds[0], name)
+        if kinds:
+            raise PluginError(f"'{name}' is ambiguous; write {' or '.join(f'{k}:{name}' for k in kinds)}")
+        known = sorted({n for _, n in self.entries})
+        installed = ", ".join(f"{k}:{n}" for k, n in sorted(self.entries))
+        message = f"no plug-in named '{name}'{nearest(name, known)}; installed: {installed}"
+        if self.faults:
+            message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
+        raise PluginError(message)
+
+    def find(self, kind: str, name: str) -> Entry:
+        """The plug-in of a kind and name.
+
+        Raises
+        ------
+        PluginError
+            Unknown name (with the nearest one), or a name that two plug-ins claim.
+        """
+        found = self.entries.get((kind, name), [])
+        if len(found) == 1:
+            return found[0]
+        if found:
+            owners = " and ".join(f"`{e.plugin.__qualname__}` of {e.distribution}" for e in found)
+            raise PluginError(
+                f"two plug-ins claim the name '{name}' as {kind.replace('_', ' ')}: {owners}. Rename or "
+                "remove one: leave its --plugin file out, or name its distribution in RACEWAY_DISABLE."
+            )
+        names = self.names(kind)
+        message = (
+            f"no {kind.replace('_', ' ')} named '{name}'{nearest(name, names)}; installed: {', '.join(names) or 'none'}"
+        )
+        if self.faults:
+            message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
+        raise PluginError(message)
+
+    def names(self, kind: str) -> list[str]:
+        return sorted(name for k, name in self.entries if k == kind)
+
+    def all(self) -> Iterator[Entry]:
+        """Every entry, shadowed ones too, by kind and name."""
+        for key in sorted(self.entries):
+            yield from self.entries[key]
+
+    def shadowed(self) -> list[tuple[str, str]]:
+        """(kind, name) that more than one plug-in claims."""
+        return [key for key, found in sorted(self.entries.items()) if len(found) > 1]
+
+    def _load(self, point: EntryPoint) -> None:
+        distribution, version = owner(point)
+        try:
+            with foreign_words():
+                plugin = point.load()
+        except BaseException as why:  # whatever a third party's import raises: it is reported by name
+            if not is_foreign_fault(why):
+                raise
+            self.faults.append(Fault(f"{point.name} ({distribution})", f"fails to import: {type(why).__name__}: {why}"))
+            return
+        self._register(plugin, point.name, distribution, version)
+
+    def _register(self, plugin: Any, source: str, distribution: str, version: str) -> None:
+        label = source if source == distribution else f"{source} ({distribution})"
+        try:
+            hash(plugin)  # pluggy keeps plug-ins in sets
+            self.manager.register(plugin, name=label)
+            self.manager.check_pending()
+        except TypeError as why:
+            self.faults.append(Fault(label, f"cannot be registered: {why}; name a module, or an object that can be hashed"))
+            return
+        except BaseException as why:  # pluggy refuses its hooks, or looking at it runs code of its own
+            if not is_foreign_fault(why):
+                raise
+            if self.manager.get_plugin(label) is plugin:
+                self.manager.unregister(name=label)
+            own = isinstance(why, pluggy.PluginValidationError | ValueError)
+            told = str(why) if own else f"looking at it raises {type(why).__name__}: {why}"
+            self.faults.append(Fault(label, f"does not fit the hooks: {told}"))
+            return
+        for kind, (hook_name, _) in KINDS.items():
+            others = [p for p in self.manager.get_plugins() if p is not plugin]
+            try:
+                with foreign_words():
+                    lists = self.manager.subset_hook_caller(hook_name, others)()
+            except BaseException as why:  # a third party's own code
+                if not is_foreign_fault(why):
+                    raise
+                self.faults.append(Fault(label, f"`{hook_name}` raises {type(why).__name__}: {why}"))
+                continue
+            for one in lists:
+                if not isinstance(one, list | tuple):
+                    self.faults.append(Fault(label, f"`{hook_name}` returns {_shown(one)}, which is not a list of classes"))
+                    continue
+                for found in one:
+                    self._add(kind, found, label, distribution, version, source)
+
+    def _add(self, kind: str, found: Any, label: str, distribution: str, version: str, source: str) -> None:
+        try:
+            faults = broken_duties(kind, found)
+            entry = Entry(kind, str(getattr(found, "name", "?")), found, distribution, version, source)
+        except BaseException as why:  # an attribute of a metaclass, or a name, that raises
+            if not is_foreign_fault(why):
+                raise
+            told = f"looking at {kind.replace('_', ' ')} {_shown(found)} raises {type(why).__name__}: {why}"
+            self.faults.append(Fault(label, told))
+            return
+        if faults:
+            what = getattr(entry.plugin, "__qualname__", _shown(entry.plugin))
+            self.faults.append(Fault(label, f"{entry.kind.replace('_', ' ')} `{what}` " + ", ".join(faults)))
+            return
+        same = self.entries.setdefault((entry.kind, entry.name), [])
+        if all(e.plugin is not entry.plugin for e in same):
+            same.append(entry)
+
+
+def _shown(thing: Any) -> str:
+    """A third party's object in words; its type where it has none."""
+    try:
+        return repr(thing)
+    except Exception:  # its own __repr__
+        return f"an object of type {type(thing).__name__}"
+
+
+def _version() -> str:
+    from raceway import __version__
+
+    return __version__
+
+
+def _trace(text: str) -> None:
+    os.write(2, text.encode())
+
+
+@cache
+def default_registry() -> Registry:
+    """The plug-ins of this process: built-ins and whatever is installed."""
+    return Registry()

@@ -1,0 +1,111 @@
+"""Where plug-ins come from: entry points of installed distributions, and one-off files."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from traceback import extract_tb
+from typing import Any
+
+from raceway.errors import PluginError
+from raceway.framework.options import nearest
+from raceway.storage.user_files import size_of
+
+#: Bytes of a plug-in file at most.
+_LONGEST = 2**24
+
+
+def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
+    """The entry points to load, and the names in RACEWAY_PLUGINS that nothing installed has."""
+    points = sorted(entry_points(group="raceway"), key=lambda p: (p.name, owner(p)[0]))
+    missing: list[str] = []
+    every = {name for p in points for name in _called(p)}
+    exact = os.environ.get("RACEWAY_PLUGINS")
+    if exact is not None:
+        wanted = _names(exact)
+        missing = sorted(wanted - {name for p in points for name in _called(p)})
+        points = [p for p in points if wanted & _called(p)]
+    blocked = _names(os.environ.get("RACEWAY_DISABLE", ""))
+    known = sorted(every)
+    for name in sorted(blocked - set(known)):
+        told = f"installed: {', '.join(known)}" if known else "no plug-in is installed"
+        warnings.warn(f"RACEWAY_DISABLE names '{name}', which nothing is called{nearest(name, known)}; {told}", stacklevel=2)
+    return [p for p in points if not blocked & _called(p)], missing
+
+
+def _called(point: EntryPoint) -> set[str]:
+    """What an entry point may be called: its own name and its distribution's."""
+    return {point.name, owner(point)[0]}
+
+
+def owner(point: EntryPoint) -> tuple[str, str]:
+    """Name and version of an entry point's distribution; of one that was half removed, what is left of them."""
+    try:
+        name, version = str(point.dist.name or ""), str(point.dist.version or "")  # type: ignore[union-attr]
+    except Exception:  # its METADATA is gone, or is none
+        name = version = ""
+    if not name:
+        folder = getattr(point.dist, "_path", None)
+        name = Path(str(folder)).name.partition("-")[0] if folder is not None else point.name
+    return name, version
+
+
+def is_foreign_fault(why: BaseException) -> bool:
+    """Whether what a third party's code raised is its own: not Ctrl-C, and not what ends a generator."""
+    return not isinstance(why, KeyboardInterrupt | GeneratorExit)
+
+
+@contextmanager
+def foreign_words() -> Iterator[None]:
+    """What plug-ins print while they are loaded goes to standard error: standard output may be JSON."""
+    with redirect_stdout(sys.stderr):
+        yield
+
+
+def import_file(path: Path) -> tuple[Any, str]:
+    """The module of a plug-in file, and a hash of the file; one module for each content.
+
+    Raises
+    ------
+    PluginError
+        A file that is missing or fails to import.
+    """
+    try:
+        size_of(path, _LONGEST)
+        content = path.read_bytes()
+    except OSError as why:
+        raise PluginError(f"plug-in file `{path}`: {why.strerror or why}") from None
+    except ValueError as why:
+        raise PluginError(f"plug-in file `{path}` {why}") from None
+    if path.suffix != ".py":
+        raise PluginError(f"plug-in file `{path}`: must be a Python file (.py)")
+    version = hashlib.sha256(content).hexdigest()[:12]
+    name = f"raceway_file_{hashlib.sha256(str(path.resolve()).encode()).hexdigest()[:8]}_{version}"
+    if name in sys.modules:
+        return sys.modules[name], version
+    spec = spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise PluginError(f"plug-in file `{path}`: cannot be imported")
+    module = module_from_spec(spec)
+    sys.modules[name] = module  # attrs looks types up in the module by its name
+    try:
+        with foreign_words():
+            spec.loader.exec_module(module)
+    except BaseException as why:  # whatever the file's own code raises
+        del sys.modules[name]
+        if not is_foreign_fault(why):
+            raise
+        line = next((f", line {f.lineno}" for f in reversed(extract_tb(why.__traceback__)) if f.filename == str(path)), "")
+        raise PluginError(f"plug-in file `{path}`{line}: {type(why).__name__}: {why}") from why
+    return module, version
+
+
+def _names(text: str) -> set[str]:
+    return {word.strip() for word in text.split(",") if word.strip()}

@@ -1,0 +1,356 @@
+"""The table ``error`` of a result: relative errors of Z, each with how it was estimated.
+
+Notes
+-----
+A method of order p leaves an error c dt^p.  A second run with n' instead of n steps a turn gives c, so that the error of
+the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
+
+A series of equilibria has no order: see ``finer_series``.
+
+What a transient leaves is the distance from the steady motion (``steady_motion``) where that can be solved for and the
+motion did not start on it, and else what ``free_vibration`` sees; with friction at least the distance from ``other_start``.
+Step errors are taken from values without a transient: leakage has no order.
+
+References
+----------
+Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed., 1993), section II.4 (step halving).
+"""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.model import Model
+from raceway.core.ring.system import TOLERANCE
+from raceway.core.signals.identification import Identification
+from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
+from raceway.pipeline.error.contact import contact_error, is_calibrated
+from raceway.pipeline.error.finer_series import finer_value, more_equilibria
+from raceway.pipeline.error.free_vibration import Clean, without_free_vibration
+from raceway.pipeline.error.misfit import largest_misfit
+from raceway.pipeline.error.other_start import Run, distance
+from raceway.pipeline.error.steady_motion import settled_value
+from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.simulate import OnProgress, Simulation, simulate
+from raceway.planning.recording import fits
+from raceway.planning.steady_orbits import compares_with_steady_motion, remembers_its_start
+
+#: Least steps a turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
+_LEAST_STEPS = 8
+_MOST_OF_LIMIT = 0.95
+#: A second run whose step differs by less than this tells nothing.
+_LEAST_RATIO = 1.1
+#: Steps of a run instead of the second one where that one's free vibration hides what the steps change, over those of the first.
+_CLOSER = 2.0 / 3.0
+#: Turns of a second run with more steps, which is shorter so that it costs no more than the first.
+_LEAST_TURNS = 4
+
+#: Largest deviation of a turn from all turns over |Z| up to which turns repeat.
+_REPEATS = 1e-2
+#: What an estimate is good to: a factor of so much.
+_RIGHT = 3.0
+
+_NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
+
+
+@attrs.frozen
+class Part:
+    """One contribution: ``size`` relative to |Z|, its complex ``shift`` of Z where that is known, and how it was found."""
+
+    size: float | None
+    how: str
+    shift: complex | None = None
+
+
+def no_error(how: str) -> dict[str, Any]:
+    """The table without numbers, and one reason."""
+    return {**dict.fromkeys(_NAMES), "bodies": None, "how": dict.fromkeys(_NAMES, how)}
+
+
+def error_table(
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    found: Identification,
+    on_progress: OnProgress | None = None,
+) -> dict[str, Any]:
+    """The table ``error``.
+
+    Parameters
+    ----------
+    motions : model and motion of each speed; empty where the identifier needs no motion
+    on_progress : called in further runs and searches; the error of one that it ends is not known
+    """
+    table = no_error("")
+    how: dict[str, str] = table["how"]
+    how["mesh"] = "rigid bodies have no mesh"
+    mesh = None
+    if model.bodies is not None:
+        mesh, how["mesh"] = model.bodies.mesh_error(model, equilibrium)
+    table["contact"], how["contact"] = contact_error(model, equilibrium)
+    if not motions:
+        how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
+        parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
+    else:
+        step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness, on_progress)
+        transient = _transient(model, equilibrium, motions, found, step, on_progress)
+        if remembers_its_start(model.scene) and transient.size is not None:
+            first = motions[-1][1]
+            run = second or Run.of(model, equilibrium, first)
+            transient = _from_other_start(model, equilibrium, first, run, transient, on_progress)
+        parts = {
+            "time_step": step,
+            "transient": transient,
+            "identification": _identification(model, equilibrium, found),
+        }
+    parts["mesh"] = Part(mesh, how["mesh"])
+    if is_calibrated(model):
+        parts["contact"] = Part(table["contact"], how["contact"])
+    # The same for all runs on these bodies, and of the size of Z alone.
+    table["bodies"] = sum(parts[name].size or 0.0 for name in ("mesh", "contact") if name in parts)
+    for name, part in parts.items():
+        table[name], how[name] = part.size, part.how
+    how["total"] = (
+        "time step and transient with their phases, at least half the larger; plus identification, mesh and calibration"
+    )
+    if found.series_error:
+        how["total"] += f"; of the last window alone, at {60.0 * found.frequency_hz:.6g} r/min"
+    if model.scene.bodies.kind == "elastic":
+        how["total"] = "not estimated: that of the mesh is not known, and is the largest"
+        return table
+    if motions and _wanders(motions[-1][1], found):
+        how["total"] = "not estimated: no steady motion was found, and the turns that are used do not repeat"
+        return table
+    needed = ("time_step", "transient", *(("identification",) if "speeds" in model.scene.identifier.method.needs else ()))
+    unknown = [name for name in needed if motions and parts[name].size is None]
+    if unknown:
+        how["total"] = f"not estimated: that of the {' and the '.join(unknown).replace('_', ' ')} is not known"
+        return table
+    table["total"] = _total(parts)
+    return table
+
+
+def _wanders(simulation: Simulation, found: Identification) -> bool:
+    """Whether a ramp that stands in for an orbit ends in turns that do not repeat: single turns may be far from where they lead."""
+    start = simulation.start
+    return not start.settled and start.orbit is None and (found.spread is None or found.spread > _REPEATS)
+
+
+def _total(parts: dict[str, Part]) -> float | None:
+    """Errors whose phases are known may cancel; half the larger is kept, because each is known to that only."""
+    known = [part for part in parts.values() if part.size is not None]
+    if not known:
+        return None
+    sizes = [part.size or 0.0 for part in known if part.shift is None]
+    shifts = [part.shift for part in known if part.shift is not None]
+    together = max(abs(sum(shifts)), *(0.5 * abs(shift) for shift in shifts)) if shifts else 0.0
+    return float(together + sum(sizes))
+
+
+def _identification(model: Model, equilibrium: Equilibrium, found: Identification) -> Part:
+    if found.window is None:
+        return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
+    if "speeds" not in model.scene.identifier.method.needs:
+        return Part(found.window, "Fourier line against least squares")
+    try:
+        size, rpm = largest_misfit(model, equilibrium, found)
+    except ConvergenceError as why:
+        return Part(None, f"no motion at the scene's own whirl speed, which is none of those of the fit: {why}")
+    return Part(max(size, found.window), f"largest misfit of K - m w^2 + j w C, over |Z| there: at {rpm:.6g} r/min")
+
+
+def _time_step(
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    value: complex,
+    on_progress: OnProgress | None,
+    given: int | None = None,
+) -> tuple[Part, Run | None]:
+    """By a second run with other steps; that one, where other starts are compared with it because it is cheaper than the first.
+
+    Parameters
+    ----------
+    given : steps a turn of the second run
+    """
+    method, first = model.scene.integrator.method, motions[-1][1]
+    if getattr(method, "steady", False):
+        own = first.whole.counts.get("error")
+        return Part(own, "the method's own estimate, of the displacement over its amplitude"), None
+    if model.scene.bodies.kind == "elastic":
+        return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), None
+    if not method.inertial:
+        return _sampling(motions, equilibrium, model, value, on_progress), None
+    steps = first.whole.schedule.steps_per_turn
+    limits = [one.critical_time_step for _, one in motions if one.critical_time_step is not None]
+    explicit = not method.implicit and bool(limits)
+    bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
+    other = given or other_steps(steps, bound)
+    turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
+    if not fits(turns, other, model.system.ball_count):
+        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), None
+    try:
+        again = [
+            simulate(_over(one, turns), _at(one, model, equilibrium), on_progress, other, begun=m) for one, m in motions
+        ]
+    except ConvergenceError as why:
+        return Part(None, f"the run with {other} steps a turn failed: {why}"), None
+    second = Run.of(model, equilibrium, again[-1]) if other < steps and remembers_its_start(model.scene) else None
+    fine, coarse = value, 0j
+    # Several speeds are told apart by the identifier alone.
+    clean = [without_free_vibration(model, equilibrium, one) if len(motions) == 1 else None for one in (first, again[-1])]
+    if clean[0] is not None and clean[1] is not None:
+        fine, coarse = clean[0].value, clean[1].value
+        closer = max(ceil(_CLOSER * steps), ceil(bound))
+        further = given is None and _LEAST_RATIO * other <= closer <= steps / _LEAST_RATIO
+        if further and _hidden(clean[1], fine - coarse, (steps / other) ** method.order - 1.0, value - fine):
+            return _time_step(model, equilibrium, motions, value, on_progress, closer)
+    else:
+        coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
+    shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
+    if not np.isfinite(abs(shift)):
+        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness"), second
+    words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
+    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift), second
+
+
+def _hidden(clean: Clean, change: complex, powers: float, leakage: complex) -> bool:
+    """Whether the free vibration of a second run hides what its steps change, and that would be the largest error.
+
+    Parameters
+    ----------
+    clean : of the second run;  change : of Z from it to the first [N/m], ``powers`` times the error of the first
+    leakage : in Z of the first [N/m]
+
+    Notes
+    -----
+    Coarse steps leave their orbit by more than their order tells, and vibrate freely about another one.
+    """
+    return clean.halves is not None and clean.halves > abs(change) > powers * abs(leakage)
+
+
+def _sampling(
+    motions: list[tuple[Model, Simulation]],
+    equilibrium: Equilibrium,
+    model: Model,
+    value: complex,
+    on_progress: OnProgress | None,
+) -> Part:
+    """Of a series of equilibria, by a second one with more of them."""
+    tolerance = getattr(model.scene.integrator.method, "tolerance", 0.0)
+    steps = motions[-1][1].whole.schedule.steps_per_turn
+    count = more_equilibria(steps)
+    if not fits(model.plan.turns, count, model.system.ball_count, inertial=False):
+        return Part(None, f"not estimated: the record of a second series with {count} equilibria a turn would not fit")
+    try:
+        shift = (value - finer_value(model, equilibrium, motions, value, count, on_progress)) / abs(value)
+    except ConvergenceError as why:
+        return Part(None, f"the series of {count} equilibria a turn failed: {why}")
+    if abs(shift) <= tolerance:
+        return Part(tolerance, "residual that each equilibrium is solved to; more of them change less")
+    return Part(float(abs(shift)), f"series of {count} instead of {steps} equilibria a turn: harmonics beyond them", shift)
+
+
+def _at(one: Model, model: Model, equilibrium: Equilibrium) -> Equilibrium:
+    """The equilibrium that belongs to the model of one speed."""
+
+    return equilibrium if one is model else settle(one)
+
+
+def _over(model: Model, turns: int) -> Model:
+    return model if turns == model.plan.turns else attrs.evolve(model, plan=attrs.evolve(model.plan, turns=turns))
+
+
+def other_steps(steps: int, least: float = 0.0) -> int:
+    """Steps a turn of the second run: half, or as few as the stable limit leaves; half as many more where that tells nothing.
+
+    Parameters
+    ----------
+    least : steps a turn that the stable limit asks for; 0 for an implicit method
+    """
+    fewer = max(steps // 2, _LEAST_STEPS, ceil(least))
+    if steps >= _LEAST_RATIO * fewer:
+        return fewer
+    return ceil(1.5 * steps)
+
+
+def _transient(
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    found: Identification,
+    step: Part,
+    on_progress: OnProgress | None,
+) -> Part:
+    method, value, simulation = model.scene.integrator.method, found.dynamic_stiffness, motions[-1][1]
+    if getattr(method, "steady", False):
+        return Part(0.0, "one turn of the steady motion: nothing dies out")
+    memory = not model.system.conservative or model.scene.contact.law.state_size > 0
+    if not method.inertial and (model.plan.turns == 1 or not memory):
+        return Part(0.0, "a series of equilibria: nothing dies out")
+    if compares_with_steady_motion(model.scene):
+        try:
+            settled = settled_value(model, equilibrium, motions, found, on_progress)
+        except BeyondPlanError as why:
+            return Part(None, f"the search for the steady motion was {why}")
+        if settled is not None:
+            return _from_steady(settled, value, step)
+    if "speeds" in model.scene.identifier.method.needs:
+        return Part(None, "a steady motion of each speed could not be solved for")
+    clean = without_free_vibration(model, equilibrium, simulation)
+    by_turns = Part(found.spread, "largest deviation of a single turn from all turns that are used")
+    if clean is None:
+        return Part(None, "a single turn tells nothing of a transient") if found.spread is None else by_turns
+    shift = (value - clean.value + clean.lasting) / abs(value)
+    if (found.spread or 0.0) > abs(shift) and _unresolved(model, simulation, clean, abs(shift * value)):
+        return by_turns
+    return Part(float(abs(shift)), clean.how, shift)
+
+
+def _unresolved(model: Model, simulation: Simulation, clean: Clean, seen: float) -> bool:
+    """Whether the window over the turns may miss a part of the transient.
+
+    Parameters
+    ----------
+    seen : what the window sees [N/m]
+
+    Notes
+    -----
+    What began on no stable orbit may be on its way from one motion to another.  What began on none at all may beat with 1x:
+    then the halves of the turns are further apart than the whole window accounts for.
+    """
+    if not simulation.start.settled:
+        return True
+    if (
+        simulation.start.orbit is not None
+        and model.scene.contact.friction == 0.0
+        and model.scene.contact.law.state_size == 0
+    ):
+        return False
+    if not model.scene.integrator.method.inertial:
+        return False
+    return clean.halves is None or clean.halves > _RIGHT * seen
+
+
+def _from_other_start(
+    model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, own: Part, on_progress: OnProgress | None
+) -> Part:
+    """With friction the transient, and how far away another start leads."""
+    words = "friction remembers how the motion began"
+    try:
+        size, kind = distance(model, equilibrium, first, run, on_progress)
+    except (ConvergenceError, StabilityError) as why:
+        return Part(None, f"{words}, and runs from other starts failed: {why}")
+    if not np.isfinite(size):
+        return Part(None, f"{words}, and start '{kind}' gives no dynamic stiffness")
+    return Part(float((own.size or 0.0) + size), f"{words}: {size:.2g} between this start and '{kind}'; and {own.how}")
+
+
+def _from_steady(settled: complex, value: complex, step: Part) -> Part:
+    """Distance from Z of the steady motion, less the part of the time step; relative to the smaller of both."""
+    shift = (value - settled) / min(abs(value), abs(settled)) - (step.shift or 0.0)
+    return Part(float(abs(shift)), "distance from the steady motion, less the part of the time step", shift)

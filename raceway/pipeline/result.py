@@ -1,0 +1,190 @@
+"""What a run leaves: numbers with error and cost, as an object and as result.json."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.model import Model
+from raceway.bodies.mounting import held_table, preload_table
+from raceway.core.ring.system import COORDINATES
+from raceway.core.signals.identification import Identification
+from raceway.core.signals.lines import Line
+from raceway.pipeline.motion import motion_table
+from raceway.pipeline.pressure import contact_ellipse
+from raceway.pipeline.settle import Equilibrium
+from raceway.pipeline.simulate import Simulation
+from raceway.storage.files import write_whole
+
+SCHEMA = 1
+
+
+@attrs.frozen(eq=False)
+class Result:
+    """One run.  ``as_dict`` gives result.json; the arrays stay on the object.
+
+    Attributes
+    ----------
+    identification, simulation : None in a static scene (simulation also where the identifier needs no motion)
+    error, cost, stability, environment : the tables of result.json
+    bodies : the table ``model``: what elastic bodies change against rigid ones; None for rigid bodies
+    lines : spectral lines of the motion, empty where it was not recorded or its speed changes
+    """
+
+    model: Model
+    equilibrium: Equilibrium
+    identification: Identification | None
+    simulation: Simulation | None
+    error: dict[str, Any]
+    cost: dict[str, Any]
+    stability: dict[str, Any]
+    environment: dict[str, Any]
+    lines: list[Line]
+    warnings: tuple[str, ...]
+    bodies: dict[str, Any] | None = None
+
+    @property
+    def title(self) -> str:
+        return self.model.scene.title
+
+    def as_dict(self) -> dict[str, Any]:
+        return without_nan(
+            {
+                "schema": SCHEMA,
+                "title": self.title,
+                "scene": self.model.scene.as_dict(),
+                "plan": self.model.plan.as_dict(),
+                "equilibrium": equilibrium_table(self.model, self.equilibrium),
+                "identification": self._identification(),
+                "model": self.bodies,
+                "motion": self._motion(),
+                "error": self.error,
+                "cost": self.cost,
+                "stability": self.stability,
+                "environment": self.environment,
+                "warnings": list(self.warnings),
+            }
+        )
+
+    def _motion(self) -> dict[str, Any] | None:
+        found = self.simulation
+        return None if found is None else {**motion_table(self.model, found.record), "orbits": found.orbits}
+
+    def _identification(self) -> dict[str, Any] | None:
+        found = self.identification
+        if found is None:
+            return None
+        z, across = found.dynamic_stiffness, self._across()
+        return {
+            "definition": found.definition,
+            "speed_rpm": found.frequency_hz * 60.0,
+            "frequency_hz": found.frequency_hz,
+            "force_amplitude_n": found.force_amplitude,
+            "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
+            "equivalent_stiffness": found.equivalent_stiffness,
+            "equivalent_stiffness_error": None if self.error["total"] is None else self.error["total"] * abs(z),
+            "equivalent_damping": found.equivalent_damping,
+            "equivalent_damping_error": None if across is None else across * abs(z) / found.speed,
+            "mass_used_kg": found.mass_used,
+            "tilt": self.model.scene.supports.tilt,
+            "phase_lag_deg": found.phase_lag_deg,
+            "phase_lag_error_deg": None if across is None else math.degrees(across),
+            "forward_amplitude_m": found.forward_amplitude,
+            "backward_amplitude_m": found.backward_amplitude,
+            "orbit": {"major_m": found.orbit_major, "minor_m": found.orbit_minor},
+            "residual": found.residual,
+            "spread": found.spread,
+            "lines": [
+                {
+                    "name": line.name,
+                    "frequency_hz": line.frequency_hz,
+                    "forward_m": line.forward,
+                    "backward_m": line.backward,
+                    "axial_m": line.axial,
+                }
+                for line in self.lines
+            ],
+            "series": [
+                {"speed_rpm": speed * 30.0 / math.pi, "real": one.real, "imag": one.imag, "abs": abs(one), "error": wrong}
+                for (speed, one), wrong in zip_longest(found.series, found.series_error)
+            ],
+        }
+
+    def _across(self) -> float | None:
+        """Error of Z across its own direction, over |Z|: mesh and calibration change the size of a stiffness and turn no phase."""
+        total, bodies = self.error["total"], self.error.get("bodies") or 0.0
+        return None if total is None else max(total - bodies, 0.0) + bodies * self._turned()
+
+    def _turned(self) -> float:
+        """The smaller part of Z over |Z|."""
+        z = self.identification.dynamic_stiffness if self.identification is not None else 1.0 + 0.0j
+        return abs(z.imag) / abs(z) if abs(z) else 0.0
+
+    def save(self, folder: Path) -> Path:
+        """Write result.json into a folder, whole or not at all.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return write_json(self.as_dict(), folder / "result.json")
+
+
+def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    """The table ``equilibrium`` of result.json."""
+    z = model.system.ball_count
+    load_inner, load_outer = equilibrium.contact_force[:z], equilibrium.contact_force[z:]
+    columns = {
+        "azimuth_deg": np.degrees(model.azimuth) % 360.0,
+        "load_inner_n": load_inner,
+        "load_outer_n": load_outer,
+        "contact_angle_inner_deg": np.degrees(equilibrium.angle_inner),
+        "contact_angle_outer_deg": np.degrees(equilibrium.angle_outer),
+    }
+    for race, (word, load) in enumerate((("inner", load_inner), ("outer", load_outer))):
+        pressure, a, b = contact_ellipse(model, race, load)
+        columns[f"peak_pressure_{word}_pa"] = pressure
+        columns[f"semi_major_{word}_m"] = a
+        columns[f"semi_minor_{word}_m"] = b
+    more = getattr(model.bodies, "ball_columns", None)
+    if more is not None:
+        columns |= more(model, equilibrium)
+    return {
+        "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
+        "stiffness": equilibrium.stiffness.tolist(),
+        "balls": [{key: float(column[k]) for key, column in columns.items()} for k in range(z)],
+        "preload": preload_table(model, equilibrium),
+        "held_axial": held_table(model, equilibrium),
+        "iterations": equilibrium.iterations,
+    }
+
+
+def without_nan(value: Any) -> Any:
+    """The same tree with null for numbers that are not finite, and plain Python types."""
+    if isinstance(value, dict):
+        return {str(k): without_nan(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_nan(v) for v in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def write_json(content: Any, path: Path) -> Path:
+    """Write JSON so that a reader sees the old file or the whole new one.
+
+    Raises
+    ------
+    RacewayError
+        Folder or disk that cannot be written.
+    """
+    return write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), path)

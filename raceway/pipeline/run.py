@@ -1,0 +1,296 @@
+"""scene -> plan -> model -> settle -> advance -> identify -> result, and nothing more."""
+
+from __future__ import annotations
+
+import platform
+import resource
+import sys
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.model import Model, build_model
+from raceway.core.jit import take_compile_seconds, working_clock
+from raceway.core.ring.energy import energy_balance
+from raceway.core.ring.kernels.layout import GYROSCOPIC
+from raceway.core.signals.identification import Identification
+from raceway.core.signals.lines import Line, lines
+from raceway.core.stepping.energy import drift, friction_lost, largest_share
+from raceway.errors import ConvergenceError, PluginError, RacewayError
+from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline.allowance import PATIENCE, Allowance
+from raceway.pipeline.error.contact import contact_error
+from raceway.pipeline.error.estimate import error_table, no_error
+from raceway.pipeline.error.misfit import misfit_warnings
+from raceway.pipeline.error.other_start import start_warnings
+from raceway.pipeline.error.series import series_warnings, with_series_error
+from raceway.pipeline.plausibility import inertia_warnings, motion_warnings, refuse_impossible
+from raceway.pipeline.result import Result
+from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
+from raceway.planning.implausible import implausible
+from raceway.planning.plan import make_plan
+from raceway.planning.unused import unused
+from raceway.scene.tables import Scene
+
+
+def run(
+    scene: Scene,
+    registry: Registry | None = None,
+    on_progress: OnProgress | None = None,
+    near: Result | None = None,
+    patience: float = PATIENCE,
+    stay: bool = False,
+) -> Result:
+    """Compute one scene.
+
+    Parameters
+    ----------
+    on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
+    near : of a similar scene: what is dear to search for (equilibria of contacts at surface points, steady motions that are
+        nearly linear) is searched for from its own, which changes the result within the tolerances of the search only
+    stay : on the steady motion of ``near`` where several may exist, instead of searching for all, for scenes that are tried
+        one after another in an iteration: which of them is found then depends on ``near``
+    patience : times the planned time, of processor time, after which a run is stopped between its steps
+
+    Raises
+    ------
+    SceneError
+        A combination that cannot run.
+    ConvergenceError, StabilityError, BeyondPlanError
+        No solution, or none in the time allowed; ``error.state`` holds the last good arrays.
+    """
+    registry = registry or default_registry()
+    wall = working_clock()
+    try:
+        try:
+            return _run(scene, registry, on_progress, wall, near, patience, stay)
+        except (ArithmeticError, np.linalg.LinAlgError) as why:
+            raise ConvergenceError(
+                f"the numbers of this scene leave what can be computed with ({why}): check its units"
+            ) from why
+    except RacewayError as error:
+        try:
+            registry.notify("raceway_run_failed", error=error)
+        except PluginError as other:  # what the run failed with comes first
+            error.add_note(str(other))
+        raise
+
+
+def _run(
+    scene: Scene,
+    registry: Registry,
+    on_progress: OnProgress | None,
+    wall: float,
+    near: Result | None,
+    patience: float,
+    stay: bool,
+) -> Result:
+    plan = make_plan(scene)
+    allowance, warned = Allowance.of(plan, patience), []
+    registry.notify("raceway_plan_made", plan=plan)
+    model = build_model(scene, plan)
+    built = working_clock()
+
+    def progress(what: str, done: int, total: int) -> None:
+        registry.notify("raceway_chunk_done", done=done, total=total)
+        if on_progress is not None:
+            on_progress(what, done, total)
+        allowance.check(what, done, total)
+
+    equilibrium = settle(model, progress, None if near is None else near.equilibrium.displacement)
+    simulation: Simulation | None = None
+    identification: Identification | None = None
+    motions: list[tuple[Model, Simulation]] = []
+    error, error_s = no_error("the scene is static: nothing is identified"), 0.0
+    if model.bodies is not None:
+        error["mesh"], error["how"]["mesh"] = model.bodies.mesh_error(model, equilibrium)
+    if scene.excitation is None:
+        error["contact"], error["how"]["contact"] = contact_error(model, equilibrium)
+    else:
+        method = scene.identifier.method
+        records = []
+        try:
+            if "speeds" in method.needs:
+                motions = simulate_speeds(model, progress)
+                simulation, records = motions[-1][1], [one.record for _, one in motions]
+            elif "record" in method.needs:
+                simulation = simulate(model, equilibrium, progress, near=_followed(scene, near), stay=stay)
+                motions, records = [(model, simulation)], [simulation.record]
+        except ConvergenceError as why:
+            allowance.confirm(why)
+            raise
+        allowance.confirm()
+        for one, motion in motions:
+            refuse_impossible(one, equilibrium, motion.whole)
+        identification = method.identify(records, equilibrium, model)
+        _refuse_no_number(identification)
+        identified = working_clock()
+        if allowance.spent:  # what is computed is kept
+            warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
+            error = no_error("the run went far beyond its plan")
+        else:
+            error = error_table(model, equilibrium, motions, identification, allowance.check)
+        identification = with_series_error(model, identification, error, allowance.check)
+        error_s = working_clock() - identified
+    done = working_clock()
+    compile_s = take_compile_seconds()
+    bodies = None if model.bodies is None else model.bodies.report(model, equilibrium)
+    result = Result(
+        model=model,
+        equilibrium=equilibrium,
+        identification=identification,
+        simulation=simulation,
+        error=error,
+        cost=_cost([one for _, one in motions], done - wall, compile_s, built - wall, done - built, error_s),
+        stability=_stability(motions),
+        environment=_environment(scene, registry),
+        lines=_lines(model, simulation),
+        bodies=bodies,
+        warnings=tuple(
+            dict.fromkeys(
+                # A mesh too coarse for its answer comes first, keys without effect last.
+                [
+                    *warned,
+                    *_unresolved(error),
+                    *misfit_warnings(model, error),
+                    *start_warnings(model, error),
+                    *series_warnings(identification),
+                    *_bodies_warnings(model, equilibrium),
+                    *([] if identification is None else inertia_warnings(bodies, error["total"])),
+                    *equilibrium.warnings,
+                    *_motion_warnings(motions),
+                    *unused(scene),
+                    *implausible(scene),
+                ]
+            )
+        ),
+    )
+    try:
+        registry.notify("raceway_run_finished", result=result)
+    except RacewayError as why:  # what is computed is kept
+        return attrs.evolve(result, warnings=(*result.warnings, f"after the run: {why}"))
+    return result
+
+
+def _followed(scene: Scene, near: Result | None) -> Simulation | None:
+    """The motion of a similar scene, where it is one by the same integrator."""
+    same = near is not None and near.model.scene.integrator.kind == scene.integrator.kind
+    return near.simulation if same and near is not None else None
+
+
+def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
+    """1x to 3x, and the ball-pass lines of orbiting balls, in the turns that identification uses."""
+    if simulation is None or model.excitation.period_s is None or "speeds" in model.scene.identifier.method.needs:
+        return []
+    frequency = model.excitation.frequency_hz
+    wanted = {f"{k}x": k * frequency for k in (1, 2, 3)}
+    if model.scene.kinematics.orbiting:
+        passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
+        wanted |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
+    return lines(simulation.record.time, simulation.record.displacement, wanted)
+
+
+def _bodies_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
+    """What the bodies have to say of the equilibrium."""
+    say = getattr(model.bodies, "warnings", None)
+    return [] if say is None else say(model, equilibrium)
+
+
+def _unresolved(error: dict[str, Any]) -> list[str]:
+    """The first thing to say of a number that is smaller than its error."""
+    total = error["total"]
+    if total is None or total < 1.0:
+        return []
+    return [f"Z is not resolved: its estimated error is {total:.2g} times its size, so that K and C say nothing"]
+
+
+def _motion_warnings(motions: list[tuple[Model, Simulation]]) -> list[str]:
+    return [w for model, one in motions for w in (*one.warnings, *motion_warnings(model, one.record))]
+
+
+def _refuse_no_number(found: Identification) -> None:
+    if not np.isfinite([found.dynamic_stiffness.real, found.dynamic_stiffness.imag]).all():
+        raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
+
+
+def _cost(
+    simulations: list[Simulation], wall: float, compile_s: float, build: float, solve: float, error: float
+) -> dict[str, Any]:
+    scale = 1 if sys.platform == "darwin" else 1024
+    return {
+        "wall_s": wall,
+        "compile_s": compile_s,
+        "build_s": max(build, 0.0),
+        "solve_s": solve - error,
+        "error_s": error,
+        "steps": sum(one.whole.counts["steps"] for one in simulations),
+        "newton_iterations": sum(one.whole.counts["evaluations"] for one in simulations),
+        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,
+        "threads": 1,
+    }
+
+
+def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
+    """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
+    drifts = [one for one in (_drift(*motion) for motion in motions) if one is not None]
+    rubbing = [_friction(m, s) for m, s in motions if m.scene.contact.friction > 0.0]
+    told = [s.whole.energies for _, s in motions if s.whole.energies]
+    limits = [s.critical_time_step for _, s in motions if s.critical_time_step is not None]
+    fates = [s.whole.counts["floquet"] for _, s in motions if s.whole.counts.get("floquet") is not None]
+    return {
+        "floquet": max(fates, key=lambda fate: fate["largest"], default=None),
+        "friction_energy_j": float(sum(rubbing)) if rubbing else None,
+        "critical_time_step_s": min(limits, default=None),
+        "energy_drift": max(drifts, default=None),
+        "hourglass_energy_ratio": max((largest_share(one, "hourglass", "elastic") for one in told), default=None),
+        "energies_j": {name: float(values[-1]) for name, values in told[-1].items()} if told else None,
+        "max_penetration_m": max((s.whole.counts["max_penetration_m"] for _, s in motions), default=None),
+        "status": "completed",
+    }
+
+
+def _friction(model: Model, simulation: Simulation) -> float:
+    """Energy that friction took from a motion [J]."""
+    if simulation.whole.energies:
+        return friction_lost(simulation.whole.energies)
+    return float(model.system.friction_lost(simulation.whole))
+
+
+def _drift(model: Model, simulation: Simulation) -> float | None:
+    """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
+    if simulation.whole.energies:
+        return drift(simulation.whole.energies)
+    if model.scene.contact.discretisation == "nodal":
+        return None  # the energy that points store is not told by the gap of the pair
+    law = model.scene.contact.law
+    potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
+    # What changes the speed of the balls does work, too.
+    steady = simulation.start.kind != "ramp" and not model.scene.kinematics.orbiting and model.system.spin is None
+    if not (potential and steady and model.scene.integrator.method.inertial):
+        return None
+    return energy_balance(model.system, simulation.whole).drift
+
+
+def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
+    import numba
+
+    from raceway import __version__
+
+    used = [
+        ("contact_law", scene.contact.kind),
+        ("integrator", scene.integrator.kind),
+        ("identifier", scene.identifier.kind),
+    ]
+    if scene.excitation is not None:
+        used.append(("excitation", scene.excitation.name))
+    entries = [registry.find(kind, name) for kind, name in used]
+    return {
+        "raceway": __version__,
+        "python": platform.python_version(),
+        "numba": numba.__version__,
+        "numpy": np.__version__,
+        "plugins": [{"kind": e.kind, "name": e.name, "distribution": e.distribution, "version": e.version} for e in entries],
+        "host": f"{platform.system()} {platform.machine()}",
+    }

@@ -1,0 +1,168 @@
+"""The middle of a run: from a model and its equilibrium to recorded motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.model import Model, build_model
+from raceway.core.ring.orbit import Orbit
+from raceway.core.ring.start import at_rest, from_orbit, static_orbit
+from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.errors import StabilityError
+from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.starting import Start, chosen_start
+from raceway.planning.plan import make_plan
+from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn
+
+#: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
+OnProgress = Callable[[str, int, int], None]
+#: Part of the stable limit, taken at the stiffest tangent of the orbit, that "auto" steps take. Balls that leave and meet the
+#: races each turn pump motions up a little below the limit of the frozen tangent: one orbit at 0.885 of it grew in 49 turns.
+SAFETY = 0.8
+
+
+@attrs.frozen(eq=False)
+class Simulation:
+    """A recorded motion.
+
+    Attributes
+    ----------
+    record : the turns that identification uses;  whole : all of them
+    critical_time_step : 2 / (largest frequency of the stiffest state met) [s]
+    start : how it began
+    warnings : what a user should know
+    """
+
+    record: Record
+    whole: Record
+    critical_time_step: float | None
+    start: Start
+    warnings: tuple[str, ...]
+
+    @property
+    def orbits(self) -> list[dict[str, Any]]:
+        """``motion.orbits`` of result.json: the steady motions that were found; empty where none were looked for."""
+        return list(self.whole.counts.get("orbits", self.start.orbits))
+
+
+def simulate(
+    model: Model,
+    equilibrium: Equilibrium,
+    on_progress: OnProgress | None = None,
+    steps_per_turn: int | None = None,
+    begun: Simulation | None = None,
+    near: Simulation | None = None,
+    stay: bool = False,
+) -> Simulation:
+    """Integrate the plan's turns.
+
+    Parameters
+    ----------
+    steps_per_turn : instead of the scene's
+    begun : of the same scene with other steps, whose start is taken
+    near : of a similar scene by the same integrator, for integrators that can start from it
+    stay : on the motion of ``near`` where several may exist
+
+    Raises
+    ------
+    ConvergenceError, StabilityError
+        A failed integration, or an explicit step above its stable limit.
+    """
+    system, method, scene = model.system, model.scene.integrator.method, model.scene
+    period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
+    watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
+    begin = chosen_start(model, equilibrium, watch) if begun is None else begun.start
+    start, orbit, warnings = begin.kind, begin.orbit, begin.warnings
+    critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
+    steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
+    dt = period / steps_per_turn
+    if not method.implicit and critical is not None and dt >= critical:
+        least = int(period / (SAFETY * critical)) + 1
+        raise StabilityError(
+            f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s, above the stable limit of "
+            f"'{scene.integrator.kind}', {critical:.3g} s. Take at least {least}, or 'auto'.",
+            {"q": equilibrium.displacement, "ball": equilibrium.ball},
+        )
+    if not method.implicit and critical is not None and dt > SAFETY * critical * (1.0 + 1e-9):
+        warnings += (
+            f"the step is {dt / critical:.2f} of the stable limit, which belongs to one state: balls that lose and regain contact "
+            f"each turn can make the motion grow above {SAFETY} of it. Take {ceil(period / (SAFETY * critical))} steps per turn",
+        )
+    ramp_turns = _ramp_turns(model) if start == "ramp" else 0.0
+    ramp_turns = min(ramp_turns, float(model.plan.turns))
+    schedule = Schedule(
+        dt,
+        steps_per_turn,
+        model.plan.turns,
+        _stride(steps_per_turn, model.plan.turns, method.inertial),
+        ramp_turns * period,
+    )
+    motion = _motion(model, equilibrium, start, orbit, dt)
+    if near is not None:
+        motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
+    label = f"{scene.integrator.kind}, {schedule.steps} steps"
+    progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
+    whole = method.advance(system, motion, schedule, progress)
+    used = model.plan.turns - ceil(ramp_turns)
+    if start == "static" and method.inertial and not getattr(method, "steady", False):
+        used = max(model.plan.turns // 3, 1)
+    warnings += tuple(whole.counts.get("warnings", ()))
+    return Simulation(whole.last(max(used, 1)), whole, critical, begin, warnings)
+
+
+def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:
+    q, ball, system = equilibrium.displacement, equilibrium.ball, model.system.at_speed(0.0)
+    if getattr(model.scene.integrator.method, "steady", False):
+        # Searched for from the equilibrium: what would happen there under the force at once is of no use.
+        return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
+    if model.system.spin is not None and orbit is None:
+        q, ball, _ = system.settle(q)
+    if not model.scene.integrator.method.inertial:
+        return static_orbit(system, q, ball, start == "ramp")
+    if orbit is not None:
+        return from_orbit(system, orbit, dt)
+    return at_rest(system, q, ball, start == "ramp")
+
+
+def _ramp_turns(model: Model) -> float:
+    given = float(getattr(model.scene.excitation, "ramp_turns", 0.0))
+    return given if given > 0.0 else 2.0 * model.plan.turns / 3.0
+
+
+def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
+    """Stable limit of explicit steps at the stiffest of the states known before the run."""
+    tangents = [equilibrium.stiffness, *([] if orbit is None else orbit.stiffness)]
+    return min(model.system.critical_time_step(tangent) for tangent in tangents)
+
+
+def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
+    given = model.scene.integrator.steps_per_turn
+    if isinstance(given, int):
+        return given
+    if model.scene.integrator.method.implicit or critical is None:
+        return STEPS_PER_TURN
+    needed = ceil(period / (SAFETY * critical))
+    return STEPS_PER_TURN * max(1, ceil(needed / STEPS_PER_TURN))
+
+
+def _stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
+    """Every how many steps are recorded: a divisor that leaves the plan's samples a turn, or all when there is none."""
+    return steps_per_turn // recorded_per_turn(steps_per_turn, turns, inertial)
+
+
+def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[tuple[Model, Simulation]]:
+    """Model and simulation for each of the identifier's ``speeds_rpm`` of the whirl; spin and force stay the same."""
+    found = []
+    kinematics = attrs.evolve(model.scene.kinematics, spin_speed_rpm=model.scene.spin_speed * 30.0 / np.pi)
+    for rpm in model.scene.identifier.method.speeds_rpm:
+        given = model.scene.excitation
+        excitation = given.at_whirl(float(rpm)) if hasattr(given, "at_whirl") else attrs.evolve(given, speed_rpm=float(rpm))
+        scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
+        one = build_model(scene, make_plan(scene))
+        found.append((one, simulate(one, settle(one), on_progress)))
+    return found

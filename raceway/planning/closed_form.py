@@ -1,0 +1,68 @@
+"""Numbers of a bearing to a few tens of percent, from closed formulas: for plans and first guesses."""
+
+from __future__ import annotations
+
+from math import cos, log, pi, sin, sqrt
+
+from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.tables import Scene
+
+
+def series_factor(scene: Scene) -> float:
+    """K [N/m^1.5] of both races of a ball in series.
+
+    References
+    ----------
+    Hamrock, Brewe: Simplified solution for stresses and deformations, J. Lubr. Tech. 105 (1983): within 5 %.
+    """
+    b = scene.bearing
+    e = 1.0 / ((1 - b.rings.poisson**2) / b.rings.young + (1 - b.balls.poisson**2) / b.balls.young)
+    d, g = b.ball_diameter, b.ball_diameter * cos(b.contact_angle) / b.pitch_diameter
+    softness = 0.0
+    for f, rolling in ((b.conformity_inner, 2 * g / (1 - g)), (b.conformity_outer, -2 * g / (1 + g))):
+        along, across = (2.0 - 1.0 / f) / d, (2.0 + rolling) / d
+        ratio = across / along
+        ellipticity = 1.0339 * ratio**0.636
+        second, first = 1.0003 + 0.5968 / ratio, 1.5277 + 0.6023 * log(ratio)
+        factor = pi * ellipticity * 2.0 * e * sqrt(second / (along + across) / (4.5 * first**3))
+        softness += factor ** (-2.0 / 3.0)
+    return softness**-1.5
+
+
+def axial_approach(scene: Scene) -> tuple[float, float]:
+    """(x [m], load of a ball [N]) under the axial load alone, by bisection on the axial displacement."""
+    b = scene.bearing
+    factor, alpha = series_factor(scene), b.contact_angle
+    distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
+    target = abs(scene.load.axial)
+
+    def state(x: float) -> tuple[float, float]:
+        a, r = distance * sin(alpha) + x, distance * cos(alpha)
+        s = sqrt(a * a + r * r)
+        load = factor * max(s - distance, 0.0) ** 1.5
+        return b.ball_count * load * a / s, load
+
+    low, high = 0.0, distance
+    while state(high)[0] < target and high < 100.0 * distance:
+        high *= 2.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if state(middle)[0] < target else (low, middle)
+    return high, state(high)[1]
+
+
+def highest_frequency(scene: Scene) -> float:
+    """Largest natural frequency of the ring on its contacts [rad/s], roughly."""
+    b = scene.bearing
+    _, load = axial_approach(scene)
+    if scene.excitation is not None:
+        load += scene.excitation.amplitude_n * (5.0 / b.ball_count)  # of any size that is a number
+    normal = 1.5 * load / (load / series_factor(scene)) ** (2.0 / 3.0) if load > 0.0 else 1.0
+    mass, inertia, _ = ring_inertia(scene)
+    mass, inertia = mass + scene.rotor.mass, inertia + scene.rotor.transverse_inertia
+    alpha = b.contact_angle
+    best = b.ball_count * normal * max(sin(alpha) ** 2, 0.5 * cos(alpha) ** 2) / mass
+    if scene.supports.tilt != "locked" and inertia > 0.0:
+        shaft = scene.supports.tilt if isinstance(scene.supports.tilt, float) else 0.0
+        best = max(best, (0.5 * b.ball_count * normal * (sin(alpha) * b.pitch_diameter / 2.0) ** 2 + shaft) / inertia)
+    return sqrt(best) + 1e-6 * pi

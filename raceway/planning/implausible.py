@@ -1,0 +1,66 @@
+"""What a scene says that is possible and unlikely, as a rule in another unit; and what a run of it would fail at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import attrs
+
+from raceway.errors import Mistake
+from raceway.planning.closed_form import highest_frequency
+from raceway.planning.recording import turns_of
+from raceway.scene.tables import Scene
+
+#: Above this a length [m] and below this a Young's modulus [Pa] is told: bearings of 2 m exist, and cages of soft plastics.
+_LENGTH, _YOUNG = 1.0, 1e9
+#: How far the estimate of the highest frequency may be off.
+_ROUGH = 2.0
+_TABLES = ("bearing", "kinematics", "mesh", "supports")
+
+
+def implausible(scene: Scene) -> tuple[str, ...]:
+    """A sentence for each value that is likely to be in another unit."""
+    found = []
+    for table in _TABLES:
+        for path, unit, value in _numbers(getattr(scene, table), table):
+            if unit == "m" and abs(value) > _LENGTH:
+                found.append(f"`{path}` = {value:g} m is more than {_LENGTH:g} m: lengths are in metres")
+            if unit == "Pa" and value < _YOUNG:
+                found.append(f"`{path}` = {value:g} Pa is less than {1e-9 * _YOUNG:g} GPa: steel has 2.1e11 Pa")
+    return tuple(found)
+
+
+def _numbers(table: Any, path: str) -> Iterator[tuple[str, str, float]]:
+    """Path, unit and value of every number in a table and the tables in it."""
+    if table is None or not attrs.has(type(table)):
+        return
+    for field in attrs.fields(type(table)):
+        value = getattr(table, field.name)
+        if attrs.has(type(value)):
+            yield from _numbers(value, f"{path}.{field.name}")
+        elif isinstance(value, float) and "unit" in field.metadata:
+            yield f"{path}.{field.name}", field.metadata["unit"], value
+
+
+def foreseen(scene: Scene) -> list[Mistake]:
+    """What a run would fail at after it has begun, as far as closed formulas tell: for ``raceway check``."""
+    found = []
+    load, free = scene.load, scene.supports.axial != "displacement"
+    moment = any(load.moment) and scene.supports.tilt != "locked"
+    if free and not (load.axial or any(load.radial) or moment or scene.bearing.preload):
+        found.append(Mistake("load.axial", load.axial, "nothing loads the bearing: there is no stiffness to find"))
+    if scene.excitation is None or "record" not in scene.identifier.method.needs:
+        return found
+    window, turns = getattr(scene.identifier.method, "window_turns", None), turns_of(scene)
+    if window is not None and window > turns:
+        why = f"is longer than the record of {turns} turns: shorten it, or integrate more turns"
+        found.append(Mistake("identifier.window_turns", window, why))
+    steps = scene.integrator.steps_per_turn
+    if not scene.integrator.method.implicit and isinstance(steps, int) and scene.bodies.kind != "elastic":
+        period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
+        least = int(0.5 * period * highest_frequency(scene))
+        if steps * _ROUGH < least:
+            why = f"is far above the stable step of an explicit method: some {least} steps a turn are needed, 'auto' takes enough"
+            found.append(Mistake("integrator.steps_per_turn", steps, why))
+    return found

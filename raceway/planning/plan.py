@@ -1,0 +1,124 @@
+"""What a scene needs, what is left out and why, and what it will cost.  Nothing is built, meshed or compiled here.
+
+The model builder obeys the plan; it decides nothing of this by itself.  ``combinations`` refuses what cannot run,
+``part_plan`` decides part by part, ``module_plan`` module by module, ``recording`` counts steps and samples, ``wall_plan``
+predicts seconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import attrs
+
+from raceway.planning.combinations import refuse_what_cannot_run
+from raceway.planning.decisions import decide_balls, decide_bodies, decide_motion, decide_output, decide_tilts
+from raceway.planning.elastic import elastic_cost
+from raceway.planning.machine import slowness
+from raceway.planning.mesh import predicted_mesh
+from raceway.planning.modules import Module, as_dicts, optional_modules
+from raceway.planning.parts import Decisions, Part
+from raceway.planning.patches import patch_cost
+from raceway.planning.recording import refuse_memory
+from raceway.planning.wall_time import predicted_work
+from raceway.scene.tables import Scene
+
+
+@attrs.frozen
+class Plan:
+    """Decisions and predictions for one scene.
+
+    Attributes
+    ----------
+    balls : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
+    centrifugal, gyroscopic : whether the balls have these loads
+    coupled : whether condensed rings let balls act on each other
+    free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
+    turns : turns that are integrated
+    dofs : unknowns of the ring and of the balls
+    time_step_s : None in a static scene;  predicted_wall_s : of a whole run on this machine
+    predicted_work_s : the same on the machine whose times the plan knows: no machine's speed changes it
+    mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
+    modules : optional modules, and whether a run imports them
+    """
+
+    kept: tuple[Part, ...]
+    left_out: tuple[Part, ...]
+    balls: str
+    centrifugal: bool
+    gyroscopic: bool
+    coupled: bool
+    free: tuple[int, ...]
+    turns: int
+    dofs: int
+    time_step_s: float | None
+    predicted_steps: int
+    predicted_wall_s: float
+    predicted_work_s: float
+    mesh: dict[str, Any] | None = None
+    modules: tuple[Module, ...] = ()
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "kept": [attrs.asdict(p) for p in self.kept],
+            "left_out": [attrs.asdict(p) for p in self.left_out],
+            "dofs": self.dofs,
+            "time_step_s": self.time_step_s,
+            "predicted_steps": self.predicted_steps,
+            "predicted_wall_s": self.predicted_wall_s,
+            "mesh": self.mesh,
+            "modules": as_dicts(self.modules),
+        }
+
+
+def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
+    """Decide what a scene needs.
+
+    Parameters
+    ----------
+    force : parts that are kept although the scene does not need them: to measure what leaving them out saves
+
+    Raises
+    ------
+    SceneError
+        For combinations that cannot run, each with the reason and the remedy.
+    """
+    refuse_what_cannot_run(scene)
+    elastic = elastic_cost(scene) if scene.bodies.kind == "elastic" else None
+    nodal = scene.bodies.kind == "condensed" and scene.contact.discretisation == "nodal"
+    patches = patch_cost(scene) if nodal else None
+    parts = Decisions(force)
+    tilts = decide_tilts(scene, parts)
+    balls = decide_balls(scene, parts)
+    coupled = decide_bodies(scene, parts, elastic, patches)
+    motion = decide_motion(scene, parts, tilts, balls.friction)
+    decide_output(scene, parts, motion)
+    count = scene.bearing.ball_count * len(scene.bearing.rows)
+    if motion.recorded:
+        refuse_memory(scene, motion.turns, motion.steps_per_turn, count)
+    work = predicted_work(scene, balls, motion, coupled, elastic, patches)
+    free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
+    unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
+    return Plan(
+        kept=tuple(parts.kept),
+        left_out=tuple(parts.left_out),
+        balls=balls.kind,
+        centrifugal=balls.centrifugal,
+        gyroscopic=balls.gyroscopic,
+        coupled=coupled,
+        free=free,
+        turns=motion.turns,
+        dofs=unknowns if elastic is None else elastic.unknowns,
+        time_step_s=_period(scene) / motion.steps_per_turn if motion.recorded else None,
+        predicted_steps=motion.turns * motion.steps_per_turn,
+        predicted_wall_s=work if elastic is not None else work * slowness(),
+        predicted_work_s=work,
+        mesh=predicted_mesh(scene),
+        modules=optional_modules(scene, balls.kind, balls.centrifugal, motion.recorded),
+    )
+
+
+def _period(scene: Scene) -> float:
+    """Of the force [s]."""
+    return float(scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz)

@@ -1,0 +1,55 @@
+"""Which steady orbits of a scene are searched for, and what for."""
+
+from __future__ import annotations
+
+from raceway.scene.tables import Scene
+
+
+def searches_orbits(scene: Scene) -> bool:
+    """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
+    ramped = getattr(scene.excitation, "ramp_turns", 0.0) > 0.0
+    return scene.integrator.start == "orbit" and not ramped and has_orbits(scene)
+
+
+def has_orbits(scene: Scene) -> bool:
+    """Whether steady orbits of a transient, or of it without friction, can be searched for."""
+    method, excitation, contact = scene.integrator.method, scene.excitation, scene.contact
+    if excitation is None or getattr(method, "steady", False) or not method.inertial:
+        return False
+    repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
+    compiled = scene.bodies.kind != "elastic" and contact.discretisation != "nodal"
+    return repeats and compiled and contact.law.state_size == 0
+
+
+def remembers_its_start(scene: Scene) -> bool:
+    """Whether the answer depends on how the motion began, and a second run tells how far.
+
+    Notes
+    -----
+    With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
+    fits over several speeds no transient is estimated: a second run of them would tell nothing more.
+    """
+    if scene.excitation is None or scene.contact.friction == 0.0 or scene.bodies.kind == "elastic":
+        return False
+    needs = scene.identifier.method.needs
+    return "record" in needs and "speeds" not in needs
+
+
+def compares_with_steady_motion(scene: Scene) -> bool:
+    """Whether the error of a transient is its distance from the steady motion.
+
+    Notes
+    -----
+    A motion that starts on its orbit is near it already.  Bodies that are stepped from Python, friction and laws with memory
+    have no steady motion that can be solved for by itself.
+    """
+    method, excitation = scene.integrator.method, scene.excitation
+    if excitation is None or not method.inertial or getattr(method, "steady", False):
+        return False
+    steps_in_python = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
+    if steps_in_python or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
+        return False
+    if excitation.period_s is None:
+        return getattr(excitation, "steady", None) is not None
+    ramped = getattr(excitation, "ramp_turns", 0.0) > 0.0
+    return ramped or scene.integrator.start != "orbit" or "speeds" in scene.identifier.method.needs

@@ -1,0 +1,317 @@
+"""Reads a scene from TOML: presets, ``--set`` changes, plug-ins' options; all mistakes at once, each with its path."""
+
+from __future__ import annotations
+
+import copy
+import difflib
+import json
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import Mistake, PluginError, SceneError
+from raceway.framework.options import nearest
+from raceway.framework.registry import Registry, default_registry
+from raceway.scene.catalogue import preset
+from raceway.scene.requires import check_requires
+from raceway.scene.rig import Rig
+from raceway.scene.structure import structure
+from raceway.scene.tables import TABLES, Scene
+from raceway.storage.user_files import size_of
+
+#: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
+PLUGIN_TABLES = {
+    "excitation": ("excitation", None),
+    "mesh": ("mesher", "structured"),
+    "contact": ("contact_law", "hertz"),
+    "integrator": ("integrator", "newmark"),
+    "identifier": ("identifier", "fft_1x"),
+}
+#: Those of them that may be absent, which means something.
+OPTIONAL_TABLES = ("excitation", "mesh")
+#: Bytes of a scene file at most.
+_LONGEST = 2**24
+#: Likeness of two files' names from which one is taken for a slip of the other.
+_NEAR = 0.6
+#: Tables that a study reads beside the scene, which keeps them in ``source``.
+STUDY_TABLES: dict[str, type] = {"rig": Rig}
+
+
+def _tomls_in(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*.toml")) if folder.is_dir() else []
+
+
+def _scenes_in(folder: Path) -> list[str]:
+    """Names of the TOML files in a folder that have a bearing in them."""
+    found = []
+    for path in _tomls_in(folder):
+        try:
+            if "bearing" in tomllib.loads(path.read_text(encoding="utf-8")):
+                found.append(path.name)
+        except (OSError, ValueError):  # no text, no TOML
+            continue
+    return found
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """The tables of a TOML file.
+
+    Raises
+    ------
+    SceneError
+        A file that is missing, unreadable, empty or malformed, with the line.
+    """
+    path = Path(path)
+    try:
+        text = _text(path)
+    except FileNotFoundError:
+        # By the name itself: what ends in .toml is alike to a third already.
+        stems = {one.stem: one.name for one in _tomls_in(path.parent)}
+        close = difflib.get_close_matches(path.stem, list(stems), n=1, cutoff=_NEAR)
+        scenes = [] if close else _scenes_in(path.parent)
+        hint = f" (did you mean '{stems[close[0]]}'?)" if close else ""
+        hint += f"; scenes there: {', '.join(scenes[:5])}" if scenes else ""
+        raise SceneError.at(str(path), None, f"no such file{hint}") from None
+    except (OSError, UnicodeDecodeError) as why:
+        reason = "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else why.strerror or str(why)
+        raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+    if not text.strip():
+        raise SceneError.at(
+            str(path), None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)"
+        )
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as why:
+        raise SceneError.at(str(path), None, f"is not valid TOML: {why}") from None
+    except RecursionError:
+        raise SceneError.at(str(path), None, "cannot be read: lists or tables are nested too deep") from None
+    except ValueError:  # Python's limit for the digits of an integer
+        raise SceneError.at(str(path), None, "cannot be read: a number has thousands of digits") from None
+
+
+def _text(path: Path) -> str:
+    """Text of a scene; a byte order mark is left out.  ``OSError``, ``SceneError`` or ``UnicodeDecodeError`` where there is none."""
+    try:
+        size_of(path, _LONGEST)
+    except ValueError as why:
+        raise SceneError.at(str(path), None, str(why)) from None
+    return path.read_bytes().decode("utf-8-sig")
+
+
+def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry | None = None) -> Scene:
+    """A scene from a file, with ``key.path=value`` changes.
+
+    Raises
+    ------
+    SceneError
+        With every mistake that was found.
+    """
+    tables, parsed = read_toml(path), [parse_change(change) for change in changes]
+    for key, value in parsed:
+        tables = with_value(tables, key, value)
+    tables = titled(tables, Path(path).stem, parsed)
+    registry = registry or default_registry()
+    return scene_from_dict(with_paths(tables, Path(path).parent, registry), registry)
+
+
+def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> dict[str, Any]:
+    """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
+    result = copy.deepcopy(dict(tables))
+    for name, (kind, default) in PLUGIN_TABLES.items():
+        table = result.get(name)
+        if not isinstance(table, dict):
+            continue
+        word = table.get("kind", default)
+        if not isinstance(word, str) or word not in registry.names(kind) or (kind, word) in registry.shadowed():
+            continue
+        for field in attrs.fields(registry.find(kind, word).plugin):
+            value = table.get(field.name)
+            if field.metadata.get("path") and isinstance(value, str) and not Path(value).is_absolute():
+                table[field.name] = str(folder / value)
+    return result
+
+
+def titled(tables: Mapping[str, Any], name: str, changes: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """The tables with a title that says what was changed, in its second line: the first one tells of the file.
+
+    Parameters
+    ----------
+    name : the title where the file has none;  changes : keys and values, the last of a key holds
+
+    Notes
+    -----
+    Keys are sorted: changes in another order make the same scene, and folders are named by the title.
+    """
+    title = tables.get("title", name)
+    told = ", ".join(f"{key} = {_told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
+    if told and isinstance(title, str) and title.strip():
+        title += (", " if "\n" in title else "\n") + told
+    return {**tables, "title": title}
+
+
+def _told(value: Any) -> str:
+    """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
+    if isinstance(value, str):
+        return value
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 1e15
+    return json.dumps(int(value) if whole else value, default=str)
+
+
+def parse_change(text: str) -> tuple[str, Any]:
+    """``a.b=value`` as key and TOML value; what is not TOML is a string."""
+    key, sign, value = text.partition("=")
+    if not sign or not key.strip():
+        raise SceneError.at(text, None, "must have the form table.key=value, for instance load.axial=400")
+    return key.strip(), parse_value(value)
+
+
+def parse_value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"v = {text.strip()}")["v"]
+    except (ValueError, RecursionError):  # no TOML, too deep, or thousands of digits: whatever it is meant for refuses it
+        return text.strip()
+
+
+def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """A copy of the tables with one value set at a dotted key."""
+    result = copy.deepcopy(dict(tables))
+    *parents, last = key.split(".")
+    table: Any = result
+    for name in parents:
+        table = table.setdefault(name, {})
+        if not isinstance(table, dict):
+            raise SceneError.at(key, value, f"`{name}` is not a table")
+    table[last] = value
+    return result
+
+
+def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None) -> Scene:
+    """A scene from plain tables, as a TOML file would give them.
+
+    Raises
+    ------
+    SceneError
+        With every mistake that was found.
+    """
+    registry = registry or default_registry()
+    mistakes: list[Mistake] = []
+    known = [*TABLES, "excitation", "mesh", *STUDY_TABLES, "requires", "title"]
+    for name in tables:
+        if name not in known:
+            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
+    title = tables.get("title", "untitled")
+    if not isinstance(title, str) or not title.strip():
+        mistakes.append(Mistake("title", title, "must be a string that is not empty"))
+        title = "untitled"
+    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
+    for name in list(plain):
+        if name != "title" and not isinstance(plain[name], dict):
+            mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
+            plain[name] = {}
+    check_requires(plain.get("requires", {}), registry, mistakes)
+    if "bearing" in plain:
+        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
+    else:
+        mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
+    parts: dict[str, Any] = {}
+    for name, cls in TABLES.items():
+        if name in PLUGIN_TABLES or (name == "bearing" and name not in plain):
+            continue
+        parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
+    for name, (kind, default) in PLUGIN_TABLES.items():
+        parts[name] = None
+        if name in plain or name not in OPTIONAL_TABLES:
+            parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)
+    for name, cls in STUDY_TABLES.items():
+        if name in plain:
+            structure(plain[name], cls, name, mistakes)
+    if mistakes:
+        raise SceneError(mistakes)
+    return Scene(title=title, source=plain, **parts)
+
+
+def rig_of(scene: Scene) -> Rig:
+    """The table ``[rig]`` of a scene.
+
+    Raises
+    ------
+    SceneError
+        There is none.
+    """
+    if "rig" not in scene.source:
+        raise SceneError.at(
+            "rig", None, "is required: a table [rig] with shaft, disc and sensor (see examples/test_rig.toml)"
+        )
+    mistakes: list[Mistake] = []
+    rig = structure(scene.source["rig"], Rig, "rig", mistakes)
+    if rig is None:
+        raise SceneError(mistakes)
+    return rig
+
+
+def _with_preset(table: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
+    name = table.get("preset")
+    if name is None:
+        return table
+    try:
+        values = preset(name)
+    except SceneError as error:
+        mistakes += error.mistakes
+        return {**_PLACEHOLDER, **table, "preset": None}
+    merged = {**values, **table}
+    if "radial_clearance" in table and "contact_angle_deg" not in table:
+        merged["contact_angle_deg"] = 0.0
+    if "contact_angle_deg" in table and "radial_clearance" not in table:
+        merged.pop("radial_clearance", None)
+    for part in ("rings", "balls"):
+        if isinstance(table.get(part), dict):
+            merged[part] = {**values.get(part, {}), **table[part]}
+    return merged
+
+
+#: Stands in for a preset that does not exist, so that the other keys of the table are still checked.
+_PLACEHOLDER = {
+    "ball_diameter": 0.01,
+    "pitch_diameter": 0.05,
+    "ball_count": 8,
+    "conformity_inner": 0.52,
+    "conformity_outer": 0.52,
+}
+
+
+def _plugin_table(
+    name: str, kind: str, default: str | None, table: dict[str, Any], registry: Registry, mistakes: list[Mistake]
+) -> Any:
+    """The plug-in's options, or the core's table with the plug-in in its last attribute."""
+    word = table.get("kind", default)
+    names = registry.names(kind)
+    if word is None:
+        mistakes.append(Mistake(f"{name}.kind", None, f"is required: one of {', '.join(names) or '(none installed)'}"))
+        return None
+    if not isinstance(word, str):
+        mistakes.append(Mistake(f"{name}.kind", word, f"must be a string: one of {', '.join(names)}"))
+        return None
+    core = TABLES.get(name)
+    own = [] if core is None else [f.name for f in attrs.fields(core) if "plugin" not in f.metadata]
+    shared = {key: value for key, value in table.items() if key in own}
+    try:
+        plugin = registry.find(kind, word).plugin
+    except PluginError as error:
+        mistakes.append(Mistake(f"{name}.kind", word, str(error)))
+        if core is not None:
+            structure({k: v for k, v in shared.items() if k != "kind"}, core, name, mistakes)
+        return None
+    options = {key: value for key, value in table.items() if key not in own and key != "kind"}
+    known = [*own, *(a.name for a in attrs.fields(plugin))]
+    for key in [k for k in options if k not in known]:
+        rule = f"unknown key{nearest(key, known)}; known for kind '{word}': {', '.join(k for k in known if k != 'kind')}"
+        mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))
+    method = structure(options, plugin, name, mistakes)
+    if core is None:
+        return method
+    frame: Any = structure({**shared, "kind": word}, core, name, mistakes)
+    slot = next(f.name for f in attrs.fields(core) if "plugin" in f.metadata)
+    return None if frame is None or method is None else attrs.evolve(frame, **{slot: method})

@@ -1,0 +1,89 @@
+"""The inner ring as a solid: groove depth, mass, transverse inertia and growth from the bearing's dimensions."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from raceway.scene.tables import Scene
+
+
+def ring_inertia(scene: Scene) -> tuple[float, float, float]:
+    """Mass [kg], transverse and polar inertia [kg m2] of the inner ring, or of a pair's two; zeros when bore or width are not known.
+
+    Notes
+    -----
+    Of ``bearing.inner_profile``, or of a hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h); the groove
+    is cut out exactly.
+    """
+    moments = _moments(scene)
+    places = [place for _, place in scene.bearing.rows]
+    if moments is None:
+        return 0.0, 0.0, 0.0
+    mass, transverse, polar = (scene.bearing.rings.density * moment for moment in moments)
+    return mass * len(places), sum(transverse + mass * place**2 for place in places), polar * len(places)
+
+
+def _moments(scene: Scene) -> tuple[float, float, float] | None:
+    """Volume [m3] of one inner ring, transverse and polar inertia over density [m5]; None when bore or width are not known."""
+    b = scene.bearing
+    if b.inner_profile is not None:
+        from raceway.core.mesh.ring_shape import ring_shape
+
+        return ring_shape(b, True).moments
+    if b.bore is None or b.width is None:
+        return None
+    from raceway.core.mesh.ring_section import RingSection
+
+    return RingSection.of(b, shoulder_height(scene)).moments
+
+
+def radial_growth(scene: Scene) -> float:
+    """Radial growth of the inner raceway [m]: what the scene gives, and with ``ring_growth`` the centrifugal one.
+
+    Notes
+    -----
+    Of a free ring of the exact section, at the free contact angle.  Without a width the ring is taken for a plane-stress annulus
+    from the bore a to the land b, which grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).
+
+    References
+    ----------
+    Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
+    """
+    growth = scene.kinematics.radial_expansion
+    b = scene.bearing
+    if scene.kinematics.ring_growth and b.bore is not None and scene.spin_speed != 0.0:
+        growth += b.rings.density * scene.spin_speed**2 * _growth(b, shoulder_height(scene))
+    return growth
+
+
+@cache
+def _growth(b: Any, depth: float) -> float:
+    """Centrifugal growth [m] for 1 kg/m3 and 1 rad/s; ``b`` is a scene's [bearing], ``depth`` that of its grooves."""
+    young, poisson = b.rings.young, b.rings.poisson
+    if b.width is not None:
+        from raceway.core.mesh.ring_section import RingSection
+
+        return RingSection.of(b, depth).growth(young, poisson)
+    bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + depth
+    return float(land / (4.0 * young) * ((1.0 - poisson) * land**2 + (3.0 + poisson) * bore**2))
+
+
+def shoulder_height(scene: Scene) -> float:
+    """Depth of the grooves [m]: given, or 0.2 D."""
+    return scene.bearing.shoulder_height or 0.2 * scene.bearing.ball_diameter
+
+
+def load_at_edge(ellipse: Any, ball_radius: float, angle: float) -> float:
+    """Load of a ball [N] at which its contact ellipse reaches the groove's edge.
+
+    Parameters
+    ----------
+    ellipse : of the contact, with ``semi_axes(load)`` [m]
+    angle : from the contact to the edge, seen from the ball's centre [rad]
+
+    Notes
+    -----
+    The semi-major axis grows with the cube root of the load; the edge is reached where a = R angle.
+    """
+    return float((max(ball_radius * angle, 0.0) / float(ellipse.semi_axes(1.0)[0])) ** 3)

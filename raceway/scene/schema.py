@@ -1,0 +1,128 @@
+"""JSON schema (draft 2020-12) of a scene file, from the same declarations that check it.
+
+Editors use it for completion and for underlining mistakes.  It knows types, units, ranges, words and the options of every
+installed plug-in; rules between keys (balls that fit the pitch circle) are the loader's alone.
+"""
+
+from __future__ import annotations
+
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin
+
+import attrs
+
+from raceway.framework.registry import Registry, default_registry
+from raceway.scene.catalogue import catalogue
+from raceway.scene.file import PLUGIN_TABLES as PLUGIN_TABLES
+from raceway.scene.file import STUDY_TABLES
+from raceway.scene.tables import TABLES
+
+_TYPES = {float: "number", int: "integer", str: "string", bool: "boolean"}
+_LIMITS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
+
+
+def scene_schema(registry: Registry | None = None) -> dict[str, Any]:
+    """The schema of everything that this installation accepts, third-party plug-ins included."""
+    registry = registry or default_registry()
+    tables: dict[str, Any] = {"title": {"type": "string", "minLength": 1, "description": "for people and folder names"}}
+    for name, cls in TABLES.items():
+        if name not in PLUGIN_TABLES:
+            tables[name] = _bearing(cls) if name == "bearing" else _table(cls)
+    for name, (kind, default) in PLUGIN_TABLES.items():
+        tables[name] = _plugin_table(name, kind, default, registry)
+    for name, cls in STUDY_TABLES.items():
+        tables[name] = _table(cls)
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Raceway scene",
+        "description": "SI units; a key that is not SI base says so in its name (_rpm, _deg).",
+        "type": "object",
+        "properties": tables,
+        "required": ["bearing"],
+        "additionalProperties": False,
+    }
+
+
+def _table(cls: type) -> dict[str, Any]:
+    fields = keys(cls)
+    return {
+        "type": "object",
+        "properties": {field.name: key_schema(field) for field in fields},
+        "required": [field.name for field in fields if field.default is attrs.NOTHING],
+        "additionalProperties": False,
+    }
+
+
+def _bearing(cls: type) -> dict[str, Any]:
+    """Geometry is required unless a preset gives it."""
+    table = _table(cls)
+    table["anyOf"] = [{"required": ["preset"]}, {"required": table.pop("required")}]
+    table["properties"]["preset"]["enum"] = list(catalogue())
+    return table
+
+
+def _plugin_table(name: str, kind: str, default: str | None, registry: Registry) -> dict[str, Any]:
+    """One branch for each installed plug-in, told apart by ``kind``."""
+    usable = [e for e in registry.all() if e.kind == kind and (e.kind, e.name) not in registry.shadowed()]
+    branches = []
+    for entry in usable:
+        branch = _table(entry.plugin)
+        core = _table(TABLES[name])["properties"] if name in TABLES else {}
+        words = {"const": entry.name, "description": _first_line(entry.plugin)}
+        branch["properties"] = {**core, **branch["properties"], "kind": words}
+        if entry.name != default:
+            branch["required"].insert(0, "kind")
+        branches.append({"title": f"{name}: {entry.name}", **branch})
+    schema: dict[str, Any] = {"type": "object"}
+    if not branches:
+        return {**schema, "not": {}, "description": f"no {kind.replace('_', ' ')} is installed"}
+    kinds: dict[str, Any] = {"enum": [e.name for e in usable], **({} if default is None else {"default": default})}
+    return {**schema, "properties": {"kind": kinds}, "oneOf": branches}
+
+
+def keys(cls: type) -> list[Any]:
+    """The attrs fields of a class that a user can write, with resolved types."""
+    attrs.resolve_types(cls)
+    return [field for field in attrs.fields(cls) if "plugin" not in field.metadata and field.init]
+
+
+def key_schema(field: Any) -> dict[str, Any]:
+    """The schema of one key: type, range or words, default, help and unit."""
+    if attrs.has(field.type):
+        return {**_table(field.type), "description": field.metadata.get("help", "")}
+    facts = dict(getattr(field.validator, "facts", {}))
+    words = facts.pop("words", None)
+    kinds = [k for k in _members(field.type) if words is None or k is not str]
+    limits = {key: facts[key] for key in _LIMITS if key in facts}
+    forms = [_form(kind, limits if kind in (float, int) else {}) for kind in kinds]
+    if words is not None:
+        forms.append({"enum": words})
+    schema: dict[str, Any] = forms[0] if len(forms) == 1 else {"anyOf": forms}
+    if "enum" in facts:
+        schema["enum"] = facts["enum"]
+    unit, text = field.metadata.get("unit", ""), field.metadata.get("help", "")
+    schema["description"] = f"{text} [{unit}]" if unit else text
+    if field.default is not attrs.NOTHING and field.default is not None and not isinstance(field.default, attrs.Factory):  # type: ignore[arg-type]
+        schema["default"] = list(field.default) if isinstance(field.default, tuple) else field.default
+    return schema
+
+
+def _members(kind: Any) -> list[Any]:
+    if get_origin(kind) in (Union, UnionType):
+        return [member for member in get_args(kind) if member is not NoneType]
+    return [kind]
+
+
+def _form(kind: Any, limits: dict[str, float]) -> dict[str, Any]:
+    if get_origin(kind) is tuple and get_args(kind)[-1] is Ellipsis:
+        item = get_args(kind)[0]
+        return {"type": "array", "items": _form(item, limits)}
+    if get_origin(kind) is tuple:
+        count = len(get_args(kind))
+        return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}
+    return {"type": _TYPES[kind], **limits} if kind in _TYPES else {}
+
+
+def _first_line(plugin: type) -> str:
+    text = (plugin.__doc__ or "").strip()
+    return text.splitlines()[0] if text else ""

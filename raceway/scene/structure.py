@@ -1,0 +1,215 @@
+"""Turns the tables of a TOML file into attrs objects, strictly, and collects every mistake with its path.
+
+cattrs does the walking; here are the strict types (12.7 is not an integer, true is not a number, no NaN) and the
+translation of what it raises into ``Mistake``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, TypeVar, get_args
+
+import attrs
+import cattrs
+from cattrs.gen import make_dict_structure_fn, override
+
+from raceway.errors import Mistake
+from raceway.framework.options import nearest
+
+T = TypeVar("T")
+_MISSING = "is required"
+
+
+def _number(value: Any, _type: Any = None) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"must be a number, not {_kind(value)}")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError("must be a finite number")
+    return number
+
+
+def _integer(value: Any, _type: Any = None) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise ValueError(f"must be a whole number, not {_kind(value)}")
+    return value
+
+
+def _word(value: Any, _type: Any = None) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"must be a string, not {_kind(value)}")
+    return value
+
+
+def _switch(value: Any, _type: Any = None) -> bool:
+    if not isinstance(value, bool):
+        raise ValueError(f"must be true or false, not {_kind(value)}")
+    return value
+
+
+def _kind(value: Any) -> str:
+    names = {
+        bool: "true or false",
+        int: "a whole number",
+        float: "a number with a fraction",
+        str: "a string",
+        list: "a list",
+        dict: "a table",
+    }
+    return names.get(type(value), type(value).__name__)
+
+
+def _numbers(value: Any, _type: Any = None) -> tuple[float, ...]:
+    kinds = get_args(_type)
+    if len(kinds) == 2 and kinds[1] is Ellipsis:
+        if not isinstance(value, list | tuple):
+            raise ValueError(f"must be a list of numbers, not {_kind(value)}")
+        return tuple(_number(v) for v in value)
+    length = len(kinds)
+    if not isinstance(value, list | tuple) or len(value) != length:
+        raise ValueError(f"must be a list of {length} numbers")
+    return tuple(_number(v) for v in value)
+
+
+def _points(value: Any, _type: Any = None) -> tuple[tuple[float, float], ...] | None:
+    if value is None:
+        return None
+    if not isinstance(value, list | tuple) or not all(isinstance(p, list | tuple) and len(p) == 2 for p in value):
+        raise ValueError("must be a list of points, each a list of two numbers: [[0.0, 0.015], [0.008, 0.015], ...]")
+    return tuple((_number(p[0]), _number(p[1])) for p in value)
+
+
+def _number_or_word(value: Any, _type: Any = None) -> Any:
+    return value if isinstance(value, str) else _number(value)
+
+
+def _integer_or_word(value: Any, _type: Any = None) -> Any:
+    return value if isinstance(value, str) else _integer(value)
+
+
+def _optional(inner: Any) -> Any:
+    return lambda value, _type=None: None if value is None else inner(value, _type)
+
+
+_HOOKS: dict[Any, Any] = {
+    float: _number,
+    int: _integer,
+    str: _word,
+    bool: _switch,
+    tuple[float, float]: _numbers,
+    tuple[float, ...]: _numbers,
+    tuple[tuple[float, float], ...] | None: _points,
+    float | str: _number_or_word,
+    str | float: _number_or_word,
+    int | str: _integer_or_word,
+    float | None: _optional(_number),
+    int | None: _optional(_integer),
+    str | None: _optional(_word),
+}
+
+
+def _equal_to(kind: Any) -> Callable[[Any], bool]:
+    return lambda other: bool(other == kind)
+
+
+def _converter() -> cattrs.Converter:
+    converter = cattrs.Converter(detailed_validation=True, forbid_extra_keys=True)
+    for kind, hook in _HOOKS.items():
+        if isinstance(kind, type):  # plain types: cattrs looks at its own hooks before any predicate
+            converter.register_structure_hook(kind, hook)
+        else:
+            converter.register_structure_hook_func(_equal_to(kind), hook)
+
+    def factory(cls: type) -> Any:
+        attrs.resolve_types(cls)
+        overrides: dict[str, Any] = {
+            a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init
+        }
+        inner: Any = make_dict_structure_fn(
+            cls, converter, _cattrs_forbid_extra_keys=True, _cattrs_detailed_validation=True, **overrides
+        )
+
+        def structure(value: Any, target: Any) -> Any:
+            if not isinstance(value, dict):
+                raise ValueError(f"must be a table, not {_kind(value)}")
+            return inner(value, target)
+
+        return structure
+
+    converter.register_structure_hook_factory(attrs.has, factory)
+    return converter
+
+
+def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
+    """Type first, then the field's own rule, so that every field of a table is looked at."""
+
+    def hook(value: Any, _type: Any) -> Any:
+        if isinstance(value, list | dict) and attribute.metadata.get("no_list"):
+            raise ValueError(attribute.metadata["no_list"])
+        result = converter.structure(value, attribute.type)
+        if attribute.validator is not None:
+            attribute.validator(None, attribute, result)
+        return result
+
+    return hook
+
+
+_CONVERTER = _converter()
+
+
+def structure(table: Any, cls: type[T], path: str, mistakes: list[Mistake]) -> T | None:
+    """An object of an attrs class from a table; None when it has mistakes, which are appended.
+
+    Parameters
+    ----------
+    path : where the table stands, for messages: "bearing"
+    """
+    try:
+        return _CONVERTER.structure(table, cls)
+    except Exception as error:  # cattrs groups whatever the hooks and classes raise
+        mistakes.extend(_mistakes(error, table, cls, path))
+        return None
+
+
+def _mistakes(error: BaseException, value: Any, cls: Any, path: str) -> list[Mistake]:
+    if isinstance(error, cattrs.errors.ClassValidationError):
+        found: list[Mistake] = []
+        noted, plain = error.group_exceptions()
+        for inner, note in noted:
+            here = value.get(note.name) if isinstance(value, dict) else None
+            where = f"{path}.{note.name}" if path else note.name
+            if isinstance(inner, KeyError):
+                found.append(Mistake(where, None, f"{_MISSING}{_describe(cls, note.name)}"))
+            else:
+                found += _mistakes(inner, here, note.type, where)
+        for other in plain:
+            found += _mistakes(other, value, cls, path)
+        return found
+    if isinstance(error, cattrs.errors.ForbiddenExtraKeysError):
+        known = [a.name for a in attrs.fields(error.cl)]
+        return [
+            Mistake(
+                f"{path}.{key}" if path else key,
+                value.get(key),
+                f"unknown key{nearest(key, known)}; known here: {', '.join(known)}",
+            )
+            for key in sorted(error.extra_fields)
+        ]
+    if isinstance(error, cattrs.errors.BaseValidationError):
+        return [m for inner in error.exceptions for m in _mistakes(inner, value, cls, path)]
+    shown = None if isinstance(value, dict) else value
+    return [Mistake(path, shown, str(error))]
+
+
+def _describe(cls: Any, name: str) -> str:
+    if attrs.has(cls):
+        field = attrs.fields_dict(cls).get(name)
+        if field is not None:
+            unit = field.metadata.get("unit", "")
+            text = field.metadata.get("help", "")
+            return f": {text}{f' [{unit}]' if unit else ''}"
+    return ""

@@ -1,0 +1,362 @@
+"""The scene: what the user said, as a frozen tree of attrs objects, validated, SI.
+
+``raceway.scene.file`` reads it from TOML.  Each class here is one table of the file; a table with ``kind`` holds the
+chosen plug-in's own options in its last attribute.
+"""
+
+from __future__ import annotations
+
+from math import acos, asin, cos, degrees, pi, radians, sin
+from typing import Any
+
+import attrs
+
+from raceway.errors import MeshError
+from raceway.framework.options import (
+    at_least,
+    between,
+    finite,
+    inside,
+    length,
+    one_of,
+    option,
+    optional,
+    positive,
+    word_or,
+)
+
+
+@attrs.frozen
+class Material:
+    young: float = option(212e9, unit="Pa", help="Young's modulus", rule=positive())
+    poisson: float = option(0.29, help="Poisson's ratio", rule=inside(-1.0, 0.5))
+    density: float = option(7810.0, unit="kg/m3", help="density", rule=positive())
+
+
+@attrs.frozen
+class Bearing:
+    ball_diameter: float = option(unit="m", help="D", rule=length())
+    pitch_diameter: float = option(unit="m", help="d_m", rule=length())
+    ball_count: int = option(help="Z", rule=at_least(1))
+    conformity_inner: float = option(help="groove radius / ball diameter, inner", rule=inside(0.5, 1.0))
+    conformity_outer: float = option(help="groove radius / ball diameter, outer", rule=inside(0.5, 1.0))
+    contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0)))
+    radial_clearance: float | None = option(
+        None, unit="m", help="internal radial clearance as catalogues give it, on the diameter", rule=optional(at_least(0.0))
+    )
+    bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
+    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
+    width: float | None = option(None, unit="m", help="width", rule=optional(length()))
+    shoulder_height: float | None = option(
+        None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(length())
+    )
+    inner_profile: tuple[tuple[float, float], ...] | None = option(
+        None, unit="m", help="section of the inner ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+    )
+    outer_profile: tuple[tuple[float, float], ...] | None = option(
+        None, unit="m", help="section of the outer ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+    )
+    first_ball_azimuth_deg: float = option(0.0, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=finite())
+    tilt_arm: str = option(
+        "groove",
+        help="arm of tilts and moments: 'groove' (radius of the inner groove centres) or 'pitch' (half the pitch diameter)",
+        rule=one_of("groove", "pitch"),
+    )
+    arrangement: str = option(
+        "single",
+        help="'single' row, or a pair of rows: back to back 'DB', face to face 'DF', in tandem 'DT'",
+        rule=one_of("single", "DB", "DF", "DT"),
+    )
+    preload: float = option(
+        0.0,
+        unit="N",
+        help="axial preload of a DB or DF pair, mounted: at standstill, before anything grows",
+        rule=at_least(0.0),
+    )
+    preload_kind: str = option(
+        "rigid",
+        help="'rigid': the rows' offset stays as mounted; 'spring': the second row's force stays, its outer ring slides",
+        rule=one_of("rigid", "spring"),
+    )
+    row_distance: float | None = option(
+        None,
+        unit="m",
+        help="axial distance of a pair's rows, between the planes of their inner groove centres; default: the width of one bearing",
+        rule=optional(length()),
+    )
+    preset: str | None = option(None, help="name in the catalogue; other keys override it")
+    rings: Material = attrs.field(factory=Material, metadata={"help": "material of both rings"})
+    balls: Material = attrs.field(factory=Material, metadata={"help": "material of the balls"})
+
+    def __attrs_post_init__(self) -> None:
+        d, dm = self.ball_diameter, self.pitch_diameter
+        if d >= dm:
+            raise ValueError(f"`ball_diameter` = {d:g} m must be smaller than `pitch_diameter` = {dm:g} m")
+        if self.ball_count > 1 and sin(pi / self.ball_count) * dm < d:
+            most = int(pi / asin(d / dm))
+            raise ValueError(
+                f"`ball_count` = {self.ball_count} balls of {d:g} m do not fit a pitch circle of {dm:g} m: at most {most}"
+            )
+        if self.bore is not None and self.bore >= dm - d:
+            raise ValueError(f"`bore` = {self.bore:g} m cuts the inner raceway: it must be below d_m - D = {dm - d:g} m")
+        if self.outer_diameter is not None and self.outer_diameter <= dm + d:
+            raise ValueError(
+                f"`outer_diameter` = {self.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = {dm + d:g} m"
+            )
+        if self.shoulder_height is not None and self.shoulder_height >= 0.5 * d:
+            raise ValueError(
+                f"`shoulder_height` = {self.shoulder_height:g} m must be below half the ball's diameter, {0.5 * d:g} m: "
+                "no groove is deeper than its ball's centre"
+            )
+        self._check_clearance()
+        self._check_pair()
+        self._check_profiles()
+
+    def _check_profiles(self) -> None:
+        for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
+            if profile is not None:
+                from raceway.core.mesh.ring_shape import ring_shape
+
+                try:
+                    ring_shape(self, inner)
+                except MeshError as why:
+                    raise ValueError(str(why)) from None
+
+    def _check_pair(self) -> None:
+        if self.preload > 0.0 and self.arrangement not in ("DB", "DF"):
+            raise ValueError(f"`preload` = {self.preload:g} N needs a pair that braces itself: arrangement = 'DB' or 'DF'")
+        if self.arrangement != "single" and self.row_distance is None and self.width is None:
+            raise ValueError(f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`")
+
+    @property
+    def rows(self) -> tuple[tuple[float, float], ...]:
+        """(side, axial place [m]) of each row: side +1 is seated by a positive axial motion of the inner ring."""
+        half = 0.5 * (self.row_distance or self.width or 0.0)
+        pairs = {"DB": ((1.0, -half), (-1.0, half)), "DF": ((1.0, half), (-1.0, -half)), "DT": ((1.0, -half), (1.0, half))}
+        return pairs.get(self.arrangement, ((1.0, 0.0),))
+
+    def _check_clearance(self) -> None:
+        clearance, angle = self.radial_clearance, self.contact_angle_deg
+        distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+        if clearance is None:
+            return
+        if clearance >= 2.0 * distance:
+            raise ValueError(
+                f"`radial_clearance` = {clearance:g} m must be below twice the groove-centre distance, {2 * distance:g} m"
+            )
+        if not angle:
+            return
+        fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
+        if abs(fitting - clearance) > 1e-3 * distance:
+            own = degrees(acos(1.0 - clearance / (2.0 * distance)))
+            raise ValueError(
+                f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
+                f"clearance gives {own:.3f} deg, that angle {fitting:.4g} m. Give one of them"
+            )
+
+    @property
+    def contact_angle(self) -> float:
+        """Free contact angle [rad]: given, or from the radial clearance."""
+        if self.radial_clearance and not self.contact_angle_deg:
+            distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+            return acos(1.0 - self.radial_clearance / (2.0 * distance))
+        return radians(self.contact_angle_deg or 0.0)
+
+
+_AROUND = (
+    "must be one number: a seat that differs around the ring is not axisymmetric. Mesh what it sits in, with "
+    "bodies.kind = 'elastic'"
+)
+
+
+@attrs.frozen
+class Supports:
+    tilt: float | str = option(
+        "locked",
+        unit="N m/rad",
+        help="'locked', 'free' (massless shaft), or the shaft's stiffness against tilts",
+        rule=word_or(positive(), "locked", "free"),
+    )
+    axial: str = option(
+        "force",
+        help="'force': load.axial acts; 'displacement': what load.axial alone gives, mounted, is held",
+        rule=one_of("force", "displacement"),
+    )
+    outer_seat: float | str = option(
+        "rigid",
+        unit="N/m3",
+        help="outer cylinder: 'rigid' or the bed's stiffness",
+        rule=word_or(positive(), "rigid"),
+        no_list=_AROUND,
+    )
+    inner_seat: float | str = option(
+        "rigid", unit="N/m3", help="bore: 'rigid' or the bed's stiffness", rule=word_or(positive(), "rigid"), no_list=_AROUND
+    )
+
+
+@attrs.frozen
+class Rotor:
+    mass: float = option(0.0, unit="kg", help="carried by this bearing, added to the inner ring's own", rule=at_least(0.0))
+    transverse_inertia: float = option(
+        0.0, unit="kg m2", help="about the reference point, added to the ring's own", rule=at_least(0.0)
+    )
+    polar_inertia: float = option(
+        0.0, unit="kg m2", help="gyroscopic moments on the tilts, beside those of the inner ring", rule=at_least(0.0)
+    )
+    damping: float = option(0.0, unit="N s/m", help="viscous, on the translations", rule=at_least(0.0))
+
+
+@attrs.frozen
+class Load:
+    axial: float = option(0.0, unit="N", help="positive seats the bearing", rule=finite())
+    radial: tuple[float, float] = option((0.0, 0.0), unit="N", help="along y, z")
+    moment: tuple[float, float] = option((0.0, 0.0), unit="N m", help="about y, z")
+
+
+@attrs.frozen
+class Bodies:
+    kind: str = option("rigid", help="what deforms", rule=one_of("rigid", "condensed", "elastic"))
+    formulation: str = option(
+        "incompatible",
+        help="hexahedra of elastic bodies: 'one_point' with hourglass control, 'full' (2 x 2 x 2), with 'incompatible' modes",
+        rule=one_of("one_point", "full", "incompatible"),
+    )
+    hourglass: float = option(
+        0.05,
+        help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu; impacts want 0.005 and elements "
+        "of at most 0.6 of the contact's radius",
+        rule=positive(),
+    )
+
+
+@attrs.frozen
+class Kinematics:
+    orbiting: bool = option(False, help="balls travel at cage speed")
+    ball_inertia: bool = option(True, help="centrifugal force of the balls at cage speed")
+    gyroscopic: str = option(
+        "none", help="gyroscopic moment of the balls: the hypothesis", rule=one_of("none", "outer_race", "shared")
+    )
+    spin_speed_rpm: float | None = option(
+        None,
+        unit="r/min",
+        help="default: excitation.speed_rpm, which a run_up changes; 0 in a static scene",
+        rule=optional(between(0.0, 1e9)),
+    )
+    radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
+    ring_growth: bool = option(False, help="adds the centrifugal growth of the inner ring")
+
+
+@attrs.frozen
+class Contact:
+    kind: str = option("hertz", help="contact law")
+    discretisation: str = option(
+        "resultant", help="one force a ball-race pair, or pressure at points", rule=one_of("resultant", "nodal")
+    )
+    friction: float = option(0.0, help="Coulomb coefficient", rule=at_least(0.0))
+    stick_stiffness: float | None = option(
+        None,
+        unit="N/m",
+        help="of a sticking contact; default: of the contact ellipse along its major axis (Mindlin), at the ball load under the axial load",
+        rule=optional(positive()),
+    )
+    damping: float = option(0.0, unit="N s/m", help="normal, each contact", rule=at_least(0.0))
+    law: Any = attrs.field(default=None, metadata={"plugin": "contact_law"})
+
+
+@attrs.frozen
+class Integration:
+    kind: str = option("newmark", help="integrator")
+    turns: int = option(12, help="turns of the excitation", rule=between(1, 10_000_000))
+    steps_per_turn: int | str = option(
+        "auto", help="'auto': 360, or more where an explicit step needs it", rule=word_or(between(8, 100_000_000), "auto")
+    )
+    start: str = option(
+        "orbit",
+        help="'orbit': on the steady orbit; 'ramp': the force grows smoothly; 'static': a sudden load",
+        rule=one_of("orbit", "ramp", "static"),
+    )
+    method: Any = attrs.field(default=None, metadata={"plugin": "integrator"})
+
+
+@attrs.frozen
+class Identifying:
+    kind: str = option("fft_1x", help="identifier")
+    method: Any = attrs.field(default=None, metadata={"plugin": "identifier"})
+
+
+@attrs.frozen
+class Scene:
+    """One scene; ``source`` is the tree of plain tables it was made from, presets resolved."""
+
+    title: str
+    bearing: Bearing
+    supports: Supports
+    rotor: Rotor
+    load: Load
+    excitation: Any
+    bodies: Bodies
+    mesh: Any
+    contact: Contact
+    kinematics: Kinematics
+    integrator: Integration
+    identifier: Identifying
+    source: dict[str, Any] = attrs.field(repr=False, eq=False)
+
+    @property
+    def spin_speed(self) -> float:
+        """Speed of the inner ring [rad/s]."""
+        rpm = self.kinematics.spin_speed_rpm
+        if rpm is None:
+            rpm = getattr(self.excitation, "speed_rpm", 0.0) if self.excitation is not None else 0.0
+        return rpm * pi / 30.0
+
+    @property
+    def spin_changes(self) -> bool:
+        """Whether the spin speed is that of an excitation that changes its speed, and changes with it."""
+        excitation = self.excitation
+        changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
+        return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
+
+    def as_dict(self) -> dict[str, Any]:
+        """Every key of the scene file with its value, defaults too; loads again as the same scene."""
+        tables: dict[str, Any] = {"title": self.title}
+        for name in TABLES:
+            part = getattr(self, name)
+            if part is not None:
+                tables[name] = _plain(part)
+        if self.excitation is not None:
+            tables["excitation"] = {"kind": self.excitation.name, **_plain(self.excitation)}
+        if self.mesh is not None:
+            tables["mesh"] = {"kind": self.mesh.name, **_plain(self.mesh)}
+        return tables
+
+
+#: The tables of a scene file, in the order in which people write them.
+TABLES: dict[str, type] = {
+    "bearing": Bearing,
+    "supports": Supports,
+    "rotor": Rotor,
+    "load": Load,
+    "bodies": Bodies,
+    "contact": Contact,
+    "kinematics": Kinematics,
+    "integrator": Integration,
+    "identifier": Identifying,
+}
+
+
+def _plain(part: Any) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    for field in attrs.fields(type(part)):
+        value = getattr(part, field.name)
+        if "plugin" in field.metadata:
+            out.update(_plain(value))
+        elif attrs.has(type(value)):
+            out[field.name] = _plain(value)
+        elif value is not None:
+            out[field.name] = _lists(value)
+    return out
+
+
+def _lists(value: Any) -> Any:
+    return [_lists(part) for part in value] if isinstance(value, tuple) else value

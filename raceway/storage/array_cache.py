@@ -1,0 +1,263 @@
+"""Arrays that are expensive to make, kept on disk under a key of everything that they depend on.
+
+One file an entry: a line of JSON (what it is, arrays, digest) and the arrays' bytes.  A file is written beside its place
+and moved there, so that two processes may make the same entry at once; a file that does not match its digest, of which its
+key is a part, is made anew.  A folder that others may write is not used.
+What was used last stays when the folder grows above its limit.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import time
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from uuid import uuid4
+
+import attrs
+
+from raceway.storage.cache_folder import cache_root, refusal
+from raceway.storage.cache_folder import make as make_folder
+
+if TYPE_CHECKING:
+    import numpy as np
+
+#: Bytes that all entries may take together; the least recently used ones go first.
+LIMIT = 2**30
+_SUFFIX, _FORMAT = ".arrays", 2
+#: Age [s] at which a file that is being written has no writer any more.
+_ABANDONED = 3600.0
+
+
+def folder() -> Path:
+    """Where the entries are; it need not exist."""
+    return cache_root() / "arrays"
+
+
+def kept(
+    kind: str, what: str, inputs: Mapping[str, Any], sources: Iterable[str], make: Callable[[], Mapping[str, np.ndarray]]
+) -> dict[str, np.ndarray]:
+    """The arrays that ``make`` returns, from the cache where they are there.
+
+    Parameters
+    ----------
+    kind : what sort of entry, one word
+    what : one short line for people
+    inputs : everything that the arrays depend on, by name: numbers, strings, None, arrays, and sequences of these
+    sources : files or folders of this package, such as "core/revolution", whose code makes the arrays
+    make : makes them, when they are not there
+
+    Returns
+    -------
+    arrays : name -> array, C-contiguous; those from the cache are read-only
+
+    Notes
+    -----
+    A folder that cannot be written, or must not be used, costs one warning a process and nothing else.
+    """
+    if fault := refusal(folder()):
+        _warn_refused(fault)
+        return _contiguous(make())
+    path = folder() / f"{_key(kind, inputs, tuple(sources))}{_SUFFIX}"
+    found = _read(path)
+    if found is not None:
+        return found
+    start = time.process_time()
+    made = _contiguous(make())
+    _write(path, kind, what, made, time.process_time() - start)
+    return made
+
+
+@attrs.frozen
+class Entry:
+    """One entry: sort, what it is, bytes, CPU seconds that it took to make, when it was last used [s since 1970]."""
+
+    kind: str
+    what: str
+    bytes: int
+    made_in_s: float
+    used: float
+
+
+def entries() -> list[Entry]:
+    """All entries, those used last first; damaged ones are called so.
+
+    Raises
+    ------
+    OSError
+        A folder that cannot be listed.
+    """
+    out = []
+    for path in _files():
+        with suppress(FileNotFoundError):
+            status = path.stat()
+            try:
+                with path.open("rb") as file:
+                    head = json.loads(file.readline())
+                entry = Entry(str(head["kind"]), str(head["what"]), status.st_size, float(head["seconds"]), status.st_mtime)
+            except (ValueError, KeyError, TypeError):
+                entry = Entry("damaged", path.name, status.st_size, 0.0, status.st_mtime)
+            out.append(entry)
+    return sorted(out, key=lambda e: -e.used)
+
+
+def clear() -> None:
+    """Remove every entry.
+
+    Raises
+    ------
+    OSError
+        What cannot be removed.
+    """
+    if folder().exists():
+        shutil.rmtree(folder())
+
+
+def _files() -> list[Path]:
+    return sorted(folder().glob(f"*{_SUFFIX}")) if folder().is_dir() else []
+
+
+def _key(kind: str, inputs: Mapping[str, Any], sources: tuple[str, ...]) -> str:
+    digest = hashlib.sha256(f"{_FORMAT} {kind} {_source_key(sources)}".encode())
+    for name in sorted(inputs):
+        digest.update(f"\n{name}=".encode())
+        _add(digest, inputs[name])
+    return digest.hexdigest()[:32]
+
+
+def _add(digest: Any, value: Any) -> None:
+    """One input into the digest, so that no two different inputs give the same bytes."""
+    if value is None or isinstance(value, str | bool | int | float):
+        digest.update(f"{type(value).__name__}:{value!r};".encode())
+        return
+    import numpy as np
+
+    if isinstance(value, np.ndarray):
+        array = np.ascontiguousarray(value)
+        digest.update(f"{array.dtype.str}{array.shape};".encode())
+        digest.update(array.tobytes())
+    elif isinstance(value, np.generic):
+        _add(digest, value.item())
+    elif isinstance(value, list | tuple):
+        digest.update(f"[{len(value)}".encode())
+        for part in value:
+            _add(digest, part)
+    else:
+        raise TypeError(f"{type(value).__name__} cannot be part of a cache's key")
+
+
+@cache
+def _source_key(sources: tuple[str, ...]) -> str:
+    digest = hashlib.sha256()
+    root = Path(__file__).resolve().parents[1]
+    for name in sorted(sources):
+        place = root / name
+        for path in sorted(place.rglob("*.py")) if place.is_dir() else [place]:
+            digest.update(path.relative_to(root).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _contiguous(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    import numpy as np
+
+    return {name: np.ascontiguousarray(array) for name, array in arrays.items()}
+
+
+def _read(path: Path) -> dict[str, np.ndarray] | None:
+    """The arrays of a file; None when there is none, or a damaged one, which is said and removed."""
+    import numpy as np
+
+    try:
+        with path.open("rb") as file:
+            line = file.readline()
+            body = file.read()
+    except OSError:
+        return None
+    try:
+        head = json.loads(line)
+        if head["digest"] != _digest(path.stem, head["arrays"], body):
+            raise ValueError("the digest differs")
+        out, at = {}, 0
+        for name, (kind, shape) in head["arrays"].items():
+            count = int(np.prod(shape, dtype=np.int64))
+            out[name] = np.frombuffer(body, dtype=np.dtype(kind), count=count, offset=at).reshape(shape)
+            at += out[name].nbytes
+    except (ValueError, KeyError, TypeError) as why:
+        warnings.warn(f"{path} is damaged ({why}): its content is made anew", RuntimeWarning, stacklevel=3)
+        with suppress(OSError):
+            path.unlink()
+        return None
+    with suppress(OSError):
+        os.utime(path)
+    return out
+
+
+def _digest(key: str, arrays: dict[str, Any], body: bytes) -> str:
+    digest = hashlib.blake2b(f"{key} {json.dumps(arrays)}".encode(), digest_size=16)
+    digest.update(body)
+    return digest.hexdigest()
+
+
+def _write(path: Path, kind: str, what: str, arrays: Mapping[str, np.ndarray], seconds: float) -> None:
+    body = b"".join(array.tobytes() for array in arrays.values())
+    words = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
+    digest = _digest(path.stem, words, body)
+    head = {"kind": kind, "what": what, "seconds": round(seconds, 3), "digest": digest, "arrays": words}
+    scratch = path.with_name(f".{path.stem}.{os.getpid()}.{uuid4().hex[:8]}")
+    try:
+        make_folder(path.parent)
+        with scratch.open("wb") as file:
+            file.write(json.dumps(head).encode() + b"\n")
+            file.write(body)
+        scratch.replace(path)
+    except OSError as why:
+        with suppress(OSError):
+            scratch.unlink()
+        _warn_unwritable(str(path.parent), why.strerror or str(why))
+        return
+    _trim(path)
+
+
+def _trim(newest: Path) -> None:
+    """Remove the least recently used entries above the limit, and what killed processes left; the newest entry stays."""
+    found = []
+    for scratch in newest.parent.glob(".*"):
+        with suppress(OSError):
+            if time.time() - scratch.stat().st_mtime > _ABANDONED:
+                scratch.unlink()
+    for path in _files():
+        with suppress(OSError):
+            status = path.stat()
+            found.append((path == newest, status.st_mtime, status.st_size, path))
+    total = sum(size for _, _, size, _ in found)
+    for fresh, _, size, path in sorted(found, key=lambda f: f[:2]):
+        if total <= LIMIT or fresh:
+            break
+        with suppress(OSError):
+            path.unlink()
+            total -= size
+
+
+@cache
+def _warn_unwritable(place: str, why: str) -> None:
+    warnings.warn(
+        f"compliances cannot be kept in {place} ({why}); every run makes them anew, which costs seconds. Set "
+        "RACEWAY_CACHE_DIR to a folder that can be written.",
+        RuntimeWarning,
+        stacklevel=4,
+    )
+
+
+@cache
+def _warn_refused(fault: str) -> None:
+    warnings.warn(
+        f"compliances are not kept: {fault}. Every run makes them anew, which costs seconds.", RuntimeWarning, stacklevel=4
+    )

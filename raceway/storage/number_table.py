@@ -1,0 +1,136 @@
+"""Tables of numbers from CSV files: a header line and finite numbers below it, read in parts of some megabytes."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+import attrs
+
+from raceway.storage.user_files import size_of
+
+if TYPE_CHECKING:
+    import numpy as np
+
+#: Bytes of the largest file.  A number of ten digits takes 8 bytes in memory, and readers make two to three copies.
+LARGEST = 2**29
+#: Characters that are parsed at once, and of a wrong line that are shown.
+_PART, _SHOWN = 2**22, 60
+#: Longest interval that is bridged, over the usual one.
+_GAP = 5.0
+
+
+@attrs.frozen(eq=False)
+class NumberTable:
+    """``header``: the columns' names; ``values`` (n, k); ``lines`` (n,): the number of each row's line in the file."""
+
+    header: list[str]
+    values: np.ndarray
+    lines: np.ndarray
+
+    def refuse_uneven(self, time: np.ndarray) -> None:
+        """``ValueError`` where the times (n,) [s] of the rows do not grow, or leave a gap."""
+        import numpy as np
+
+        steps = np.diff(time)
+        usual = float(np.median(steps))
+        for place in np.flatnonzero((steps <= 0.0) | (steps > _GAP * usual))[:1]:
+            line, before, after = self.lines[place + 1], time[place], time[place + 1]
+            if after <= before:
+                raise ValueError(f"line {line}: time must grow, {after:g} s follows {before:g} s")
+            gap = f"a gap of {after - before:.3g} s where samples are usually {usual:.3g} s apart"
+            raise ValueError(f"line {line}: {gap}: cut the record there")
+
+
+def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTable:
+    """The table of a file; empty lines are left out.
+
+    Parameters
+    ----------
+    judge : of the header, before the rows are read; it raises ``ValueError``
+
+    Raises
+    ------
+    ValueError
+        What is wrong with the file, with the line; the sentence follows the file's name.
+    OSError
+        A file that cannot be opened.
+    """
+    import numpy as np
+
+    size_of(path, LARGEST)
+    try:
+        with open(path, encoding="utf-8-sig") as stream:
+            line, header = _header(stream)
+            if not header:
+                raise ValueError("is empty: a header line and samples are needed")
+            judge(header)
+            most = _lines_of(path)
+            values, lines = np.empty((most, len(header))), np.empty(most, dtype=np.int64)
+            count = 0
+            for rows, numbers in _parts(stream, line):
+                end = count + len(rows)
+                values[count:end], lines[count:end] = _values(rows, numbers, len(header)), numbers
+                count = end
+    except (UnicodeDecodeError, csv.Error):
+        raise ValueError("cannot be read: it is not a text file of comma-separated values") from None
+    return NumberTable(header, values[:count], lines[:count])
+
+
+def _lines_of(path: Path) -> int:
+    """At least as many as Python's text files have: each line ends in one or two of these signs, but perhaps the last."""
+    with open(path, "rb") as stream:
+        return 1 + sum(part.count(b"\n") + part.count(b"\r") for part in iter(lambda: stream.read(_PART), b""))
+
+
+def _header(stream: TextIO) -> tuple[int, list[str]]:
+    """Number and words of the first line that is not empty."""
+    number = 0
+    while text := stream.readline():
+        number += 1
+        if text.strip():
+            return number, [word.strip() for word in next(csv.reader([text]))]
+    return number, []
+
+
+def _parts(stream: TextIO, line: int) -> Iterator[tuple[list[str], np.ndarray]]:
+    """Rows below line ``line`` and the numbers of their lines, part by part."""
+    import numpy as np
+
+    while found := stream.readlines(_PART):
+        numbers = np.arange(line + 1, line + 1 + len(found))
+        line += len(found)
+        filled = [text for text in found if text.strip()]
+        if len(filled) < len(found):
+            numbers = numbers[[bool(text.strip()) for text in found]]
+        if filled:
+            yield filled, numbers
+
+
+def _values(rows: list[str], numbers: np.ndarray, width: int) -> np.ndarray:
+    """(n, width) of lines of text; numpy's reader does not say which line it stumbles over."""
+    import numpy as np
+
+    try:
+        values = np.loadtxt(rows, delimiter=",", comments=None, quotechar='"', ndmin=2)
+        if values.shape == (len(rows), width) and np.isfinite(values).all():
+            return values
+    except ValueError:
+        pass
+    return np.array([_row(text, number, width) for text, number in zip(rows, numbers, strict=True)])
+
+
+def _row(text: str, number: int, width: int) -> list[float]:
+    shown = text.strip()[:_SHOWN]
+    try:
+        values = [float(word) for word in next(csv.reader([text]))]
+    except ValueError:
+        values = []
+    if len(values) != width:
+        raise ValueError(f"line {number}: {width} numbers are needed, found {shown!r}")
+    if not all(math.isfinite(value) for value in values):
+        raise ValueError(f"line {number}: a sample is missing ({shown}): cut the record there")
+    return values

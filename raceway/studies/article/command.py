@@ -1,0 +1,127 @@
+"""``raceway study article``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Any
+
+import click
+from click.core import ParameterSource
+
+from raceway.commands.console import warn
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_option,
+    plugin_files,
+    processes_at_a_time,
+    registry_with,
+    scene_if_any,
+    set_keys,
+    show,
+    show_progress,
+)
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
+from raceway.errors import ConvergenceError, SceneError
+
+
+@click.command(short_help="The article's figures 9 to 12 and a verdict on each of its claims.")
+@scene_if_any
+@click.option(
+    "--bodies",
+    type=click.Choice(["rigid", "condensed", "both"]),
+    default="both",
+    show_default=True,
+    help="What deforms: only the contacts, or finite-element rings and balls, too.",
+)
+@click.option(
+    "--speeds", default="10980:15000:9", show_default=True, metavar="LIST", help="r/min; a,b,c or start:stop:count."
+)
+@click.option("--axial", default="400:2000:9", show_default=True, metavar="LIST", help="Axial loads in N.")
+@click.option("--shaft", type=float, metavar="N·M/RAD", help="Tilt stiffness of the shaft [the scene's, or the rig's].")
+@click.option(
+    "--friction",
+    type=float,
+    metavar="MU",
+    help="Coulomb coefficient of the runs with friction [the scene's, or 0.03]; 0: none.",
+)
+@processes_at_a_time
+@set_keys
+@out_option(f"{RESULTS}/article")
+@click.option("--pictures/--no-pictures", default=True, help="Draw figures and write the page (default).")
+@plugin_files
+@common
+def article(
+    scene: Path | None,
+    bodies: str,
+    speeds: str,
+    axial: str,
+    shaft: float | None,
+    friction: float | None,
+    processes: int,
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Compute the article's figures 9 to 12 and say which of its claims hold, and where.
+
+    SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
+    friction and integrator are set by the study. Writes article.html, which opens from a file without a network, its figures as PNG,
+    article.json and CSV tables. Finished curves are kept in DIR/article-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway study article --bodies rigid --friction 0
+      raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000
+    """  # fmt: skip
+    registry = registry_with(plugins)
+    tables: dict[str, Any] | None = None
+    if scene is not None or changes:
+        from raceway.studies.article.design import ARTICLE
+
+        tables, mistakes = changed_tables(scene or ARTICLE, changes, registry)
+        if mistakes:
+            raise SceneError(mistakes)
+    command = _command(click.get_current_context())
+    name = "article" if scene is None else f"{slug(str((tables or {})['title']))}-article"
+    folder = writable(out or RESULTS / name)
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    kept = folder / "article-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.studies.article.study import article as study
+
+        kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
+        try:
+            found = study(tables, speeds, axial, shaft, kinds, friction, processes, kept, registry, plugins, progress)
+        except KeyboardInterrupt:
+            warn(f"finished curves are kept in {kept}; the same command goes on from there", label="")
+            raise
+        progress("writing", 0, 0)
+        content, files = found.as_dict(), list[str]()
+        failed = attempt(lambda: found.write(folder, pictures, command), files) or found.fault
+    if failed is None and all(row["status"] == "failed" for row in content["rows"]):
+        failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")
+    from raceway.studies.article.screen import article_screen
+
+    show(content, as_json, failed, lambda: article_screen(content, files))
+    return 0
+
+
+def _command(context: click.Context) -> str:
+    """What was typed, as far as it decides the numbers; of a path from the root only the name."""
+    words = ["raceway", "study", "article"]
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        typed = context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+        if not typed or name not in context.params or name in ("out", "processes", "pictures", "as_json"):
+            continue
+        value = context.params[name]
+        for one in value if parameter.multiple else (value,):
+            text = one.name if isinstance(one, Path) and one.is_absolute() else str(one)
+            words += [text] if isinstance(parameter, click.Argument) else [parameter.opts[0], text]
+    return shlex.join(words)

@@ -1,0 +1,77 @@
+"""``raceway compare``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    on_scene,
+    out_folder,
+    plugin_files,
+    registry_with,
+    show,
+    show_progress,
+)
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
+from raceway.errors import SceneError
+
+
+@click.command(short_help="One scene, some keys varied, everything else the same.")
+@on_scene
+@click.option("--vary", multiple=True, required=True, metavar="A.B=X,Y", help="Values x,y,z or a range start:stop:count.")
+@out_folder
+@click.option("--pictures/--no-pictures", default=True, help="Write the curves as PNG (default).")
+@plugin_files
+@common
+def compare(
+    scene: Path,
+    vary: tuple[str, ...],
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Vary some keys of a scene and say which of them causes what: main effects and interactions.
+
+    \b
+    Example:
+      raceway compare examples/b7206.toml --set integrator.kind=periodic \\
+          --vary excitation.kind=unidirectional,bidirectional --vary excitation.speed_rpm=10980:15000:5
+    """
+    registry = registry_with(plugins)
+    tables, mistakes = changed_tables(scene, changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    title = str(tables["title"])
+    folder = writable(out or RESULTS / f"{slug(title)}-compare")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.pipeline.result import write_json
+        from raceway.studies.compare.study import compare as study
+
+        stopped = None
+        try:
+            comparison = study(tables, list(vary), registry, progress)
+        except KeyboardInterrupt as stop:
+            partial = getattr(stop, "partial", None)
+            if partial is None or not partial.rows:
+                raise
+            comparison, stopped = partial, stop  # what is finished is shown and written first
+    content = comparison.as_dict()
+    files: list[str] = []
+    failed = attempt(lambda: [write_json(content, folder / "compare.json")], files)
+    if pictures and failed is None and stopped is None:
+        failed = attempt(lambda: comparison.picture(folder), files)
+    from raceway.studies.compare.screen import compare_screen
+
+    show(content, as_json, failed, lambda: compare_screen(title, comparison.table(), comparison.words, files))
+    if stopped is not None:
+        raise stopped
+    return 0

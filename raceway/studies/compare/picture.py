@@ -1,0 +1,206 @@
+"""The picture of a comparison: K(w) and |Z| as small multiples."""
+
+from __future__ import annotations
+
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.framework.options import between, option
+from raceway.plugins.reports.pictures import new_figure, save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b")
+_LINES = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)))
+_MARKERS = ("o", "s", "^", "D", "v", "P")
+_LABELS = {"equivalent_stiffness": "K(w)", "dynamic_stiffness": "|Z|"}
+_MOST_COLUMNS = 4
+
+
+@attrs.frozen
+class ComparisonPicture:
+    """K(w) above |Z| over the axis of numbers with most values; without one, a dot for each run.
+
+    Columns are the values of the axis that interacts with it most; colour, line and marker those of the next ones.
+    """
+
+    name: ClassVar[str] = "comparison"
+
+    dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
+
+    def write(self, result: Any, folder: Any) -> list[Path]:
+        """Draw comparison.png.
+
+        Parameters
+        ----------
+        result : the tables of ``raceway compare``: title, axes, rows, effects, trends
+        folder : path, made when it is missing
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        figure = draw(result)
+        return [save_figure(figure, Path(folder) / "comparison.png", self.dots_per_inch)]
+
+
+def draw(result: dict[str, Any]) -> Figure:
+    """The figure of a comparison."""
+    axes = {axis["key"]: axis["values"] for axis in result["axes"]}
+    varied = [key for key, values in axes.items() if len(values) > 1]
+    numeric = [key for key in varied if all(_is_number(v) for v in axes[key])]
+    along = max(numeric, key=lambda key: len(axes[key]), default=None)
+    if along is None:
+        return _dots(result, varied)
+    others = _by_interaction([key for key in varied if key != along], along, result["effects"])
+    column = next((key for key in others[:1] if len(axes[key]) <= _MOST_COLUMNS), None)
+    styles = {key: [_text(v) for v in axes[key]] for key in others if key != column}
+    columns = [_text(v) for v in axes[column]] if column else [""]
+    figure = new_figure(12.8, 7.6)
+    panels = figure.subplots(2, len(columns), sharex=True, sharey="col", squeeze=False)
+    for place, value in enumerate(columns):
+        rows = [row for row in result["rows"] if column is None or _text(row["point"][column]) == value]
+        low, high = _limits(rows)
+        for quantity, panel in zip(_LABELS, panels[:, place], strict=True):
+            _curves(panel, rows, quantity, along, styles, (low, high))
+            panel.set_ylabel(f"{_LABELS[quantity]}  [N/um]" if place == 0 else "")
+        panels[0, place].set_title(f"{column} = {value}" if column else "", fontsize=12)
+        panels[-1, place].set_xlabel(along)
+    figure.suptitle(f"K(w) and |Z| over {along}: {result['title']}", fontsize=13)
+    _legend(figure, styles, any(map(in_doubt, result["rows"])))
+    return figure
+
+
+def value_of(row: dict[str, Any], quantity: str) -> float | None:
+    """K(w) or |Z| of a row [N/um]; None where the run gave none."""
+    found = row["result"].get("identification")
+    if found is None:
+        return None
+    value = found["dynamic_stiffness"]["abs"] if quantity == "dynamic_stiffness" else found["equivalent_stiffness"]
+    return None if value is None else value / 1e6
+
+
+def in_doubt(row: dict[str, Any]) -> bool:
+    """Whether a row with a number is left out of the explanation."""
+    return row.get("doubt") is not None and value_of(row, "equivalent_stiffness") is not None
+
+
+def _curves(
+    panel: Axes,
+    rows: list[dict[str, Any]],
+    quantity: str,
+    along: str,
+    styles: dict[str, list[str]],
+    limits: tuple[float, float],
+) -> None:
+    """One curve for each combination of the styled axes; runs in doubt as crosses, at the edge where they lie outside."""
+    for combination in product(*styles.values()):
+        found = [row for row in rows if all(_text(row["point"][k]) == v for k, v in zip(styles, combination, strict=True))]
+        found = sorted((row for row in found if value_of(row, quantity) is not None), key=lambda row: row["point"][along])
+        look = _look([values.index(text) for values, text in zip(styles.values(), combination, strict=True)])
+        good = [row for row in found if not in_doubt(row)]
+        bad = [row for row in found if in_doubt(row)]
+        panel.plot([row["point"][along] for row in good], [value_of(row, quantity) or 0.0 for row in good], **look)
+        clipped = [min(max(value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
+        (cross,) = panel.plot([row["point"][along] for row in bad], clipped, "x", color=look["color"], clip_on=False)
+        cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
+    panel.set_ylim(limits)
+    panel.grid(True, color="#e3e7eb", linewidth=0.8)
+    panel.set_axisbelow(True)
+    panel.spines[["top", "right"]].set_visible(False)
+
+
+def _limits(rows: list[dict[str, Any]]) -> tuple[float, float]:
+    """Range of K(w) and |Z| together, so that both panels of a column have one scale; runs in doubt do not count."""
+    chosen = [row for row in rows if not in_doubt(row)] or rows
+    values = [v for row in chosen for quantity in _LABELS if (v := value_of(row, quantity)) is not None] or [0.0, 1.0]
+    margin = 0.06 * (max(values) - min(values)) or 0.01 * abs(max(values)) or 1.0
+    return min(values) - margin, max(values) + margin
+
+
+def _look(places: list[int]) -> dict[str, Any]:
+    """Line style of a combination: the first styled axis sets the colour, the second the line, the third the marker."""
+    colour, line, marker = (*places[:3], *[0] * (3 - len(places[:3])))
+    tone = _COLOURS[colour % len(_COLOURS)]
+    return {
+        "color": tone,
+        "linestyle": _LINES[line % len(_LINES)],
+        "marker": _MARKERS[marker % len(_MARKERS)],
+        "markerfacecolor": tone if marker % 2 == 0 else "white",
+        "markersize": 5.5 if marker % 2 == 0 else 7.5,
+        "linewidth": 1.6,
+    }
+
+
+def _legend(figure: Figure, styles: dict[str, list[str]], doubt: bool) -> None:
+    """One legend for the figure: an entry for each value of each styled axis, in the trait that shows it."""
+    from matplotlib.lines import Line2D
+
+    handles = []
+    for place, (key, values) in enumerate(list(styles.items())[:3]):
+        for k, value in enumerate(values):
+            look = _look([k if n == place else 0 for n in range(3)])
+            if place > 0:
+                look |= {"color": "#555f6b", "markerfacecolor": "#555f6b" if look["markerfacecolor"] != "white" else "white"}
+            look |= {"marker": ""} if place < 2 else {"linestyle": ""}
+            handles.append(Line2D([], [], label=f"{key} = {value}", **look))
+    if doubt:
+        handles.append(Line2D([], [], linestyle="", marker="x", color="#555f6b", label="in doubt: not in the effects"))
+    if handles:
+        figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)), frameon=False, fontsize=10.5)
+
+
+def _dots(result: dict[str, Any], varied: list[str]) -> Figure:
+    """A dot for each run, where no axis has numbers: one line a combination, K(w) and |Z| side by side."""
+    rows = result["rows"]
+    names = [
+        ", ".join(f"{key.rpartition('.')[2]} = {_text(row['point'][key])}" for key in varied) or "the scene" for row in rows
+    ]
+    figure = new_figure(12.8, 2.2 + 0.32 * len(rows))
+    panels = figure.subplots(1, 2, sharey=True)
+    for (quantity, label), panel in zip(_LABELS.items(), panels, strict=True):
+        for place, row in enumerate(rows):
+            value = value_of(row, quantity)
+            if value is not None:
+                panel.plot([value], [place], "x" if in_doubt(row) else "o", color=_COLOURS[0], markersize=8)
+            else:
+                panel.annotate(
+                    row["result"].get("status", "no value"), (0.02, place), xycoords=("axes fraction", "data"), va="center"
+                )
+        panel.set_xlabel(f"{label}  [N/um]")
+        panel.grid(True, color="#e3e7eb", linewidth=0.8)
+        panel.spines[["top", "right"]].set_visible(False)
+    panels[0].set_yticks(range(len(rows)), names)
+    panels[0].set_ylim(len(rows) - 0.5, -0.5)
+    figure.suptitle(f"K(w) and |Z|: {result['title']}", fontsize=13)
+    return figure
+
+
+def _by_interaction(keys: list[str], along: str, effects: list[dict[str, Any]]) -> list[str]:
+    """The axes, those first that change the effect of ``along`` on K(w) most."""
+
+    def strength(key: str) -> float:
+        found = [
+            abs(e["log_change"])
+            for e in effects
+            if e["quantity"] == "equivalent_stiffness" and set(e["term"]) == {key, along}
+        ]
+        return max(found, default=0.0)
+
+    return sorted(keys, key=lambda key: -strength(key))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

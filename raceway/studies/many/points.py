@@ -1,0 +1,69 @@
+"""The scene at one point of a study, for all studies.
+
+Swapping a plug-in's kind leaves out the options that only the other kind knows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+
+from raceway.errors import PluginError, SceneError
+from raceway.framework.registry import Registry
+from raceway.scene.file import PLUGIN_TABLES, scene_from_dict, with_value
+from raceway.scene.tables import TABLES
+from raceway.studies.many.axes import Axis, shown
+
+
+def tables_at(
+    tables: Mapping[str, Any], point: Mapping[str, Any], registry: Registry, notes: list[str] | None = None
+) -> dict[str, Any]:
+    """The scene's tables at one point; what is left out with a change of kind is said in ``notes``, once each."""
+    changed = dict(tables)
+    # Kinds first: what another axis sets must not be taken for an option of the old kind.
+    for key, value in sorted(point.items(), key=lambda item: not item[0].endswith(".kind")):
+        name, _, last = key.rpartition(".")
+        if last == "kind" and name in PLUGIN_TABLES and isinstance(value, str):
+            for option in _strange_options(changed, name, value, registry):
+                given = changed[name][option]
+                changed[name] = {k: v for k, v in changed[name].items() if k != option}
+                note = f"{name}.{option} = {shown(given)} is left out for kind '{value}', which does not know it"
+                if notes is not None and note not in notes:
+                    notes.append(note)
+        changed = with_value(changed, key, value)
+    return changed
+
+
+def _strange_options(tables: Mapping[str, Any], name: str, kind: Any, registry: Registry) -> list[str]:
+    """Options in a table that its present kind knows and the new kind does not; typing mistakes are not among them."""
+    table = tables.get(name)
+    role, default = PLUGIN_TABLES[name]
+    if not isinstance(table, dict):
+        return []
+    words = (str(table.get("kind", default)), kind)
+    try:
+        old, new = ({field.name for field in attrs.fields(registry.find(role, word).plugin)} for word in words)
+    except PluginError:
+        return []  # the scene's own check names the unknown kind
+    core = {field.name for field in attrs.fields(TABLES[name])} if name in TABLES else set()
+    return [option for option in table if option in old - new - core]
+
+
+def refuse_mistakes(tables: Mapping[str, Any], axes: tuple[Axis, ...], registry: Registry) -> str:
+    """Check the first point whole, and each further value as far as it concerns an axis; the scene's title."""
+    first = {axis.key: axis.values[0] for axis in axes}
+    title = scene_from_dict(tables_at(tables, first, registry), registry).title
+    keys = {axis.key for axis in axes}
+    mistakes = []
+    for axis in axes:
+        for value in axis.values[1:]:
+            try:
+                scene_from_dict(tables_at(tables, {**first, axis.key: value}, registry), registry)
+            except SceneError as error:
+                # What two axes refuse together may run at other points: such a point is kept as refused.
+                mistakes += [m for m in error.mistakes if m.path in keys]
+    if mistakes:
+        raise SceneError(mistakes)
+    return title

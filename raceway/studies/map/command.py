@@ -1,0 +1,121 @@
+"""``raceway study map``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any
+
+import click
+
+from raceway.commands.console import warn
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_folder,
+    plugin_files,
+    processes_at_a_time,
+    registry_with,
+    scene_if_any,
+    set_keys,
+    show,
+    show_progress,
+)
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
+from raceway.errors import ConvergenceError, SceneError
+
+
+@click.command("map", short_help="Hardening or softening of k(speed) over axial load, tilt and contact angle.")
+@scene_if_any
+@set_keys
+@click.option(
+    "--vary", multiple=True, metavar="A.B=X,Y",
+    help="Values of an axis: load.axial, excitation.speed_rpm, supports.tilt, bearing.contact_angle_deg.",
+)  # fmt: skip
+@click.option(
+    "--method", type=click.Choice(["quasi_static", "periodic"]), default="quasi_static", show_default=True,
+    help="Equilibria under the force as given, or the steady orbit with inertia (ten times slower).",
+)  # fmt: skip
+@processes_at_a_time
+@out_folder
+@click.option("--pictures/--no-pictures", default=True, help="Write map.html and its pictures (default).")
+@plugin_files
+@common
+def study_map(
+    scene: Path | None, changes: tuple[str, ...], vary: tuple[str, ...], method: str, processes: int, out: Path | None,
+    pictures: bool, plugins: tuple[Path, ...], as_json: bool,
+) -> int:  # fmt: skip
+    """Map where k(speed) hardens or softens, where balls lose contact, where the groove's edge is reached, where hardening
+    saturates. Without SCENE: the article's B7206C under the rig's unbalance, half of it on this bearing.
+
+    Writes map.json, map.csv and map.html. Finished points are kept in DIR/map-rows.jsonl and reused. The table [integrator]
+    of a scene is replaced by the method's.
+
+    \b
+    Example:
+      raceway study map
+      raceway study map --set excitation.amplitude=constant --set excitation.force=100 --vary load.axial=100,1000
+    """
+    from raceway.studies.map.design import design
+
+    registry = registry_with(plugins)
+    tables, mistakes = _start(scene, changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    planned = design(tables, vary, method, registry)
+    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-map")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    kept = folder / "map-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.studies.map.page import write_data, write_pictures
+        from raceway.studies.map.study import study_map as study
+
+        try:
+            found = study(planned, processes, kept, registry, plugins, progress)
+        except KeyboardInterrupt:
+            warn(f"finished points are kept in {kept}; the same command goes on from there", label="")
+            raise
+        progress("writing", 0, 0)
+        written: list[str] = []
+        failed = attempt(lambda: write_data(found, folder), written)
+        if pictures and failed is None:
+            failed = attempt(lambda: write_pictures(found, folder), written)
+    content = {**found.as_dict(), "files": written}
+    failed = failed or found.fault
+    if failed is None and not any(row["status"] == "completed" for row in found.rows):
+        failed = ConvergenceError(f"no point of the map gave a number; the first reason: {found.rows[0]['reason']}")
+    show(content, as_json, failed, lambda: _screen(content))
+    return 0
+
+
+def _start(scene: Path | None, changes: tuple[str, ...], registry: Any) -> tuple[dict[str, Any], list[Any]]:
+    """Tables of the scene, or of the map's own, with the changes."""
+    if scene is not None:
+        return changed_tables(scene, changes, registry)
+    with as_file(files("raceway").joinpath("data/map.toml")) as path:
+        return changed_tables(path, changes, registry)
+
+
+def _screen(content: dict[str, Any]) -> Any:
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    from raceway.commands.screen.text import written
+
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    for name in ("angle", "tilt", "axial N", "k0 N/um", "k/k0 at the end", "contact lost", "edge", "saturates", "trend"):
+        table.add_column(name, justify="left" if name in ("tilt", "trend") else "right")
+    for curve in content["curves"]:
+        first, last = curve["first_stiffness"], curve["last_change"]
+        table.add_row(
+            f"{curve['contact_angle_deg']:g}", str(curve["tilt"]), f"{curve['axial']:g}",
+            "" if first is None else f"{1e-6 * first:.4g}", "" if last is None else f"{1.0 + last:.3g}",
+            *("" if curve[key] is None else f"{curve[key]:.0f}" for key in ("contact_lost_from_rpm", "edge_from_rpm", "saturates_at_rpm")),
+            curve["trend"],
+        )  # fmt: skip
+    words = [Text(text) for text in content["words"]]
+    head = f"{content['title']}\n{content['amplitude']}; speeds in r/min"
+    return Group(Text(head, style="bold"), table, *words, *written(content["files"]))

@@ -1,0 +1,105 @@
+"""``raceway identify``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from raceway.commands.frame import (
+    PATH,
+    RESULTS,
+    attempt,
+    common,
+    out_option,
+    plugin_files,
+    registry_with,
+    set_keys,
+    show,
+    show_progress,
+)
+from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, writable
+from raceway.errors import SceneError
+
+
+@click.command(short_help="K and C of a bearing from measured signals.")
+@click.argument("signals", type=PATH)
+@click.option(
+    "--scene", required=True, type=PATH, metavar="SCENE",
+    help="The rig: a scene with a table [rig]; load.axial as in the measurement.",
+)  # fmt: skip
+@click.option(
+    "--slow-roll", type=PATH, metavar="FILE.csv",
+    help="Signals at a low speed, whose run-out is subtracted.",
+)  # fmt: skip
+@click.option("--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [um] and angle from the mark [deg].")
+@set_keys
+@out_option(f"{RESULTS}/SIGNALS")
+@click.option("--pictures", is_flag=True, help="Also draw signals, spectrum and orbits as PNG.")
+@plugin_files
+@common
+def identify(
+    signals: Path,
+    scene: Path,
+    slow_roll: Path | None,
+    run_out: str | None,
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Identify a bearing's K and C, with their uncertainty, from the signals of a sensor beside it.
+
+    SIGNALS is a CSV file whose first line names its columns: time_s, y_um, z_um and key (once-per-turn probe) or speed_rpm.
+    Samples may be uneven and the speed may change by some per cent. Writes identify.json.
+
+    \b
+    Example:
+      raceway study rig examples/test_rig.toml --out rig
+      raceway identify rig/signals-13000rpm-400N.csv --scene examples/test_rig.toml \\
+          --set load.axial=400 --slow-roll rig/slow-roll-13000rpm-400N.csv
+    """
+    from raceway.scene.file import rig_of
+
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    own, vector = rig_of(loaded), _vector(run_out)
+    if vector is not None and slow_roll is not None:
+        raise SceneError.at("--run-out", run_out, "the slow roll tells it already: leave one of them out")
+    changed = loaded.title.partition("\n")[1:]
+    folder = writable(out or RESULTS / f"{slug(''.join([signals.stem, *changed]))}-identified")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.pipeline.result import write_json
+        from raceway.studies.measured.from_files import from_files
+
+        found = from_files(signals, loaded, own, registry, slow_roll, vector, progress)
+    content, files = {"title": loaded.title, "file": str(signals), **found.as_dict()}, list[str]()
+    failed = attempt(lambda: [write_json(content, folder / "identify.json")], files)
+    if pictures and failed is None:
+        from raceway.studies.measured.figures import write_figures
+
+        failed = attempt(lambda: write_figures(found, folder), files)
+    from raceway.studies.rig.screen import identify_screen
+
+    show(content, as_json, failed, lambda: identify_screen(content, files))
+    return 0
+
+
+def _vector(text: str | None) -> tuple[float, float] | None:
+    """Amplitude [m] and angle [deg] from ``UM,DEG``."""
+    if text is None:
+        return None
+    from math import isfinite
+
+    try:
+        amplitude, angle = (float(word) for word in text.split(","))
+    except ValueError:
+        amplitude, angle = float("nan"), 0.0
+    if not (isfinite(amplitude) and isfinite(angle) and amplitude >= 0.0):
+        raise SceneError.at(
+            "--run-out", text, "must be an amplitude of at least 0 um and an angle in deg, for instance 5.0,70"
+        )
+    return 1e-6 * amplitude, angle

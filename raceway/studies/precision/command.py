@@ -1,0 +1,85 @@
+"""``raceway precision``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_option,
+    plugin_files,
+    registry_with,
+    scene_file,
+    set_keys,
+    show,
+    show_progress,
+    tell_kept,
+)
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
+from raceway.errors import SceneError
+from raceway.studies.stability.command import verdict
+
+
+@click.command(short_help="Error against run time: which setting is good enough.")
+@scene_file
+@click.option("--vary", multiple=True, metavar="A.B=X,Y", help="Axis; all combinations are run. Without: a default design.")
+@click.option("--reference", multiple=True, metavar="A.B=C", help="Key of the reference; found by itself without.")
+@click.option("--repeats", type=click.IntRange(1, 1000), default=3, show_default=True, help="Runs of each setting.")
+@click.option(
+    "--limit", type=click.FloatRange(min=0.0, min_open=True), default=30.0, show_default=True, metavar="SECONDS",
+    help="Leave out what is predicted to take longer.",
+)  # fmt: skip
+@set_keys
+@out_option(f"{RESULTS}/TITLE-precision")
+@click.option("--pictures/--no-pictures", default=True, help="Draw error against run time as PNG (default).")
+@plugin_files
+@common
+def precision(
+    scene: Path,
+    vary: tuple[str, ...],
+    reference: tuple[str, ...],
+    repeats: int,
+    limit: float,
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Run a scene with many settings and say what each costs and how far it is from a reference with a known bound.
+
+    Writes precision.json, precision.md and precision.png. Finished rows are kept in DIR/precision-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway precision examples/b7206.toml --vary integrator.kind=newmark,central_difference \\
+          --vary integrator.steps_per_turn=45,90,180,360
+    """
+    registry = registry_with(plugins)
+    tables, mistakes = changed_tables(scene, changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-precision")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    kept = folder / "precision-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.studies.precision.study import precision as study
+
+        try:
+            found = study(tables, vary, reference, repeats, limit, kept, registry, progress)
+        except KeyboardInterrupt:
+            tell_kept("rows", kept)
+            raise
+    content, files = found.as_dict(), list[str]()
+    failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
+    if failed is None:
+        failed = verdict(content, found.converged, bool(reference))
+    from raceway.studies.precision.screen import precision_screen
+
+    show(content, as_json, failed, lambda: precision_screen(content["title"], found.table(), content["words"], files))
+    return 0

@@ -1,0 +1,74 @@
+"""``raceway study rig`` and ``raceway identify``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    on_scene,
+    out_folder,
+    plugin_files,
+    registry_with,
+    show,
+    show_progress,
+)
+from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, writable
+
+
+@click.command(short_help="A test rig's signals, and the bearing read back from them.")
+@on_scene
+@out_folder
+@click.option("--signals/--no-signals", default=True, help="Write the signals as CSV (default).")
+@click.option("--pictures/--no-pictures", default=True, help="Write figures as PNG and the page rig.html (default).")
+@plugin_files
+@common
+def rig(
+    scene: Path,
+    changes: tuple[str, ...],
+    out: Path | None,
+    signals: bool,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
+
+    The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
+    Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads. Exit code 1 when a point has no motion.
+
+    \b
+    Example:
+      raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03
+    """
+    from raceway.scene.file import rig_of
+
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    own = rig_of(loaded)
+    folder = writable(out or RESULTS / f"{slug(loaded.title)}-rig")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.pipeline.result import write_json
+        from raceway.studies.rig.study import study
+
+        found = study(loaded, own, registry, progress)
+    content, files = found.as_dict(), list[str]()
+    failed = attempt(lambda: [write_json(content, folder / "rig.json")], files)
+    if pictures and failed is None:
+        from raceway.studies.rig.page import write_page
+
+        failed = attempt(lambda: write_page(found, folder), files)
+    if signals and failed is None:
+        written = list[str]()
+        failed = attempt(lambda: found.write_signals(folder), written)
+        files += [f"{len(written)} records, signals-*.csv and slow-roll-*.csv"] if written else []
+    from raceway.studies.rig.screen import rig_screen
+
+    show(content, as_json, failed, lambda: rig_screen(content, files))
+    return 1 if found.failed else 0

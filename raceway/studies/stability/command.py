@@ -1,0 +1,97 @@
+"""Commands of the studies: ``raceway precision``, ``raceway stability``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    out_option,
+    plugin_files,
+    processes_at_a_time,
+    registry_with,
+    scene_if_any,
+    set_keys,
+    show,
+    show_progress,
+    tell_kept,
+)
+from raceway.commands.inputs import changed_tables, slug, tell_faults, writable
+from raceway.errors import ConvergenceError, SceneError
+
+
+@click.command(short_help="Stiff and extreme cases: what must hold, holds.")
+@scene_if_any
+@click.option("--only", metavar="WORDS", help="Cases whose name holds these words, instead of all.")
+@processes_at_a_time
+@click.option("--all", "every", is_flag=True, help="Show every row, not only a line a case.")
+@set_keys
+@out_option(f"{RESULTS}/stability")
+@plugin_files
+@common
+def stability(
+    scene: Path | None,
+    only: str | None,
+    processes: int,
+    every: bool,
+    changes: tuple[str, ...],
+    out: Path | None,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
+
+    With SCENE, that scene is put through the cases that suit any scene. Writes stability.json and stability.md. Finished
+    cases are kept in DIR/stability-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway stability --only chatter --all
+    """
+    registry = registry_with(plugins)
+    tables = None
+    if scene is not None:
+        from raceway.scene.file import scene_from_dict
+
+        tables, mistakes = changed_tables(scene, changes, registry)
+        if mistakes:
+            raise SceneError(mistakes)
+        scene_from_dict(tables, registry)
+    elif changes:
+        raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
+    name = "stability" if tables is None else f"{slug(str(tables['title']))}-stability"
+    folder = writable(out or RESULTS / name)
+    tell_faults(registry)
+    kept = folder / "stability-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.studies.stability.study import stability as study
+
+        try:
+            found = study(tables, only, processes, kept, registry, plugins, progress)
+        except KeyboardInterrupt:
+            tell_kept("cases", kept)
+            raise
+    content, files = found.as_dict(), list[str]()
+    failed = attempt(lambda: found.write(folder), files) or found.fault
+    from raceway.studies.stability.screen import stability_screen
+
+    show(content, as_json, failed, lambda: stability_screen(content, every, files))
+    return 1 if found.failed else 0
+
+
+def verdict(content: dict, converged: bool, given: bool) -> ConvergenceError | SceneError | None:
+    """What makes a finished study worthless, after it has been shown."""
+    rows = content["rows"]
+    known = [row for row in rows if row["error"] is not None]
+    if given and known and all(row["at_bound"] for row in known):
+        message = "is not more accurate than the rows: make it finer, or leave it out and let the study find one"
+        return SceneError.at("--reference", None, message)
+    if not converged:
+        reasons = [row["reason"] for row in rows if row["reason"]]
+        why = f"; the first reason: {reasons[0]}" if reasons else ": all errors are above 1 %"
+        return ConvergenceError(f"no setting converged{why}")
+    return None

@@ -1,0 +1,60 @@
+"""A sweep on the screen."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from raceway.commands.screen.text import rows_table, written
+
+#: Points of a sweep that a screen shows one by one.
+_MOST_ROWS, _MOST_REASONS = 30, 5
+#: Numbers in a warning, which differ from point to point.
+_NUMBER = re.compile(r"\d+(\.\d+)?(e[+-]?\d+)?")
+
+
+def sweep_screen(content: Mapping[str, Any], rows: Iterable[Mapping[str, Any]], files: Sequence[str]) -> RenderableType:
+    """How many points are in each state, the first of them with their stiffness, why points failed, and what they warn of."""
+    from raceway.studies.sweep.design import point_words
+
+    shown: list[dict[str, str]] = []
+    reasons: list[str] = []
+    told: dict[str, list[Any]] = {}  # warning without its numbers -> count, its words and the point that has it first
+    for row in rows:
+        for text in row["warnings"]:
+            told.setdefault(_NUMBER.sub("#", text), [0, text, row["point"]])[0] += 1
+        if len(shown) < _MOST_ROWS:
+            shown.append(_sweep_row(row))
+        if row["status"] == "failed" and len(reasons) < _MOST_REASONS:
+            reasons.append(f"{point_words(row['point'])}: {row['reason'].splitlines()[0]}")
+    states, total = content["states"], content["states"]["total"]
+    counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "running", "waiting") if states[name])
+    parts: list[RenderableType] = [Text(content["title"], style="bold"), rows_table(shown)]
+    if total > len(shown):
+        parts.append(Text(f"and {total - len(shown)} more points in {content['store']}", style="dim"))
+    parts.append(Text(f"{total} points: {counted}"))
+    parts += [Text(f"failed: {reason}") for reason in reasons]
+    for count, text, point in told.values():
+        parts.append(Text(f"{count} point{'s warn' if count > 1 else ' warns'}: {text} (first at {point_words(point)})"))
+    return Group(*parts, *written(files))
+
+
+def _sweep_row(row: Mapping[str, Any]) -> dict[str, str]:
+    from raceway.studies.many.axes import shown
+
+    values = row["values"]
+    last = [key.rpartition(".")[2] for key in row["point"]]
+    short = {key: name if last.count(name) == 1 else key for key, name in zip(row["point"], last, strict=True)}
+    text = {short[key]: shown(value) for key, value in row["point"].items()}
+    k, z, kyy = values.get("equivalent_stiffness"), values.get("z_real"), values.get("stiffness")
+    if k is not None and z is not None:
+        text |= {"K N/um": f"{k / 1e6:.3f}", "Re Z N/um": f"{z / 1e6:.3f}"}
+    else:
+        text |= {"K N/um": "", "Re Z N/um": ""}
+    text["kyy N/um"] = "" if kyy is None else f"{kyy[1][1] / 1e6:.3f}"
+    error = values.get("error_total")
+    return {**text, "error %": "" if error is None else f"{100.0 * error:.2g}", "status": row["status"]}

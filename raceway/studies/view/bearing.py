@@ -1,0 +1,208 @@
+"""What is drawn of a bearing in one state: rings, balls by their load, arrows, contact ellipses by their pressure."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.studies.view import surfaces
+from raceway.studies.view.surfaces import Surface
+
+_MM = 1e3
+#: Azimuths that are cut out of the rings [rad], from +y towards +z.
+CUT = (-0.08 * pi, 0.55 * pi)
+#: The longest arrow over the ball diameter.
+_LONGEST = 1.1
+INNER, OUTER, FACE = "#6f93b5", "#b9a679", "#dfe3e7"
+
+
+@attrs.frozen(eq=False)
+class State:
+    """Balls and inner ring at one moment.
+
+    Attributes
+    ----------
+    azimuth : (Z,) [rad]
+    load : (2 Z,) inner races first [N]
+    angle : (2 Z,) contact angles, nan where a contact carries nothing [rad]
+    half, peak : (2 Z, 2) semi-axes of the contacts, major ones first [m], and (2 Z,) their largest pressures [Pa]
+    motion : (5,) of the inner ring as it is drawn, exaggerated where that is said: x, y, z [m], tilts [rad]
+    """
+
+    azimuth: np.ndarray
+    load: np.ndarray
+    angle: np.ndarray
+    half: np.ndarray
+    peak: np.ndarray
+    motion: np.ndarray
+
+
+@attrs.frozen(eq=False)
+class Part:
+    """One surface and how it looks.
+
+    Attributes
+    ----------
+    colour : of the whole; None where ``surface.values`` are loads [N] or pressures [MPa], as ``scale`` says
+    load : of a ball [N], for its colour; None for others
+    ball : number of the ball; None for others
+    """
+
+    name: str
+    surface: Surface
+    colour: str | None = None
+    opacity: float = 1.0
+    scale: str | None = None
+    load: float | None = None
+    ball: int | None = None
+
+
+@attrs.frozen(eq=False)
+class Bearing:
+    """The bodies of a result.
+
+    Attributes
+    ----------
+    result : raceway.pipeline.result.Result
+    assumed : dimensions that the scene does not give
+    """
+
+    result: Any
+    shape: Any
+    assumed: tuple[str, ...]
+
+    @classmethod
+    def of(cls, result: Any) -> Bearing:
+        """From a result; rings without dimensions get usual ones, which are named."""
+        b = result.model.scene.bearing
+        wall = 0.85 * b.ball_diameter
+        usual = {
+            "bore": b.pitch_diameter - 2.0 * wall, "outer_diameter": b.pitch_diameter + 2.0 * wall, "width": 1.7 * b.ball_diameter
+        }  # fmt: skip
+        missing = {name: value for name, value in usual.items() if getattr(b, name) is None}
+        return cls(result, attrs.evolve(b, **missing), tuple(missing))
+
+    @property
+    def diameter(self) -> float:
+        """Of a ball [mm]."""
+        return _MM * float(self.shape.ball_diameter)
+
+    def centres(self, state: State) -> np.ndarray:
+        """(Z, 3) places of the balls [mm]: each follows the inner ring by half, as contacts of nearly equal stiffness do."""
+        radial = _radial(state.azimuth)
+        follow = 0.5 * (self.moved(_groove(self.shape) * radial, state) - _groove(self.shape) * radial)
+        places = np.repeat([place for _, place in self.shape.rows], self.shape.ball_count)
+        axial = places[:, None] * [1.0, 0.0, 0.0]
+        return np.asarray(_MM * (0.5 * self.shape.pitch_diameter * radial + axial + follow))
+
+    def moved(self, points: np.ndarray, state: State) -> np.ndarray:
+        """(n, 3) points of the inner ring [m] after its motion, tilts taken as small."""
+        x, y, z, tilt_y, tilt_z = state.motion
+        turn = np.cross([0.0, tilt_y, tilt_z], points)
+        return np.asarray(points + turn + [x, y, z])
+
+    def rings(self, cut: tuple[float, float] | None = CUT, glass: bool = True) -> list[Part]:
+        """Both rings of each row at rest, without the azimuths between ``cut``; ``glass``: one sees through the outer one."""
+        parts = []
+        low, high = (0.0, 0.0) if cut is None else cut
+        azimuths = np.linspace(high, low + 2.0 * pi, 121)
+        for inner, colour in ((True, INNER), (False, OUTER)):
+            for side, place in self.shape.rows:
+                race, seat = self.lines(inner, side, place)
+                outline = np.concatenate([seat, race[::-1]] if inner else [race, seat[::-1]])
+                name = "inner ring" if inner else "outer ring"
+                opacity = 0.32 if glass and not inner else 1.0
+                parts.append(Part(name, surfaces.revolved(outline, azimuths), colour, opacity))
+                if cut is not None:
+                    faces = [surfaces.section(race, seat, at, sense) for at, sense in ((high, -1.0), (low, 1.0))]
+                    parts.append(Part(f"{name}, cut face", surfaces.joined(faces), FACE if glass else colour))
+        return parts
+
+    def lines(self, inner: bool, side: float, place: float) -> tuple[np.ndarray, np.ndarray]:
+        """Race side and seat side (k, 2) of a ring's section over the same x, ascending [mm]."""
+        from raceway.core.mesh.ring_shape import ring_shape
+
+        shape = ring_shape(self.shape, inner)
+        outline = shape.outline
+        arc = shape.surface(np.linspace(*outline.edges, 25))
+        race = np.concatenate([outline.left[:-1], arc, outline.right[1:]])
+        seat = np.column_stack([race[:, 0], np.interp(race[:, 0], *outline.seat.T)])
+        lines = [_MM * (line * [side, 1.0] + [place, 0.0]) for line in (race, seat)]
+        return (lines[0][::-1], lines[1][::-1]) if side < 0.0 else (lines[0], lines[1])
+
+    def balls(self, state: State) -> list[Part]:
+        """Each ball with the load of its inner contact."""
+        solid = surfaces.ball(self.diameter)
+        z = len(state.azimuth)
+        return [
+            Part(f"ball {k}", solid.moved(centre), load=float(state.load[k]), ball=k)
+            for k, centre in zip(range(z), self.centres(state), strict=True)
+        ]
+
+    def arrows(self, state: State, top: float) -> list[Part]:
+        """The force of each ball on the outer ring, outside of it; as long as the ball diameter at the load ``top`` [N]."""
+        z, parts = len(state.azimuth), []
+        reach = 0.5 * _MM * self.shape.outer_diameter + 0.12 * self.diameter
+        towards = self.towards(state)[z:]
+        for k, centre in enumerate(self.centres(state)):
+            length = _LONGEST * self.diameter * state.load[z + k] / max(top, 1e-12)
+            if length > 0.01 * self.diameter:
+                # Along the line of contact, begun where that leaves the ring.
+                radius = np.hypot(*centre[1:])
+                start = centre + towards[k] * (reach - radius) / max(float(np.hypot(*towards[k][1:])), 0.3)
+                parts.append(
+                    Part(
+                        f"load {k}",
+                        surfaces.arrow(start, towards[k], length, 0.22 * self.diameter),
+                        load=float(state.load[k]),
+                    )
+                )
+        return parts
+
+    def tips(self, state: State, top: float) -> np.ndarray:
+        """(Z, 3) places beyond the arrows, for their labels [mm]."""
+        z = len(state.azimuth)
+        length = self.diameter * (0.12 + _LONGEST * state.load[z:] / max(top, 1e-12) + 0.45)
+        angle = np.where(np.isfinite(state.angle[z:]), state.angle[z:], self.shape.contact_angle)
+        sides = np.repeat([side for side, _ in self.shape.rows], self.shape.ball_count)
+        axial = self.centres(state)[:, 0] + sides * np.sin(angle) * length
+        reach = 0.5 * _MM * self.shape.outer_diameter + length
+        return np.asarray(reach[:, None] * _radial(state.azimuth) + axial[:, None] * [1.0, 0.0, 0.0])
+
+    def patches(self, state: State, races: tuple[str, ...] = ("inner", "outer")) -> list[Part]:
+        """The contact ellipses on the balls, coloured by Hertz's pressure [MPa]."""
+        z, parts = len(state.azimuth), []
+        towards, centres = self.towards(state), self.centres(state)
+        for i in np.flatnonzero(state.load > 0.0):
+            k, race = int(i) % z, "inner" if i < z else "outer"
+            if race in races:
+                along = np.array([0.0, -np.sin(state.azimuth[k]), np.cos(state.azimuth[k])])
+                a, b = _MM * state.half[i]
+                patch = surfaces.contact_patch(centres[k], towards[i], along, self.diameter, (a, b), 1e-6 * state.peak[i])
+                parts.append(Part(f"{race} contact {k}", patch, scale="pressure", ball=k))
+        return parts
+
+    def towards(self, state: State) -> np.ndarray:
+        """(2 Z, 3) unit vectors from the balls' centres to their contacts."""
+        z = len(state.azimuth)
+        angle = np.where(np.isfinite(state.angle), state.angle, self.shape.contact_angle)
+        sides = np.tile(np.repeat([side for side, _ in self.shape.rows], self.shape.ball_count), 2)
+        outward = np.concatenate([-np.ones(z), np.ones(z)])[:, None]
+        radial = _radial(np.tile(state.azimuth, 2))
+        axial = (sides * np.sin(angle))[:, None] * [1.0, 0.0, 0.0]
+        return np.asarray(outward * (axial + np.cos(angle)[:, None] * radial))
+
+
+def _groove(bearing: Any) -> float:
+    """Radius of the circle of inner groove centres [m]."""
+    return float(
+        0.5 * bearing.pitch_diameter
+        + (bearing.conformity_inner - 0.5) * bearing.ball_diameter * np.cos(bearing.contact_angle)
+    )
+
+
+def _radial(azimuth: np.ndarray) -> np.ndarray:
+    return np.stack([np.zeros_like(azimuth), np.cos(azimuth), np.sin(azimuth)], axis=-1)

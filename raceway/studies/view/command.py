@@ -1,0 +1,84 @@
+"""The command that draws a bearing.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import click
+
+from raceway.commands.frame import RESULTS, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.inputs import load, slug, tell_faults, writable
+from raceway.errors import RacewayError, SceneError, extra
+from raceway.plugins.system_libraries import refuse_pictures
+
+
+@click.command(short_help="Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.")
+@on_scene
+@out_folder
+@click.option("--html", "page", is_flag=True, help="Also write view.html: the bearing to turn about, tables, all pictures.")
+@click.option(
+    "--animate", is_flag=True, help="Also write orbit.gif: one turn, motions exaggerated by a factor that it says."
+)
+@click.option(
+    "--frames", type=click.IntRange(2, 720), default=36, show_default=True, help="Pictures of a turn, for --animate."
+)
+@plugin_files
+@common
+def view(
+    scene: Path, changes: tuple[str, ...], out: Path | None, page: bool, animate: bool, frames: int, plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:  # fmt: skip
+    """Compute one scene and draw it: the bearing cut open with its ball loads, contact ellipses with their pressure, ball
+    loads by azimuth, the orbit, the mesh of elastic bodies. Needs no display.
+
+    \b
+    Example:
+      raceway view examples/b7206.toml --html --animate
+    """
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    folder = writable(out or RESULTS / slug(loaded.title))
+    for package in ("pyvista", "matplotlib"):
+        if find_spec(package) is None:
+            raise RacewayError(f"pictures need {package}: {extra('view')}")
+    refuse_pictures()
+    if animate and loaded.excitation is None:
+        raise SceneError.at("excitation", None, "is missing, so that nothing moves: add the table, or leave out --animate")
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.pipeline.run import run
+        from raceway.studies.view.study import Wanted, draw
+
+        result = run(loaded, registry, progress)
+        mesh = _mesh(loaded, folder) if loaded.bodies.kind == "elastic" else None
+        content = draw(result, folder, Wanted(page, frames if animate else 0, mesh), progress)
+    show(content, as_json, None, lambda: _screen(content))
+    return 0
+
+
+def _mesh(scene: Any, folder: Path) -> Path:
+    from raceway.bodies.meshing import mesh_scene
+    from raceway.studies.view.mesh_picture import draw
+
+    return draw(mesh_scene(scene), f"{scene.title}\nthe mesh", folder / "mesh.png")
+
+
+def _screen(content: dict[str, Any]) -> Any:
+    from rich.console import Group
+    from rich.text import Text
+
+    from raceway.commands.screen.text import sections, written
+
+    rows = [
+        (f"Pictures {content['shown']}", "", ""),
+        ("largest ball load", f"{content['largest_ball_load_n']:.4g} N", "on the inner race"),
+        ("largest pressure", f"{1e-6 * content['largest_pressure_pa']:.4g} MPa", "Hertz"),
+    ]
+    if content["exaggeration"] is not None:
+        rows.append(("motions in orbit.gif", f"x {content['exaggeration']:g}", "times as large as they are"))
+    if content["assumed"]:
+        rows.append(("rings drawn with usual", "", f"{', '.join(content['assumed'])}: the scene does not say"))
+    notes = [Text(f"note: {text}", style="yellow") for text in content["warnings"]]
+    return Group(Text(content["title"], style="bold"), sections(rows), *notes, *written(content["files"]))

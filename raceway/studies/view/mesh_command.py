@@ -1,0 +1,103 @@
+"""The command about meshes.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+import time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import attrs
+import click
+
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    on_scene,
+    out_folder,
+    plugin_files,
+    programs,
+    registry_with,
+    show,
+)
+from raceway.commands.inputs import load, slug, tell_faults, writable
+from raceway.commands.progress import ProgressBar
+from raceway.errors import RacewayError, SceneError
+from raceway.plugins.system_libraries import refuse_pictures
+
+
+@click.command(short_help="Mesh the bodies of a scene: counts, quality, files.")
+@on_scene
+@out_folder
+@click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
+@programs
+@plugin_files
+@common
+def mesh(
+    scene: Path, changes: tuple[str, ...], out: Path | None, picture: bool, plugins: tuple[Path, ...], as_json: bool
+) -> int:
+    """Build the meshes of a scene; say their counts, quality, memory and time; write a VTU file for each body.
+
+    A scene without a table [mesh] gets the mesher `structured` with its defaults.
+
+    \b
+    Example:
+      raceway mesh examples/b7206_article_mesh.toml --picture
+    """
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    folder = writable(out or RESULTS / slug(loaded.title))
+    tell_faults(registry)
+    if picture and find_spec("pyvista"):
+        refuse_pictures(", or leave out --picture")
+    with ProgressBar("meshing") as progress:
+        from raceway.bodies.meshing import mesh_scene
+
+        start = time.perf_counter()
+        if loaded.mesh is None:
+            loaded = attrs.evolve(loaded, mesh=registry.find("mesher", "structured").plugin())
+        try:
+            meshes = mesh_scene(loaded)
+        except MemoryError:
+            raise SceneError.at("mesh", None, "needs more memory than there is: choose larger elements") from None
+        seconds = time.perf_counter() - start
+        from raceway.core.mesh.summary import summary
+
+        progress("judging the cells", 0, 0)
+        content: dict[str, Any] = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
+        files: list[str] = []
+        failed = attempt(lambda: _write(registry.find("format", "vtu").plugin(), meshes, folder, progress), files)
+        if picture and failed is None:
+            progress("drawing", 0, 0)
+            failed = attempt(lambda: [_draw(meshes, content, folder)], files)
+    content["files"] = files
+
+    def screen() -> Any:
+        from raceway.studies.view.mesh_screen import mesh_screen
+
+        return mesh_screen(content)
+
+    show(content, as_json, failed, screen)
+    return 0
+
+
+def _write(form: Any, meshes: dict[str, Any], folder: Path, progress: ProgressBar) -> list[Path]:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RacewayError(f"`{folder}` cannot be made: {error.strerror}. Choose another with --out.") from None
+    paths = []
+    for done, (name, body) in enumerate(meshes.items()):
+        progress(f"writing {name}", done, len(meshes))
+        path = folder / f"{slug(name)}.vtu"
+        form.write(path, body)
+        paths.append(path)
+    return paths
+
+
+def _draw(meshes: dict[str, Any], content: dict[str, Any], folder: Path) -> Path:
+    from raceway.studies.view.mesh_picture import draw
+
+    size = f"{content['elements']} hexahedra, {content['nodes']} nodes, {len(meshes)} bodies"
+    return draw(meshes, f"{content['title']}\n{size}", folder / "mesh.png")

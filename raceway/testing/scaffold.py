@@ -1,0 +1,102 @@
+"""Writes the package of a new plug-in, which passes its own tests at once.
+
+The templates are package data, ``data/templates/KIND``; a file ``package_x.py.txt`` becomes ``x.py`` in the package's
+folder, ``tests_x.py.txt`` a file in ``tests``, the rest stands at the top.
+"""
+
+from __future__ import annotations
+
+import keyword
+import re
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+
+from raceway import __version__
+from raceway.errors import PluginError
+from raceway.framework.contracts import KINDS
+from raceway.framework.options import nearest
+from raceway.framework.registry import Registry, default_registry
+
+_NAME = re.compile(r"[a-z][a-z0-9_]{1,39}")
+
+
+def new_plugin(kind: str, name: str, folder: str | Path = ".", registry: Registry | None = None) -> Path:
+    """Write a package ``folder/raceway-NAME`` with one plug-in.
+
+    Parameters
+    ----------
+    kind : of ``raceway.framework.contracts.KINDS``
+    name : the word that a scene will write as ``kind``
+    folder : where the package's own folder is made
+
+    Returns
+    -------
+    Path : the package's folder
+
+    Raises
+    ------
+    PluginError
+        An unknown kind, a name that cannot be used, or a folder that exists; nothing is written then.
+    """
+    kind = kind.replace("-", "_")
+    if kind not in KINDS:
+        raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, KINDS)}; kinds: {', '.join(KINDS)}")
+    _check_name(kind, name, registry or default_registry())
+    words = {
+        "kind": kind,
+        "name": name,
+        "module": f"raceway_{name}",
+        "distribution": f"raceway-{name.strip('_').replace('_', '-')}",
+        "cls": "".join(part.capitalize() for part in name.split("_")),
+        "title": f"{_article(kind)} '{name}'",
+        "hook": KINDS[kind][0],
+        "version": ".".join(__version__.split(".")[:2]),
+    }
+    target = Path(folder) / words["distribution"]
+    if target.exists():
+        raise PluginError(f"`{target}` exists already and is not overwritten: choose another name or --out DIR")
+    contents = _contents(kind, words)
+    try:
+        for path, text in contents.items():
+            (target / path).parent.mkdir(parents=True, exist_ok=True)
+            (target / path).write_text(text, encoding="utf-8")
+    except OSError as why:
+        raise PluginError(f"`{target}` cannot be written: {why.strerror or why}") from why
+    return target
+
+
+def _contents(kind: str, words: dict[str, str]) -> dict[str, str]:
+    """Path in the new folder -> text."""
+    found = {}
+    for part in ("common", kind):
+        for source in sorted(files("raceway").joinpath("data", "templates", part).iterdir(), key=lambda f: f.name):
+            name = source.name.removesuffix(".txt")
+            if name.startswith("package_"):
+                name = f"{words['module']}/{name.removeprefix('package_')}"
+            elif name.startswith("tests_"):
+                name = f"tests/{name.removeprefix('tests_')}"
+            found[name] = Template(source.read_text(encoding="utf-8")).substitute(words)
+    return found
+
+
+def _check_name(kind: str, name: str, registry: Registry) -> None:
+    if not _NAME.fullmatch(name) or name.endswith("_") or "__" in name:
+        fitting = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_0123456789")[:40]
+        hint = f"; for instance '{fitting}'" if _NAME.fullmatch(fitting) else ""
+        raise PluginError(
+            f"'{name}' cannot be a plug-in's name: 2 to 40 lower-case letters, digits and single underscores, "
+            f"a letter first{hint}"
+        )
+    if keyword.iskeyword(name) or keyword.issoftkeyword(name):
+        raise PluginError(f"'{name}' cannot be a plug-in's name: it is a word of Python")
+    taken = registry.entries.get((kind, name), [])
+    if taken:
+        raise PluginError(
+            f"there is a {kind.replace('_', ' ')} '{name}' already, of {taken[0].distribution}: choose another name"
+        )
+
+
+def _article(kind: str) -> str:
+    words = kind.replace("_", " ")
+    return f"{'An' if words[0] in 'aeiou' else 'A'} {words}"
