@@ -192,6 +192,7 @@ def history() -> Rule:
     from raceway import load_scene
     from raceway.bodies.model import build_model
     from raceway.core.ring.start import at_rest
+    from raceway.core.schemes.drivers import integrate
     from raceway.core.stepping.record import Schedule
     from raceway.pipeline.settle import settle
     from raceway.planning.plan import make_plan
@@ -205,8 +206,8 @@ def history() -> Rule:
     def run(stride: int) -> Answer:
         start = at_rest(model.system, equilibrium.displacement, equilibrium.ball, True)
         period = scene.excitation.period_s
-        record = scene.integrator.method.advance(
-            model.system, start, Schedule(period / per_turn, per_turn, many, stride, 40.0 * period)
+        record = integrate(
+            scene.integrator.method, model.system, start, Schedule(period / per_turn, per_turn, many, stride, 40.0 * period)
         )
         found = scene.identifier.method.identify([record.last(5)], equilibrium, model)
         return np.array([found.dynamic_stiffness.real, found.dynamic_stiffness.imag])
@@ -324,6 +325,7 @@ def stresses() -> Rule:
 
 _PROBE = """
 import contextlib, io, json, pathlib, resource, sys, tempfile, time
+from raceway.core.schemes.drivers import integrate
 from raceway.cli import main
 from raceway.framework.registry import default_registry
 registry = default_registry()
@@ -350,7 +352,7 @@ for entry in registry.all():
         except TypeError:
             pass  # needs options
 from raceway.core.ring.kernels import condensed_inertial, condensed_tangential, condensed_weightless
-from raceway.core.ring.loops import central_difference, implicit, quasi_static
+from raceway.core.schemes.compiled import central_difference, implicit, quasi_static
 from raceway.core.periodic import steady
 from raceway.core.hexahedron import operator
 import gmsh, matplotlib.figure, meshio, pyvista

@@ -33,9 +33,9 @@ def count() -> list[dict[str, Any]]:
     from benchmarks.time_loop import EXAMPLE
     from raceway import load_scene
     from raceway.core.jit import clock
-    from raceway.core.ring.loops.central_difference import central_difference
-    from raceway.core.ring.loops.implicit import implicit
-    from raceway.core.ring.loops.quasi_static import quasi_static
+    from raceway.core.schemes.explicit.compiled import central_difference
+    from raceway.core.schemes.one_step.compiled import implicit
+    from raceway.core.schemes.static.compiled import quasi_static
     from raceway.pipeline.run import run
 
     run(load_scene(EXAMPLE))

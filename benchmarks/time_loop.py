@@ -21,6 +21,7 @@ from raceway import build_model, load_scene, make_plan
 from raceway.bodies.model import Model
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.start import from_orbit
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.pipeline.settle import settle
 
@@ -77,7 +78,7 @@ def compare(kind: str, inertial: bool, repeats: int = _REPEATS) -> Loop:
     composed, fused = [], []
     for _ in range(repeats):  # by turns, so that a slow moment of the machine meets both
         begin = time.process_time()
-        record: Record = scene.integrator.method.advance(model.system, start, schedule, None)
+        record: Record = integrate(scene.integrator.method, model.system, start, schedule, None)
         middle = time.process_time()
         rows, iterations = _fused(model, start, schedule, inertial)
         composed.append(middle - begin)

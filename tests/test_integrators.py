@@ -10,8 +10,9 @@ from benchmarks.evidence import orders
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
 from raceway.core.ring.address import by_address
-from raceway.core.ring.loops import outer_force
 from raceway.core.ring.start import at_rest
+from raceway.core.schemes.compiled import outer_force
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.errors import StabilityError
 from raceway.pipeline.settle import settle
@@ -63,7 +64,7 @@ def test_generalized_alpha_removes_what_is_too_fast_for_the_step():
         system = attrs.evolve(system, force_params=system.force_params * 0.0)
         held = np.array([-system.scalars[0], 1e-6, 0.0, 0.0, 0.0])
         start = at_rest(system, held, system.evaluate(held).ball, False)
-        record = method.advance(system, start, Schedule(20.0 / w0, 200, 1))
+        record = integrate(method, system, start, Schedule(20.0 / w0, 200, 1))
         left[integrator] = np.abs(record.displacement[-20:, 1]).max() / 1e-6
     assert left["newmark"] == pytest.approx(1.0, abs=0.01)
     assert left["generalized_alpha"] < 1e-6
@@ -77,9 +78,9 @@ def test_restart_equals_going_on(integrator):
     method, steps = model.scene.integrator.method, 360
     period = model.excitation.period_s
     start = at_rest(model.system, now.displacement, now.ball, False)
-    whole = method.advance(model.system, start, Schedule(period / steps, steps, 2))
-    half = method.advance(model.system, start, Schedule(period / steps, steps, 1))
-    rest = method.advance(model.system, half.final, Schedule(period / steps, steps, 1))
+    whole = integrate(method, model.system, start, Schedule(period / steps, steps, 2))
+    half = integrate(method, model.system, start, Schedule(period / steps, steps, 1))
+    rest = integrate(method, model.system, half.final, Schedule(period / steps, steps, 1))
     assert half.displacement == pytest.approx(whole.displacement[:steps], abs=1e-18)
     # 1e-8: the tolerance of a step's iteration; quasi_static starts its second half without an extrapolation.
     size = np.abs(whole.displacement[:, 1]).max()
@@ -107,10 +108,10 @@ def test_stable_limit_is_where_central_differences_blow_up():
     held = np.array([-system.scalars[0], 1e-6, 0.0, 0.0, 0.0])
     start = at_rest(system, held, system.evaluate(held).ball, True)
     assert system.critical_time_step(np.zeros((5, 5))) == pytest.approx(2.0 / w0, rel=1e-12)
-    calm = method.advance(system, start, Schedule(1.98 / w0, 500, 1))
+    calm = integrate(method, system, start, Schedule(1.98 / w0, 500, 1))
     assert np.abs(calm.displacement[:, 1]).max() < 1e-3
     with pytest.raises(StabilityError, match="grew without bound"):
-        method.advance(system, start, Schedule(2.02 / w0, 500, 1))
+        integrate(method, system, start, Schedule(2.02 / w0, 500, 1))
 
 
 def test_progress_and_stop():
@@ -123,7 +124,7 @@ def test_progress_and_stop():
 
     start = at_rest(model.system, settle(model).displacement, np.zeros((12, 2)), True)
     with pytest.raises(KeyboardInterrupt):
-        model.scene.integrator.method.advance(model.system, start, Schedule(1e-6, 60_000, 1, 60), stop)
+        integrate(model.scene.integrator.method, model.system, start, Schedule(1e-6, 60_000, 1, 60), stop)
     assert seen == [(20_000, 60_000)]
 
 

@@ -100,7 +100,7 @@ def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrat
     assert found["plan"] == json.loads(json.dumps(make_plan(scene).as_dict()))
     for module in make_plan(scene).modules:
         # A loop in Python is found by its compiled counterpart, among all of which it is looked for.
-        if not module.module.startswith("raceway.core.ring.loops."):
+        if not module.module.startswith("raceway.core.schemes.compiled."):
             assert (module.module in found["loaded"]) == module.needed, module
     assert {"raceway.bodies.condensed.compliances", "raceway.core.revolution"} <= set(found["loaded"])
     assert "raceway.bodies.condensed.build" not in found["loaded"]

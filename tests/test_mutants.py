@@ -69,14 +69,14 @@ def test_words_choose_among_the_faults(capsys):
 
 
 def test_a_fault_touches_what_imports_its_file_and_nothing_else():
-    found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/kernel/dense.py")}
+    found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/ring/dense.py")}
     assert {
-        "raceway/core/kernel/dense.py",
-        "raceway/core/ring/loops/implicit.py",
+        "raceway/core/ring/dense.py",
+        "raceway/core/schemes/one_step/compiled.py",
         "raceway/core/ring/start.py",
         "tests/test_dense.py",
     } <= found
-    assert not {"raceway/core/ring/loops/__init__.py", "raceway/core/hexahedron/one_point.py"} & found
+    assert not {"raceway/core/schemes/compiled.py", "raceway/core/hexahedron/one_point.py"} & found
 
 
 def test_a_caught_fault_is_told_from_one_that_survives(monkeypatch, tmp_path):

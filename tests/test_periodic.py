@@ -27,6 +27,7 @@ from raceway.core.periodic.steady import _equilibrium
 from raceway.core.periodic.symmetry import one_turn
 from raceway.core.ring.address import by_address
 from raceway.core.ring.orbit import steady_orbit
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.errors import SceneError
 from raceway.integrators.periodic import Periodic
@@ -115,8 +116,8 @@ def test_condensed_bodies():
 
 def test_multipliers_of_a_linear_system():
     system = linear_system()
-    record = Periodic(tolerance=1e-9).advance(
-        system, motion(system, np.zeros(5), np.zeros(5)), Schedule(2.0 * np.pi / SPEED / 36, 36, 1)
+    record = integrate(
+        Periodic(tolerance=1e-9), system, motion(system, np.zeros(5), np.zeros(5)), Schedule(2.0 * np.pi / SPEED / 36, 36, 1)
     )
     chosen = np.ix_(system.free > 0.0, system.free > 0.0)
     inverse = np.linalg.inv(system.mass[chosen])

@@ -13,6 +13,7 @@ import pytest
 from raceway.bodies.model import build_model
 from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.errors import PluginError
 from raceway.integrators.newmark import Newmark
@@ -60,6 +61,6 @@ def test_a_start_of_another_bearing_is_refused_by_both_loops(bearing, name):
     start = attrs.evolve(at_rest(system, still.displacement, still.ball, False), **{name: SIX})
     words = rf"the motion that an integration starts from: `{name}` has the shape \(6, 2\)"
     with pytest.raises(PluginError, match=words):
-        Newmark().advance(system, start, Schedule(1e-6, 10, 1))
+        integrate(Newmark(), system, start, Schedule(1e-6, 10, 1))
     with pytest.raises(PluginError, match=words):
         SteppedBearing(system).begin(start)

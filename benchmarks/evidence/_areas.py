@@ -10,10 +10,10 @@ from __future__ import annotations
 AREAS = {
     "rigid": """
         bodies/__init__ bodies/basis bodies/model bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
-        core/kernel/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/root
+        core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/root
         core/ring/system data/bearings pipeline/pressure pipeline/settle scene/inner_ring""",
     "motion": """
-        core/excitations core/ring/advance core/ring/changing_speed core/ring/energy core/ring/friction core/ring/loops core/ring/orbit
+        core/excitations core/schemes/advance core/ring/changing_speed core/ring/energy core/ring/friction core/ring/loops core/ring/orbit
         core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__
         pipeline/motion pipeline/run pipeline/simulate pipeline/starting plugins/excitations plugins/identifiers""",
     "periodic": "core/periodic integrators/periodic pipeline/error/steady_motion",

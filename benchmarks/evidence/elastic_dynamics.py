@@ -19,6 +19,7 @@ from raceway.core.elastic.start import from_orbit
 from raceway.core.elastic.stepped import SteppedElastic
 from raceway.core.elastic.touching import sticking
 from raceway.core.ring.orbit import steady_orbit
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.energy import drift, largest_share
 from raceway.core.stepping.record import Record, Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
@@ -117,7 +118,7 @@ def _fallen(quarter: Impact, method: Any, duration: float) -> tuple[Record, np.n
     begun = time.process_time()
     schedule = Schedule(duration / steps, steps, 1, stride=max(1, steps // 600))
     heard = _Heard(quarter.system)
-    record = method.advance(heard, start, schedule)
+    record = integrate(method, heard, start, schedule)
     return record, 4.0 * np.array(heard.force), time.process_time() - begun
 
 
@@ -129,7 +130,7 @@ def _block() -> list[Row]:
         slowing = mu * weight / block.mass
         lasts, way = speed / slowing, 0.5 * speed**2 / slowing
         steps = 200 if method.implicit else int(1.4 * lasts / (0.8 * block.stable_step()))
-        record = method.advance(block, block.at_rest(speed), Schedule(1.4 * lasts / steps, steps, 1))  # type: ignore[arg-type]
+        record = integrate(method, block, block.at_rest(speed), Schedule(1.4 * lasts / steps, steps, 1))  # type: ignore[arg-type]
         x, v, t = record.displacement[:, 0], record.velocity[:, 0], record.time
         sliding = t < 0.9 * lasts
         name = f"block on a plane, {method.name}: "
@@ -140,7 +141,7 @@ def _block() -> list[Row]:
         lost = float(record.energies["friction"][-1] / (0.5 * block.mass * speed**2))
         out.append(below(name + "energy that friction took, over the kinetic one", abs(lost - 1.0), 0.01, COMMAND))
     block = Block(weight, mu, lambda t: 0.3 * mu * weight * np.sin(np.pi * min(t / 4e-3, 1.0)) ** 2, stick=1e11)
-    record = Newmark().advance(block, block.at_rest(), Schedule(4e-5, 125, 1))  # type: ignore[arg-type]
+    record = integrate(Newmark(), block, block.at_rest(), Schedule(4e-5, 125, 1))  # type: ignore[arg-type]
     lost = float(record.energies["friction"][-1])
     out.append(below("block on a plane, pulled with 0.3 of the limit: energy lost, J", lost, 0.0, COMMAND, "it sticks"))
     return out
@@ -163,9 +164,9 @@ def _bearing() -> list[Row]:
     steps = 40 * (int(0.05 * period / (0.7 * limit)) // 40 + 1)
     part = 0.05 * period
     begun = time.process_time()
-    explicit = CentralDifference().advance(ring, start, Schedule(part / steps, steps, 1, stride=steps // 40))
+    explicit = integrate(CentralDifference(), ring, start, Schedule(part / steps, steps, 1, stride=steps // 40))
     middle = time.process_time()
-    implicit = Newmark(tolerance=1e-6).advance(ring, start, Schedule(part / 40, 40, 1))
+    implicit = integrate(Newmark(tolerance=1e-6), ring, start, Schedule(part / 40, 40, 1))
     ended = time.process_time()
     moved = np.abs(explicit.displacement[:, 1:3] - found.displacement[1:3]).max()
     apart = float(np.abs(explicit.displacement[:, :3] - implicit.displacement[:, :3]).max() / moved)
@@ -189,11 +190,11 @@ def _restart(ring: Any, start: Any, dt: float) -> list[Row]:
     out = []
     for method, step in ((CentralDifference(), dt), (Newmark(tolerance=1e-9), 100.0 * dt)):
         count = 20 if not method.implicit else 4
-        whole = method.advance(ring, start, Schedule(step, count, 1))
-        first = method.advance(ring, start, Schedule(step, count // 2, 1))
+        whole = integrate(method, ring, start, Schedule(step, count, 1))
+        first = integrate(method, ring, start, Schedule(step, count // 2, 1))
         with tempfile.TemporaryDirectory() as folder:
             again = load_motion(save_motion(first.final, Path(folder) / "state"))
-        second = method.advance(ring, again, Schedule(step, count // 2, 1, first=count // 2))
+        second = integrate(method, ring, again, Schedule(step, count // 2, 1, first=count // 2))
         apart = np.abs(second.final.whole["u"] - whole.final.whole["u"]).max() / np.abs(whole.final.whole["u"]).max()
         bound = 0.0 if not method.implicit else 1e-8
         note = "to the last bit" if bound == 0.0 else "to Newton's tolerance: linear solves remember their factors"

@@ -16,6 +16,7 @@ from benchmarks.evidence._scenes import model_of, rig_force, rotating
 from raceway import scene_from_dict
 from raceway.bodies.model import Model
 from raceway.core.ring.system import System
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
@@ -81,7 +82,7 @@ def linear_errors(integrator: str, ratio: float) -> tuple[np.ndarray, np.ndarray
     counts = 60 * 2 ** np.arange(HALVINGS)
     errors = []
     for count in counts:
-        record = method.advance(system, start, Schedule(2.0 * np.pi / speed / count, int(count), TURNS))
+        record = integrate(method, system, start, Schedule(2.0 * np.pi / speed / count, int(count), TURNS))
         wanted = exact(system, w0, speed, ratio, record.time)
         errors.append(np.abs(record.displacement[:, 1] - wanted).max() / np.abs(wanted).max())
     return counts, np.array(errors)

@@ -10,6 +10,7 @@ from scipy.linalg import expm
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._orbits import ONE_WAY, Tables, apart, by_turns, methods, resonance, scene, solve_ms, solved
 from benchmarks.evidence._scenes import model_of, rig_force
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.integrators.periodic import Periodic
 from raceway.pipeline.settle import settle
@@ -116,7 +117,7 @@ def _multipliers() -> list[Row]:
     chosen = np.ix_(system.free > 0.0, system.free > 0.0)
     still = motion(system, np.zeros(5), np.zeros(5))
     turn = 2.0 * np.pi / SPEED
-    record = Periodic(tolerance=1e-9).advance(system, still, Schedule(turn / 36, 36, 1))
+    record = integrate(Periodic(tolerance=1e-9), system, still, Schedule(turn / 36, 36, 1))
     inverse = np.linalg.inv(system.mass[chosen])
     n = len(inverse)
     flow = np.block(

@@ -11,11 +11,11 @@ import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse, contact_modulus
-from raceway.core.kernel.plugin_kernel import plugin_kernel
 from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.signatures import FORCE
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import ContactPairs
+from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.closed_form import axial_approach
 from raceway.planning.plan import Plan
 from raceway.scene.inner_ring import radial_growth, ring_inertia

@@ -27,7 +27,7 @@ SYSTEM_POINTER = types.FunctionType(SYSTEM)
 
 CUBE = float64[:, :, ::1]
 
-#: The arguments that every compiled loop shares; see ``raceway.core.ring.loops``.
+#: The arguments that every compiled loop shares; see ``raceway.core.schemes.compiled``.
 _MODEL = (
     SYSTEM_POINTER, LAW_POINTER, FORCE_POINTER, MATRIX, VECTOR, MATRIX, VECTOR,
     MATRIX, MATRIX, MATRIX, VECTOR, VECTOR,

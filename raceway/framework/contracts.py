@@ -15,10 +15,9 @@ import attrs
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.core.ring.advance import OnChunk
-    from raceway.core.ring.system import System
+    from raceway.core.schemes.drivers import Scheme
     from raceway.core.signals.identification import Identification
-    from raceway.core.stepping.record import Motion, Record, Schedule
+    from raceway.core.stepping.record import Record
 
 
 class ContactLaw(Protocol):
@@ -103,14 +102,17 @@ class Integrator(Protocol):
     1. ``order``: the exponent of the step in the error, for smooth motions.
     2. ``implicit``: whether steps above ``System.critical_time_step`` are allowed.  ``inertial``: whether the motion
        contains inertia forces (K = Re Z + m w^2) or is a series of equilibria.
-    3. ``dissipative``: whether the method removes energy by itself.  ``steady``, if there is one and it is True: the method
-       solves for the motion that repeats itself every turn of the schedule, whatever it starts from; ``counts["error"]`` is
+    3. ``dissipative``: whether the method removes energy by itself.  ``steady``: whether the method solves for the motion that
+       repeats itself every turn of the schedule, whatever it starts from; ``counts["error"]`` is
        the error of its displacement over the amplitude, ``counts["floquet"]``, if there is one, goes to result.json,
        ``counts["orbits"]``, a list of all steady motions that were found, to its ``motion.orbits``, and a scene that has no
        such motion is refused with a ``SceneError``.
-    4. ``advance(system, start, schedule, on_chunk)``: take the steps of the schedule and return a ``Record``; call
-       ``on_chunk(done, total)`` now and then, whose exceptions pass through; on failure raise ``ConvergenceError`` or
-       ``StabilityError`` with the last good state.
+    4. ``scheme``: ``OneStep``, ``Explicit`` or ``Static`` of ``raceway.core.schemes`` by their numbers, which run on every kind of
+       bodies; or ``Drivers`` of the method's own.  ``compiled(system, start, schedule, on_chunk)`` takes the steps of a ring
+       whose forces are compiled and returns a ``Record``; it calls ``on_chunk(done, total)`` now and then, whose exceptions
+       pass through.  ``stepped(system, recorder)`` takes those of any ``SteppedSystem``, each handed to
+       ``recorder.accept``; where ``compiled`` is left out, of compiled rings too.  A plan refuses bodies for which the driver is
+       missing.  On failure they raise ``ConvergenceError`` or ``StabilityError`` with the last good state.
     5. ``start.near``, if it is not None, is the ``solution`` that the same integrator left in the record of a similar motion:
        it may be started from, and must not change the answer beyond the method's tolerance; unless ``start.stay`` asks for
        the continuation of that motion where several exist.
@@ -121,8 +123,10 @@ class Integrator(Protocol):
     implicit: ClassVar[bool]
     inertial: ClassVar[bool]
     dissipative: ClassVar[bool]
+    steady: ClassVar[bool]
 
-    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record: ...
+    @property
+    def scheme(self) -> Scheme: ...
 
 
 class Identifier(Protocol):
@@ -242,7 +246,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
         "raceway_excitations",
         ("frequency_hz", "period_s", "amplitude_n", "sense", "parameters", "kernel"),
     ),
-    "integrator": ("raceway_integrators", ("order", "implicit", "inertial", "dissipative", "advance")),
+    "integrator": ("raceway_integrators", ("order", "implicit", "inertial", "dissipative", "steady", "scheme")),
     "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
     "mesher": ("raceway_meshers", ("mesh",)),
     "format": ("raceway_formats", ("suffixes", "read", "write")),

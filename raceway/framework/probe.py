@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.kernel.plugin_kernel import check_compiled
 from raceway.errors import PluginError
+from raceway.framework.plugin_kernel import check_compiled
 
 #: Gaps [m] and rates [m/s] that are tried, all contacts at once.
 _GAPS = (1e-3, 1e-9, 0.0, -1e-9, -1e-6, -1e-5)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 
-if TYPE_CHECKING:
-    from raceway.core.ring.advance import OnChunk
-    from raceway.core.ring.system import System
-    from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.schemes.explicit.scheme import Explicit
 
 
 @attrs.frozen
@@ -20,12 +17,10 @@ class CentralDifference:
     order: ClassVar[int] = 2
     implicit: ClassVar[bool] = False
     inertial: ClassVar[bool] = True
+    steady: ClassVar[bool] = False
     dissipative: ClassVar[bool] = False
 
-    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
-        import numpy as np
-
-        from raceway.core.ring.advance import advance
-        from raceway.core.ring.loops.central_difference import central_difference
-
-        return advance(central_difference, system, start, schedule, np.zeros(1), on_chunk)
+    @property
+    def scheme(self) -> Explicit:
+        """Central differences."""
+        return Explicit()

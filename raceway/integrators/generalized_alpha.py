@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 
+from raceway.core.schemes.one_step.scheme import OneStep
 from raceway.framework.options import between, inside, option
-
-if TYPE_CHECKING:
-    from raceway.core.ring.advance import OnChunk
-    from raceway.core.ring.system import System
-    from raceway.core.stepping.record import Motion, Record, Schedule
 
 
 @attrs.frozen
@@ -22,6 +18,7 @@ class GeneralizedAlpha:
     order: ClassVar[int] = 2
     implicit: ClassVar[bool] = True
     inertial: ClassVar[bool] = True
+    steady: ClassVar[bool] = False
     dissipative: ClassVar[bool] = True
 
     rho_infinity: float = option(
@@ -34,14 +31,9 @@ class GeneralizedAlpha:
         """Instances for the conformance suite."""
         return [cls(), cls(rho_infinity=0.5)]
 
-    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
-        import numpy as np
-
-        from raceway.core.ring.advance import advance
-        from raceway.core.ring.loops.implicit import implicit
-
+    @property
+    def scheme(self) -> OneStep:
+        """Chung and Hulbert's numbers: second order, and as little dissipation of low frequencies as can be."""
         rho = self.rho_infinity
         am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
-        gamma, beta = 0.5 - am + af, 0.25 * (1.0 - am + af) ** 2
-        coefficients = np.array([am, af, beta, gamma, self.tolerance])
-        return advance(implicit, system, start, schedule, coefficients, on_chunk)
+        return OneStep(am, af, 0.25 * (1.0 - am + af) ** 2, 0.5 - am + af, self.tolerance)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 
+from raceway.core.schemes.one_step.scheme import OneStep
 from raceway.framework.options import between, inside, option
-
-if TYPE_CHECKING:
-    from raceway.core.ring.advance import OnChunk
-    from raceway.core.ring.system import System
-    from raceway.core.stepping.record import Motion, Record, Schedule
 
 
 @attrs.frozen
@@ -22,6 +18,7 @@ class Newmark:
     order: ClassVar[int] = 2
     implicit: ClassVar[bool] = True
     inertial: ClassVar[bool] = True
+    steady: ClassVar[bool] = False
     dissipative: ClassVar[bool] = False
 
     gamma: float = option(0.5, help="0.5: second order, no dissipation", rule=between(0.5, 1.0))
@@ -35,11 +32,7 @@ class Newmark:
                 "unconditionally stable"
             )
 
-    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
-        import numpy as np
-
-        from raceway.core.ring.advance import advance
-        from raceway.core.ring.loops.implicit import implicit
-
-        coefficients = np.array([0.0, 0.0, self.beta, self.gamma, self.tolerance])
-        return advance(implicit, system, start, schedule, coefficients, on_chunk)
+    @property
+    def scheme(self) -> OneStep:
+        """The implicit one-step scheme without weights of the old step."""
+        return OneStep(beta=self.beta, gamma=self.gamma, tolerance=self.tolerance)

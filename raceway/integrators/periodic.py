@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.core.schemes.drivers import Drivers
 from raceway.errors import ConvergenceError
 from raceway.framework.options import inside, one_of, option
 
 if TYPE_CHECKING:
-    from raceway.core.ring.advance import OnChunk
     from raceway.core.ring.system import System
-    from raceway.core.stepping.record import Motion, Record, Schedule
+    from raceway.core.stepping.record import Motion, OnChunk, Record, Schedule
 
 
 @attrs.frozen
@@ -45,7 +45,13 @@ class Periodic:
         """Instances for the conformance suite."""
         return [cls(), cls(symmetry="none")]
 
-    def advance(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
+    @property
+    def scheme(self) -> Drivers:
+        """Collocation needs thousands of evaluations: of compiled forces only."""
+        return Drivers(compiled=self.solve)
+
+    def solve(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
+        """The motion that repeats itself, sampled at the steps of a schedule."""
         from raceway.core.periodic.steady import steady
 
         try:

@@ -12,6 +12,7 @@ import numpy as np
 from raceway.bodies.model import Model, build_model
 from raceway.core.ring.orbit import Orbit
 from raceway.core.ring.start import at_rest, from_orbit, static_orbit
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import StabilityError
 from raceway.pipeline.settle import Equilibrium, settle
@@ -107,9 +108,9 @@ def simulate(
         motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
     label = f"{scene.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
-    whole = method.advance(system, motion, schedule, progress)
+    whole = integrate(method, system, motion, schedule, progress)
     used = model.plan.turns - ceil(ramp_turns)
-    if start == "static" and method.inertial and not getattr(method, "steady", False):
+    if start == "static" and method.inertial and not method.steady:
         used = max(model.plan.turns // 3, 1)
     warnings += tuple(whole.counts.get("warnings", ()))
     return Simulation(whole.last(max(used, 1)), whole, critical, begin, warnings)
@@ -117,7 +118,7 @@ def simulate(
 
 def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:
     q, ball, system = equilibrium.displacement, equilibrium.ball, model.system.at_speed(0.0)
-    if getattr(model.scene.integrator.method, "steady", False):
+    if model.scene.integrator.method.steady:
         # Searched for from the equilibrium: what would happen there under the force at once is of no use.
         return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
     if model.system.spin is not None and orbit is None:

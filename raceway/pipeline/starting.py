@@ -50,7 +50,7 @@ def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = N
     watch : called in the search for orbits, which what it raises ends
     """
     scene, method = model.scene, model.scene.integrator.method
-    if getattr(method, "steady", False):
+    if method.steady:
         return Start("static")
     kind = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
     if scene.contact.friction > 0.0:

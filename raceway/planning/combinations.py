@@ -71,7 +71,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
     if scene.excitation is not None:
         _refuse_identifier(scene, refuse)
-        if getattr(method, "steady", False) and "record" in scene.identifier.method.needs:
+        if method.steady and "record" in scene.identifier.method.needs:
             _refuse_steady(scene, refuse)
     if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
         mass, tilt, _ = ring_inertia(scene)

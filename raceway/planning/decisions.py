@@ -144,7 +144,7 @@ def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -
     # Only what turns alike every turn needs one turn; a window over several turns needs them.
     repeats = scene.contact.law.state_size == 0 and not friction and not scene.kinematics.orbiting
     repeats = repeats and scene.excitation.period_s is not None and "phase" not in identifier.method.needs
-    steady = getattr(integrator.method, "steady", False)
+    steady = integrator.method.steady
     once = (steady or not integrator.method.inertial) and repeats and turns > 1
     if once and OTHER_TURNS not in parts.force:
         what = "the steady motion" if steady else "a series of equilibria without memory"

@@ -13,7 +13,7 @@ from raceway.planning.steady_orbits import compares_with_steady_motion, has_orbi
 from raceway.scene.tables import Scene
 
 _BODIES = "raceway.core.ring.kernels"
-_LOOPS = "raceway.core.ring.loops"
+_LOOPS = "raceway.core.schemes.compiled"
 #: Kernels of the bodies by what their balls need.
 _BALLS = {
     "weightless": "balls follow the ring at once",

@@ -14,7 +14,7 @@ def searches_orbits(scene: Scene) -> bool:
 def has_orbits(scene: Scene) -> bool:
     """Whether steady orbits of a transient, or of it without friction, can be searched for."""
     method, excitation, contact = scene.integrator.method, scene.excitation, scene.contact
-    if excitation is None or getattr(method, "steady", False) or not method.inertial:
+    if excitation is None or method.steady or not method.inertial:
         return False
     repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
     compiled = scene.bodies.kind != "elastic" and contact.discretisation != "nodal"
@@ -44,7 +44,7 @@ def compares_with_steady_motion(scene: Scene) -> bool:
     have no steady motion that can be solved for by itself.
     """
     method, excitation = scene.integrator.method, scene.excitation
-    if excitation is None or not method.inertial or getattr(method, "steady", False):
+    if excitation is None or not method.inertial or method.steady:
         return False
     steps_in_python = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
     if steps_in_python or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:

@@ -35,7 +35,7 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     told(not dynamic, "the scene has no [excitation]", *integration)
     still = dynamic and not recorded
     told(still, f"identifier '{scene.identifier.kind}' needs no recorded motion", *integration)
-    steady = recorded and getattr(scene.integrator.method, "steady", False)
+    steady = recorded and scene.integrator.method.steady
     told(
         steady,
         f"integrator '{scene.integrator.kind}' solves for the steady motion",

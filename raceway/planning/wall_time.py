@@ -64,7 +64,7 @@ def predicted_work(
         each += _CHANGING_S
     sample = count / 12.0 * (_CONDENSED_SAMPLE_S if condensed else _SAMPLE_S)
     samples = motion.turns * recorded_per_turn(motion.steps_per_turn, motion.turns, method.inertial)
-    return work + _orbits(scene) + samples * sample + (0.0 if getattr(method, "steady", False) else steps * each)
+    return work + _orbits(scene) + samples * sample + (0.0 if method.steady else steps * each)
 
 
 def _orbits(scene: Scene) -> float:

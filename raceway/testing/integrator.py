@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.core.ring.system import System
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.testing.steady import contact_motion, forgets_the_start, linear_motion, own_error, refuses_memory
@@ -49,7 +50,7 @@ def _static_start(system: System) -> Motion:
 
 
 def _is_steady(method: Any) -> bool:
-    return bool(getattr(method, "steady", False))
+    return method.steady
 
 
 class IntegratorSuite(Suite):
@@ -57,13 +58,14 @@ class IntegratorSuite(Suite):
 
     kind = "integrator"
 
-    @duty("attributes: order, implicit, inertial, dissipative, options; steady, if there is one")
+    @duty("attributes: order, implicit, inertial, dissipative, options; steady, scheme")
     def test_declaration(self, method: Any) -> None:
         check_class("integrator", method)
         require(type(method.order) is int and method.order >= 1, f"`order` = {method.order!r} must be 1 or more")
-        for word in ("implicit", "inertial", "dissipative"):
+        for word in ("implicit", "inertial", "dissipative", "steady"):
             require(type(getattr(method, word)) is bool, f"`{word}` must be True or False")
-        require(type(getattr(method, "steady", False)) is bool, "`steady` must be True or False")
+        drivers = [getattr(method.scheme, word, None) for word in ("compiled", "stepped")]
+        require(any(callable(one) for one in drivers), "`scheme` has no driver: give it `compiled`, `stepped` or both")
 
     @duty("a Record of every stride-th step with time, force, motion and counts; start and system untouched")
     def test_record(self, method: Any) -> None:
@@ -71,8 +73,8 @@ class IntegratorSuite(Suite):
         start = _start(system) if method.inertial else _static_start(system)
         schedule = Schedule(dt=2.0 * np.pi / SPEED / 60, steps_per_turn=60, turns=3, stride=3)
         before = [a.copy() for a in (start.q, start.v, start.a, system.load, system.law_state, system.mass)]
-        record = method.advance(system, start, schedule)
-        require(isinstance(record, Record), f"advance() returns {type(record).__name__}, not a Record")
+        record = integrate(method, system, start, schedule)
+        require(isinstance(record, Record), f"the scheme returns {type(record).__name__}, not a Record")
         times = schedule.dt * 3.0 * np.arange(1, 61)
         require(record.time.shape == (60,), f"{len(record.time)} samples of 180 steps with stride 3; there must be 60")
         require(np.allclose(record.time, times, rtol=1e-12), "`time` is not stride * dt * (1, 2, ...)")
@@ -110,7 +112,7 @@ class IntegratorSuite(Suite):
         if method.inertial:
             return "inertial"
         system = linear_system()
-        record = method.advance(system, _static_start(system), Schedule(2.0 * np.pi / SPEED / 24, 24, 2))
+        record = integrate(method, system, _static_start(system), Schedule(2.0 * np.pi / SPEED / 24, 24, 2))
         rest = record.displacement @ system.stiffness - record.force
         # The method's own tolerance is on the sum of forces; the springs alone carry the force here.
         worst = np.abs(rest).max() / np.abs(record.force).max()
@@ -132,7 +134,7 @@ class IntegratorSuite(Suite):
         time = 2.94 * depth / speed + 4e-6 / speed
         errors = []
         for steps in (200, 800):
-            record = method.advance(system, motion(system, np.zeros(5), speed * _X), Schedule(time / steps, steps, 1))
+            record = integrate(method, system, motion(system, np.zeros(5), speed * _X), Schedule(time / steps, steps, 1))
             require(record.contact_force[-1, 0] == 0.0, "the mass has not left the contact when it should have")
             errors.append(abs(-record.velocity[-1, 0] / speed - 1.0))
         require(errors[1] < 0.01, f"at 800 steps a contact the rebound is wrong by {100 * errors[1]:.3g} %")
@@ -152,7 +154,7 @@ class IntegratorSuite(Suite):
         for word, system in (("linear", linear_system(damped=False, forced=False)), ("contact", contact_system())):
             start = _start(system)
             at_rest = float(contact_energy(system, _resting(system)[None], np.zeros((1, 5)))[0])
-            record = method.advance(system, start, Schedule(PERIOD / 60, 60, 100))
+            record = integrate(method, system, start, Schedule(PERIOD / 60, 60, 100))
             energy = contact_energy(system, record.displacement, record.velocity) - at_rest
             begin = float(contact_energy(system, start.q[None], start.v[None])[0]) - at_rest
             turns = energy.reshape(100, 60).mean(axis=1) / begin
@@ -177,13 +179,13 @@ class IntegratorSuite(Suite):
         system = linear_system(damped=False, forced=False)
         critical = system.critical_time_step(np.zeros((5, 5)))
         factor = 20.0 if method.implicit else 0.95
-        record = method.advance(system, _start(system), Schedule(factor * critical, 100, 5))
+        record = integrate(method, system, _start(system), Schedule(factor * critical, 100, 5))
         largest, first = np.abs(record.displacement).max(), 2e-6
         # A velocity of 0.2 um times w may swing to a few times the first displacement near the limit.
         require(largest < 20.0 * first, f"at {factor:g} of the critical step the motion grows to {largest:.3g} m")
         if not method.implicit:
             try:
-                grown = method.advance(system, _start(system), Schedule(1.1 * critical, 1000, 2))
+                grown = integrate(method, system, _start(system), Schedule(1.1 * critical, 1000, 2))
             except StabilityError:
                 return ""
             require(
@@ -200,9 +202,9 @@ class IntegratorSuite(Suite):
             start = _start(system) if method.inertial else _static_start(system)
             period = 2.0 * np.pi / SPEED
             half, whole = (Schedule(period / 90, 90, turns) for turns in (1, 2))
-            once = method.advance(system, start, whole)
-            first = method.advance(system, start, half)
-            second = method.advance(system, first.final, half)
+            once = integrate(method, system, start, whole)
+            first = integrate(method, system, start, half)
+            second = integrate(method, system, first.final, half)
             for word in ("displacement", "velocity") if method.inertial else ("displacement",):
                 a, b = getattr(once, word)[90:], getattr(second, word)
                 # The second half begins at time zero again: the force's phase differs by rounding, 1e-13 of a turn; an
@@ -217,7 +219,7 @@ class IntegratorSuite(Suite):
             return refuses_memory(method)
         system = counting_system()
         start = _start(contact_system()) if method.inertial else _static_start(contact_system())
-        record = method.advance(system, start, Schedule(PERIOD / 60, 60, 2))
+        record = integrate(method, system, start, Schedule(PERIOD / 60, 60, 2))
         commits = record.contact_force[:, 1]
         wrong = np.flatnonzero(commits != np.arange(1, 121))
         require(
@@ -232,7 +234,7 @@ class IntegratorSuite(Suite):
         start = _start(system) if method.inertial else _static_start(system)
         calls: list[tuple[int, int]] = []
         schedule = Schedule(2.0 * np.pi / SPEED / 40, 40, 3)
-        method.advance(system, start, schedule, lambda done, total: calls.append((done, total)))
+        integrate(method, system, start, schedule, lambda done, total: calls.append((done, total)))
         require(calls, "on_chunk is never called")
         done = [c[0] for c in calls]
         require(done == sorted(done) and calls[-1] == (120, 120), f"on_chunk ends with {calls[-1]}, not (120, 120)")
@@ -241,7 +243,7 @@ class IntegratorSuite(Suite):
             raise Stop
 
         try:
-            method.advance(system, start, schedule, stop)
+            integrate(method, system, start, schedule, stop)
         except Stop:
             return
         require(False, "an exception of on_chunk does not stop the integration")
@@ -251,7 +253,7 @@ class IntegratorSuite(Suite):
         system = contact_system(load=-1e9)  # pulls the mass away with nothing to hold it
         start = Motion(np.zeros(5), np.zeros(5), np.zeros(5), np.zeros((1, 2)), np.zeros((1, 2)))
         try:
-            record = method.advance(system, start, Schedule(1e-3, 1000, 1))
+            record = integrate(method, system, start, Schedule(1e-3, 1000, 1))
         except ConvergenceError as error:
             q = error.state.get("q")
             require(q is not None, "the error has no `q` in its state")
@@ -268,7 +270,7 @@ class IntegratorSuite(Suite):
         q, v = exact(system, start, np.array([0.5 * time, time]))
         errors = []
         for count in counts:
-            record = method.advance(system, start, Schedule(time / count, count, 1))
+            record = integrate(method, system, start, Schedule(time / count, count, 1))
             at = [count // 2 - 1, count - 1]
             off = np.hstack([(record.displacement[at] - q) * NATURAL, record.velocity[at] - v])
             errors.append(np.abs(off).max())

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.core.ring.system import System
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Record, Schedule
 from raceway.errors import RacewayError
 from raceway.testing.compiled import along_x
@@ -29,7 +30,7 @@ def own_error(record: Record) -> float:
 def linear_motion(method: Any) -> str:
     """Springs, dashpots and a gyroscopic term: the closed form within the stated error."""
     system = linear_system()
-    record = method.advance(system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
+    record = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
     lines = _closed_form(system)
     wave = np.exp(1j * SPEED * record.time)[:, None]
     off = record.displacement - (wave * lines).real
@@ -43,7 +44,7 @@ def contact_motion(method: Any) -> str:
     system = attrs.evolve(contact_system(), force=along_x, force_params=np.array([0.5 * PRELOAD, speed]))
     start = motion(system, resting * np.array([1.0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5))
     schedule = Schedule(2.0 * np.pi / speed / 36, 36, 1)
-    record = method.advance(system, start, schedule)
+    record = integrate(method, system, start, schedule)
     q, _ = exact(system, attrs.evolve(record.final), record.time)
     size = np.ptp(q[:, 0]) / 2.0
     # A turn passes the error on, once: twice the stated error lies between the two.
@@ -55,8 +56,8 @@ def forgets_the_start(method: Any) -> str:
     system = linear_system()
     still = motion(system, np.zeros(5), np.zeros(5))
     moved = motion(system, np.array([0.0, 1e-6, -2e-6, 0.0, 0.0]), np.array([0.0, 3e-3, 1e-3, 0.0, 0.0]))
-    one = method.advance(system, still, Schedule(_TURN / 36, 36, 1))
-    two = method.advance(system, moved, Schedule(_TURN / 36, 36, 2))
+    one = integrate(method, system, still, Schedule(_TURN / 36, 36, 1))
+    two = integrate(method, system, moved, Schedule(_TURN / 36, 36, 2))
     off = np.abs(two.displacement - np.tile(one.displacement, (2, 1))).max() / np.abs(one.displacement).max()
     return _held(off, own_error(one) + own_error(two), "the motion from another start")
 
@@ -66,7 +67,7 @@ def refuses_memory(method: Any) -> str:
     system = counting_system()
     start = motion(contact_system(), 1e-6 * np.array([1.0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5))
     try:
-        record = method.advance(system, start, Schedule(_TURN / 36, 36, 1))
+        record = integrate(method, system, start, Schedule(_TURN / 36, 36, 1))
     except RacewayError as why:
         return f"refused: {why}"
     require(bool(np.all(np.diff(record.contact_force[:, 1]) > 0.0)), "the law's memory is ignored: refuse it or commit it")

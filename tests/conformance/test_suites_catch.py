@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from raceway.contact_laws.hertz import Hertz
+from raceway.core.schemes.drivers import Drivers
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark
@@ -152,8 +153,10 @@ class Conservative(GeneralizedAlpha):
 class Silent(Newmark):
     name = "silent"
 
-    def advance(self, system, start, schedule, on_chunk=None):
-        return super().advance(system, start, schedule, None)
+    @property
+    def scheme(self):
+        own = super().scheme
+        return Drivers(compiled=lambda system, start, schedule, on_chunk=None: own.compiled(system, start, schedule, None))
 
 
 class Late(Newmark):
@@ -161,9 +164,13 @@ class Late(Newmark):
 
     name = "late"
 
-    def advance(self, system, start, schedule, on_chunk=None):
-        record = super().advance(system, start, schedule, on_chunk)
-        return attrs.evolve(record, time=record.time + schedule.dt)
+    @property
+    def scheme(self):
+        def late(system, start, schedule, on_chunk=None):
+            record = Newmark().scheme.compiled(system, start, schedule, on_chunk)
+            return attrs.evolve(record, time=record.time + schedule.dt)
+
+        return Drivers(compiled=late)
 
 
 class Boasting(Periodic):
@@ -171,8 +178,8 @@ class Boasting(Periodic):
 
     name = "boasting"
 
-    def advance(self, system, start, schedule, on_chunk=None):
-        record = super().advance(system, start, schedule, on_chunk)
+    def solve(self, system, start, schedule, on_chunk=None):
+        record = super().solve(system, start, schedule, on_chunk)
         return attrs.evolve(record, displacement=1.0001 * record.displacement)
 
 

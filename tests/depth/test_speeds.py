@@ -13,6 +13,7 @@ from raceway.commands.screen.result import run_screen
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
 from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.pipeline.run import run
 from raceway.plugins.excitations.bidirectional import Bidirectional
@@ -335,8 +336,8 @@ def test_steps_from_python_follow_the_speed(built, integrator):
     system = model.system.at_speed(0.0)
     q, ball, _ = system.settle(model.guess)
     start = at_rest(system, q, ball, False)
-    compiled = model.scene.integrator.method.advance(model.system, start, schedule)
-    stepped = model.scene.integrator.method.advance(SteppedBearing(model.system), start, schedule)
+    compiled = integrate(model.scene.integrator.method, model.system, start, schedule)
+    stepped = integrate(model.scene.integrator.method, SteppedBearing(model.system), start, schedule)
     # 1e-9 of the step's forces is Newton's tolerance.
     assert np.abs(stepped.displacement - compiled.displacement).max() < 1e-6 * np.abs(compiled.displacement).max()
 

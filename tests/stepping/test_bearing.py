@@ -11,6 +11,7 @@ import pytest
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway.core.ring.start import at_rest, static_orbit
 from raceway.core.ring.stepped import SteppedBearing
+from raceway.core.schemes.drivers import Drivers, integrate
 from raceway.core.stepping.record import Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.errors import RacewayError, StabilityError
@@ -19,7 +20,7 @@ from raceway.pipeline.settle import settle
 from raceway.testing.integrator import IntegratorSuite
 
 #: Those that march in time.
-METHODS = [m for m in raceway_integrators() if not getattr(m, "steady", False)]
+METHODS = [m for m in raceway_integrators() if not m.steady]
 
 
 @attrs.frozen
@@ -31,8 +32,9 @@ class Stepped:
     def __getattr__(self, name: str) -> Any:
         return getattr(self.method, name)
 
-    def advance(self, system: Any, *rest: Any) -> Any:
-        return self.method.advance(SteppedBearing(system), *rest)
+    @property
+    def scheme(self) -> Drivers:
+        return Drivers(stepped=self.method.scheme.stepped)
 
 
 def case(integrator: str, **changes: Any):
@@ -60,8 +62,8 @@ CHANGES = [
 @pytest.mark.parametrize("kind", [m.name for m in METHODS])
 def test_records_equal_the_compiled_loops(kind, changes):
     method, system, start, schedule = case(kind, **changes)
-    wanted = method.advance(system, start, schedule)
-    found = method.advance(SteppedBearing(system), start, schedule)
+    wanted = integrate(method, system, start, schedule)
+    found = integrate(method, SteppedBearing(system), start, schedule)
     assert (found.time == wanted.time).all()
     for name in ("displacement", "velocity", "force", "gap", "contact_force", "ball"):
         a, b = getattr(wanted, name), getattr(found, name)
@@ -84,22 +86,22 @@ def test_loops_conform(method):
 @pytest.mark.parametrize("kind", [m.name for m in METHODS])
 def test_restart_from_disk_equals_going_on(kind, tmp_path):
     method, system, start, schedule = case(kind, contact={"damping": 300.0, "friction": 0.05})
-    whole = method.advance(SteppedBearing(system), start, schedule)
+    whole = integrate(method, SteppedBearing(system), start, schedule)
     half = attrs.evolve(schedule, steps_per_turn=20)
-    first = method.advance(SteppedBearing(system), start, half)
+    first = integrate(method, SteppedBearing(system), start, half)
     path = save_motion(first.final, tmp_path / "motion.npz")
-    second = method.advance(SteppedBearing(system), load_motion(path), attrs.evolve(half, first=20))
+    second = integrate(method, SteppedBearing(system), load_motion(path), attrs.evolve(half, first=20))
     for name in ("time", "displacement", "velocity", "force", "ball", "contact_force"):
         assert (np.concatenate([getattr(first, name), getattr(second, name)]) == getattr(whole, name)).all(), name
 
 
 def test_compiled_loops_keep_the_clock_too(tmp_path):
     method, system, start, schedule = case("generalized_alpha")
-    whole = method.advance(system, start, schedule)
+    whole = integrate(method, system, start, schedule)
     half = attrs.evolve(schedule, steps_per_turn=20)
-    first = method.advance(system, start, half)
+    first = integrate(method, system, start, half)
     path = save_motion(first.final, tmp_path / "motion.npz")
-    second = method.advance(system, load_motion(path), attrs.evolve(half, first=20))
+    second = integrate(method, system, load_motion(path), attrs.evolve(half, first=20))
     assert (np.concatenate([first.displacement, second.displacement]) == whole.displacement).all()
 
 
@@ -113,4 +115,4 @@ def test_step_above_the_stable_limit_is_refused_with_the_limit():
     method, system, start, schedule = case("central_difference")
     limit = system.critical_time_step(system.evaluate(start.q, ball=start.ball).stiffness)
     with pytest.raises(StabilityError, match=f"{limit:.4g} s"):
-        method.advance(SteppedBearing(system), start, attrs.evolve(schedule, dt=1.01 * limit))
+        integrate(method, SteppedBearing(system), start, attrs.evolve(schedule, dt=1.01 * limit))

@@ -18,6 +18,7 @@ from raceway.core.elastic.stepped import SteppedElastic
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import FACES, boundary
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.energy import drift
 from raceway.core.stepping.record import Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
@@ -97,7 +98,7 @@ def test_a_step_above_the_stable_limit_of_elements_and_contact_is_refused_with_t
     limit = stepped.stable_step()
     assert limit < 0.8 * min(body.operator.stable_step() for body in system.assembly.bodies)  # the contact's part
     with pytest.raises(StabilityError, match=f"limit of central differences, {limit:.4g} s"):
-        CentralDifference().advance(stepped, start, Schedule(1.01 * limit, 10, 1))
+        integrate(CentralDifference(), stepped, start, Schedule(1.01 * limit, 10, 1))
 
 
 def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one():
@@ -107,13 +108,13 @@ def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one
     with pytest.raises(
         StabilityError, match="s at t = .* s, where contacts have closed or stiffened. Take at least"
     ) as caught:
-        CentralDifference().advance(stepped, start, Schedule(step, 400, 1))
+        integrate(CentralDifference(), stepped, start, Schedule(step, 400, 1))
     named = float(re.search(r"differences, (\S+) s at", str(caught.value))[1])
     assert named < 0.5 * step
     assert np.isfinite(caught.value.state["q"]).all()
     # What the message asks for runs through.
     again, start = moving(cubes(gap=1e-7, penalty=1e16))
-    record = CentralDifference().advance(again, start, Schedule(0.8 * named, 400, 1))
+    record = integrate(CentralDifference(), again, start, Schedule(0.8 * named, 400, 1))
     assert record.contact_force.max() > 0.0
     # A whole face touches within one step, which costs a sixth of the energy there; above the limit it grew beyond the first.
     assert drift(record.energies) < 0.5
@@ -125,7 +126,9 @@ def test_going_on_from_disk_equals_never_having_stopped(method, tmp_path):
 
     def run(start, first, steps):
         stepped, begin = moving(cubes(gap=1e-7))
-        return method.advance(stepped, begin if start is None else load_motion(start), Schedule(dt, steps, 1, first=first))
+        return integrate(
+            method, stepped, begin if start is None else load_motion(start), Schedule(dt, steps, 1, first=first)
+        )
 
     whole, half = run(None, 0, 40), run(None, 0, 20)
     rest = run(save_motion(half.final, tmp_path / "half"), 20, 20)
@@ -139,7 +142,7 @@ def test_explicit_and_implicit_steps_agree_and_keep_the_energy():
     found = []
     for method, steps in ((CentralDifference(), 4000), (Newmark(), 400)):
         stepped, start = moving(cubes(gap=1e-7))
-        record = method.advance(stepped, start, Schedule(2e-5 / steps, steps, 1, stride=steps // 100))
+        record = integrate(method, stepped, start, Schedule(2e-5 / steps, steps, 1, stride=steps // 100))
         found.append(record)
         total = sum(record.energies[name] for name in ("elastic", "kinetic", "contact")) - record.energies["external"]
         # Second order at 0.05 us steps; the impact of faces is sudden.
@@ -153,7 +156,7 @@ def test_a_step_without_balance_keeps_state_and_history():
     stepped, start = moving(cubes(gap=-1e-7))
     stepped.solve = lambda *_: np.full(stepped.size, 1e-9)  # type: ignore[method-assign]
     with pytest.raises(ConvergenceError, match="did not converge after 0 of 5 steps") as caught:
-        Newmark().advance(stepped, start, Schedule(1e-7, 5, 1))
+        integrate(Newmark(), stepped, start, Schedule(1e-7, 5, 1))
     assert (caught.value.state["u"] == start.whole["u"]).all()
     assert np.isfinite(caught.value.state["residuals"]).all()
 

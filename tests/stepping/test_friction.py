@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.core.elastic.contacts.friction import CoulombFriction
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.energy import drift
 from raceway.core.stepping.record import Schedule
 from raceway.core.stepping.restart import load_motion, save_motion
@@ -103,7 +104,7 @@ def test_block_sticks_below_the_limit():
 
     block = Block(WEIGHT, MU, pull, stick=1e11)
     start = block.at_rest()
-    record = Newmark().advance(block, start, Schedule(4e-5, 125, 1))
+    record = integrate(Newmark(), block, start, Schedule(4e-5, 125, 1))
     x, sticking = (
         record.displacement[:, 0] - block.motion(block.begin(start)).q[0],
         0.3 * MU * WEIGHT / (1e11 * block.area.sum()),
@@ -121,7 +122,7 @@ def test_block_slips_above_the_limit():
     """Pulled with 2 mu N it gathers speed at mu N / m."""
     block = Block(WEIGHT, MU, lambda t: 2.0 * MU * WEIGHT)
     time = 3e-4
-    record = Newmark().advance(block, block.at_rest(), Schedule(time / 150, 150, 1))
+    record = integrate(Newmark(), block, block.at_rest(), Schedule(time / 150, 150, 1))
     gained = MU * WEIGHT / block.mass
     # Sticking springs load up first: a delay of some microseconds.
     assert record.velocity[-1, 0] == pytest.approx(gained * time, rel=0.01)
@@ -136,7 +137,7 @@ def test_block_slides_and_stops_as_in_closed_form(method):
     deceleration = MU * WEIGHT / block.mass
     time, distance = speed / deceleration, 0.5 * speed**2 / deceleration
     steps = 200 if method.implicit else int(1.4 * time / (0.8 * block.stable_step()))
-    record = method.advance(block, block.at_rest(speed), Schedule(1.4 * time / steps, steps, 1))
+    record = integrate(method, block, block.at_rest(speed), Schedule(1.4 * time / steps, steps, 1))
     x, v, t = record.displacement[:, 0], record.velocity[:, 0], record.time
     sliding = t < 0.9 * time
     assert np.abs(v[sliding] - (speed - deceleration * t[sliding])).max() < 0.01 * speed
@@ -152,7 +153,7 @@ def test_restart_of_a_block_from_disk(method, tmp_path):
     def run(start, first, steps):
         block = Block(WEIGHT, MU, lambda t: 3.0 * MU * WEIGHT * np.sin(3e4 * t))
         begin = block.at_rest() if start is None else load_motion(start)
-        return method.advance(block, begin, Schedule(dt, steps, 1, first=first))
+        return integrate(method, block, begin, Schedule(dt, steps, 1, first=first))
 
     whole = run(None, 0, 80)
     half = run(None, 0, 40)
@@ -166,7 +167,7 @@ def test_a_step_that_finds_no_balance_leaves_state_and_history():
     start = block.at_rest(1.0)
     block.solve = lambda *_: np.full(block.size, 1e-9)  # type: ignore[method-assign]
     with pytest.raises(ConvergenceError, match="did not converge after 0 of 10 steps") as caught:
-        Newmark().advance(block, start, Schedule(1e-6, 10, 1))
+        integrate(Newmark(), block, start, Schedule(1e-6, 10, 1))
     state = caught.value.state
     assert (state["u"] == start.whole["u"]).all()
     assert len(state["residuals"]) == 40

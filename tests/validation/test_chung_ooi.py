@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.schemes.drivers import integrate
 from raceway.framework.registry import default_registry
 from raceway.studies.many.reference import reference_cases
 from raceway.studies.verify.impacts import impact_of, measure, transient_integrators
@@ -59,7 +60,7 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
     balls, first = np.zeros((1, 2)), np.array([1.0, 0, 0, 0, 0])
     start = Motion(x0 * first, np.zeros(5), -(speed**2) * x0 * first, balls, balls.copy())
     schedule = Schedule(2 * np.pi / speed / 200, 200, 1)
-    record = default_registry().find("integrator", name).plugin().advance(system, start, schedule)
+    record = integrate(default_registry().find("integrator", name).plugin(), system, start, schedule)
     assert record.displacement[:, 0] == pytest.approx(x0 * np.cos(speed * record.time), abs=1e-3 * x0)
     assert record.contact_force.max() == 0.0
 
@@ -76,7 +77,7 @@ def test_an_impact_on_a_penalty(name):
     dt = 2.8 * deepest / speed / 100  # Hertz's contact lasts 2.94 d_max / v, this one a little less
     balls, first = np.zeros((1, 2)), np.array([1.0, 0, 0, 0, 0])
     start = Motion(-2.5 * dt * speed * first, speed * first, np.zeros(5), balls, balls.copy())
-    record = default_registry().find("integrator", name).plugin().advance(system, start, Schedule(dt, 120, 1))
+    record = integrate(default_registry().find("integrator", name).plugin(), system, start, Schedule(dt, 120, 1))
     assert record.contact_force.max() == pytest.approx(factor * deepest**2, rel=1e-3)
     assert record.velocity[-1, 0] == pytest.approx(-speed, rel=1e-3)
 

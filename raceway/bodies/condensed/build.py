@@ -180,7 +180,7 @@ def _refuse_stiff_law(scene: Scene, stiff: Built, bodies: ElasticBodies) -> None
 def _refuse_dashpots(scene: Scene, plan: Plan, bodies: ElasticBodies) -> None:
     """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
     taken = -min(bodies.at(scene.bearing.contact_angle))
-    if plan.time_step_s is None or getattr(scene.integrator.method, "steady", False) or taken <= 0.0:
+    if plan.time_step_s is None or scene.integrator.method.steady or taken <= 0.0:
         return
     # A rate is 1.5 / dt of a displacement; the contact's own stiffness needs the other half.
     bound = 0.5 * plan.time_step_s / (1.5 * taken)

@@ -18,12 +18,12 @@ from raceway.contact_laws.hertz import Hertz
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.ring import ElasticRing
 from raceway.core.elastic.setup import Setup
-from raceway.core.kernel.plugin_kernel import plugin_kernel
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, FRICTION
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError, PluginError, SceneError
 from raceway.framework.contracts import ContactPairs
+from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.plan import Plan
 from raceway.scene.inner_ring import radial_growth
 from raceway.scene.tables import Scene

@@ -17,7 +17,6 @@ from raceway.bodies.mounting import place_ring
 from raceway.bodies.patches.report import PatchBodies
 from raceway.bodies.rigid.build import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
-from raceway.core.kernel.plugin_kernel import plugin_kernel
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.patches.compliances import RingBody, Solid, make_ball, make_patch
 from raceway.core.patches.contact import BeyondPatch
@@ -32,6 +31,7 @@ from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
+from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.patches import nodes_of
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene

@@ -10,10 +10,10 @@ from raceway.bodies.basis import Basis, Built, changing_speed, excitation, law_p
 from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.kernel.plugin_kernel import plugin_kernel
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
+from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.framework.probe import probe_excitation, probe_law
 from raceway.planning.plan import Plan
 from raceway.scene.inner_ring import radial_growth

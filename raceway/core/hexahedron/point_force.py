@@ -9,7 +9,7 @@ from numba import float64, int64, uint32, void
 from raceway.core.hexahedron.stiffness import stress_rows
 from raceway.core.hexahedron.strain import COLUMNS, strain_matrices
 from raceway.core.jit import jit
-from raceway.core.kernel.dense import solve
+from raceway.core.ring.dense import solve
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 

@@ -18,7 +18,7 @@ from numba import float64, int64
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
-from raceway.core.kernel.dense import cholesky_solve
+from raceway.core.ring.dense import cholesky_solve
 from raceway.core.ring.kernels import STORED
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, TILT_ARM, stop
 from raceway.core.signatures import LAW_POINTER, MATRIX, SETTLE, VECTOR

@@ -8,7 +8,7 @@ It starts near the solution: from the equilibrium without those forces, or from 
 import numpy as np
 
 from raceway.core.jit import jit
-from raceway.core.kernel.dense import solve
+from raceway.core.ring.dense import solve
 from raceway.core.ring.kernels.columns import slips_end
 from raceway.core.ring.kernels.layout import CAGE, TILT_ARM, stop
 from raceway.core.signatures import SETTLE

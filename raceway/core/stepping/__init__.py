@@ -10,5 +10,5 @@ energy              balance of the energies that a system tells
 elastic             elastic bodies in nodal contact, stepped in time
 restart             a motion on disk, to go on from
 
-Each loop does what the compiled loop of the same name in ``raceway.core.ring.loops`` does, step for step.
+Each loop does what the compiled loop of the same name in ``raceway.core.schemes.compiled`` does, step for step.
 """

@@ -10,6 +10,8 @@ from raceway.core.stepping.protocol import Observation, State, SteppedSystem
 from raceway.core.stepping.record import OnChunk, Record, Schedule
 from raceway.errors import ConvergenceError, StabilityError
 
+#: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
+BOUND = 1.0
 #: Seconds between two reports of progress.
 _REPORT_S = 0.1
 
@@ -58,7 +60,14 @@ class Recorder:
         Parameters
         ----------
         velocity : (size,) what the record shows; None for ``state.v``
+
+        Raises
+        ------
+        StabilityError
+            A displacement or rotation that no bearing makes, or that is no number.
         """
+        if not np.abs(state.u).max() < BOUND:
+            raise self.unbounded()
         system, schedule = self.system, self.schedule
         outer = self.load(self.time_of(self._done + 1))
         self._work += float(0.5 * (self._outer + outer) @ (state.u - self.state.u))

@@ -178,7 +178,7 @@ def _time_step(
     given : steps a turn of the second run
     """
     method, first = model.scene.integrator.method, motions[-1][1]
-    if getattr(method, "steady", False):
+    if method.steady:
         own = first.whole.counts.get("error")
         return Part(own, "the method's own estimate, of the displacement over its amplitude"), None
     if model.scene.bodies.kind == "elastic":
@@ -287,7 +287,7 @@ def _transient(
     on_progress: OnProgress | None,
 ) -> Part:
     method, value, simulation = model.scene.integrator.method, found.dynamic_stiffness, motions[-1][1]
-    if getattr(method, "steady", False):
+    if method.steady:
         return Part(0.0, "one turn of the steady motion: nothing dies out")
     memory = not model.system.conservative or model.scene.contact.law.state_size > 0
     if not method.inertial and (model.plan.turns == 1 or not memory):

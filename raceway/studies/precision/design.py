@@ -190,7 +190,7 @@ def default_points(scene: Scene, registry: Registry) -> list[tuple[str, dict[str
 
 def is_steady(method: type) -> bool:
     """Whether an integrator solves for the periodic motion itself."""
-    return bool(getattr(method, "steady", False))
+    return method.steady
 
 
 def short(text: str) -> str:

@@ -13,6 +13,7 @@ from typing import Any
 
 import attrs
 
+from raceway.core.schemes.drivers import integrate
 from raceway.framework.registry import Registry
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
@@ -187,7 +188,7 @@ def motion(case: Case, registry: Registry) -> list[Row]:
     setting = {**a["shown"], "integrator": a["integrator"], "steps": steps, "step/limit": step / limit}
 
     def balance() -> Measured:
-        record = method.advance(ring, start, Schedule(step, steps, 1))
+        record = integrate(method, ring, start, Schedule(step, steps, 1))
         worst = drift(record.energies) or 0.0
         return worst, worst
 
@@ -197,7 +198,7 @@ def motion(case: Case, registry: Registry) -> list[Row]:
         above = {**setting, "steps": 1, "step/limit": 1.02}
         far = Schedule(1.02 * limit, 10, 1)
         why = "it is refused before it blows up"
-        rows.append(refused(case.name, above, "above the stable limit", why, lambda: method.advance(ring, start, far)))
+        rows.append(refused(case.name, above, "above the stable limit", why, lambda: integrate(method, ring, start, far)))
     return rows
 
 
@@ -216,7 +217,7 @@ def rubbing(case: Case, registry: Registry) -> list[Row]:
     still = settle(model)
     start = at_rest(model.system, still.displacement, still.ball, False)
     step, steps = _RUBBING
-    energies = Newmark(tolerance=1e-6).advance(model.system, start, Schedule(step, steps, 1)).energies
+    energies = integrate(Newmark(tolerance=1e-6), model.system, start, Schedule(step, steps, 1)).energies
     setting = {**a["shown"], "integrator": "newmark", "steps": steps, "step_s": step}
     worst = drift(energies) or 0.0
     small = AtMost(1e-3, "a period of the ring takes forty of these steps; waves of single elements carry little")

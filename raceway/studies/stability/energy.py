@@ -11,6 +11,7 @@ import numpy as np
 from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import Registry
@@ -40,7 +41,7 @@ def million_steps(case: Case, registry: Registry) -> list[Row]:
     note: list[str] = []
 
     def trend() -> Measured:
-        record = method.advance(
+        record = integrate(method,
             found.system, found.displaced(found.direction(a["amplitude"])), Schedule(a["factor"] * found.limit, a["steps"] // _BLOCKS, _BLOCKS, _STRIDE)
         )  # fmt: skip
         really = bool((record.contact_force <= 0.0).any())
@@ -98,7 +99,7 @@ def impact(case: Case, registry: Registry) -> list[Row]:
         np.array([-0.4 * dt * speed, 0, 0, 0, 0]), np.array([speed, 0, 0, 0, 0.0]), np.zeros(5), balls, balls.copy()
     )
     setting = {"integrator": a["integrator"], **a["shown"], "speed [m/s]": speed, "steps a contact": a["steps"]}
-    record = method.advance(system, first, Schedule(dt, 2 * a["steps"], 1))
+    record = integrate(method, system, first, Schedule(dt, 2 * a["steps"], 1))
     left = -float(record.velocity[-1, 0])
     energy = (left / speed) ** 2 - 1.0
     close = Near(0.02, "one step lies up to a hundredth of the contact's time from the peak")
@@ -133,7 +134,7 @@ def deep_penetration(case: Case, registry: Registry) -> list[Row]:
     setting = {"integrator": a["integrator"], **a["shown"], "depth [m]": a["depth"], "step/limit there": 0.05}
 
     def drift() -> Measured:
-        record = method.advance(found.system, start, Schedule(0.05 * limit, 1000, 10))
+        record = integrate(method, found.system, start, Schedule(0.05 * limit, 1000, 10))
         worst = energy_balance(found.system, record).drift
         return worst, worst
 
@@ -186,7 +187,7 @@ def chatter(case: Case, registry: Registry) -> list[Row]:
     def unrest() -> Measured:
         found = []
         for height in _HEIGHTS:
-            record = method.advance(system, _falling(load / mass, height * q[0]), Schedule(a["step"] * period, 400, 1))
+            record = integrate(method, system, _falling(load / mass, height * q[0]), Schedule(a["step"] * period, 400, 1))
             late = record.contact_force[-100:, 0]
             found.append((float(np.sqrt(np.mean((late / load - 1.0) ** 2))), 100.0 * float((late <= 0.0).mean()), height))
         worst, opened, height = max(found)

@@ -13,6 +13,7 @@ from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.ring.orbit import Orbit, at_time, steady_orbit
 from raceway.core.ring.start import from_orbit
 from raceway.core.ring.system import System
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import Registry
@@ -63,7 +64,7 @@ def _around_the_limit(
     def growth(factor: float) -> float:
         """Largest displacement over the first; of a motion that was stopped, where it was stopped."""
         try:
-            record = method.advance(system, start, Schedule(factor * limit, _STEPS, 1))
+            record = integrate(method, system, start, Schedule(factor * limit, _STEPS, 1))
         except ConvergenceError as stop:  # grown until the balls find no place, or beyond a metre
             return float(np.abs((stop.state["q"] - rest) * weight).max() / size)
         return float(np.abs((record.displacement - rest) * weight).max() / size)
@@ -110,7 +111,7 @@ def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
 
     def follow() -> Measured:
         schedule = Schedule(period / steps, steps, _TURNS)
-        record = method.advance(model.system, from_orbit(model.system, orbit, schedule.dt), schedule)
+        record = integrate(method, model.system, from_orbit(model.system, orbit, schedule.dt), schedule)
         true = np.array([at_time(orbit.displacement, period, t) for t in record.time[-steps:]])
         size = np.abs(orbit.displacement - orbit.displacement.mean(axis=0)).max(axis=0)[1:3].max()
         return float(np.abs(record.displacement[-steps:, 1:3] - true[:, 1:3]).max() / size), None

@@ -48,7 +48,7 @@ def transient(registry: Registry) -> list[str]:
 
 def is_transient(entry: Entry) -> bool:
     plugin: Any = entry.plugin
-    return plugin.inertial and getattr(plugin, "transient", True) and not getattr(plugin, "steady", False)
+    return plugin.inertial and not plugin.steady
 
 
 def pair_laws(registry: Registry) -> list[str]:

@@ -21,6 +21,7 @@ import numpy as np
 
 from raceway.core.contact.hertz import contact_modulus, ellipse
 from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.framework.registry import Entry, Registry
 from raceway.studies.many.reference import Case, Number
@@ -73,7 +74,7 @@ def impact_of(inputs: dict[str, Any]) -> Impact:
 def transient_integrators(registry: Registry) -> list[Entry]:
     """Integrators that march through time with inertia.  One that finds a steady orbit instead says ``steady = True``."""
     found = [entry for entry in registry.all() if entry.kind == "integrator"]
-    return [e for e in found if e.plugin.inertial and not getattr(e.plugin, "steady", False)]  # type: ignore[attr-defined]
+    return [e for e in found if e.plugin.inertial and not e.plugin.steady]  # type: ignore[attr-defined]
 
 
 def impact_of_spheres(case: Case, registry: Registry) -> Iterator[Number]:
@@ -123,7 +124,7 @@ def measure(method: Any, impact: Impact, steps: int, phase: float) -> tuple[floa
     ahead = np.array([-lead * dt * impact.speed, 0.0, 0.0, 0.0, 0.0])
     balls = np.zeros((1, 2))
     start = Motion(ahead, np.array([impact.speed, 0.0, 0.0, 0.0, 0.0]), np.zeros(5), balls, balls.copy())
-    record = method.advance(system, start, Schedule(dt, steps + steps // 10 + 4, 1))
+    record = integrate(method, system, start, Schedule(dt, steps + steps // 10 + 4, 1))
     t, x = record.time, record.displacement[:, 0]
     inside = np.flatnonzero(x > 0.0)
     if len(inside) == 0 or inside[0] == 0 or inside[-1] == len(x) - 1:

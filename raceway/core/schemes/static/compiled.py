@@ -14,7 +14,7 @@ from raceway.core.jit import jit
 from raceway.core.ring.equilibrium import settle
 from raceway.core.ring.kernels.columns import slips_end, work_rows
 from raceway.core.ring.kernels.layout import stop
-from raceway.core.ring.loops import note_step, outer_force
+from raceway.core.schemes.compiled import note_step, outer_force
 from raceway.core.signatures import FORCE_POINTER, LAW_POINTER, LOOP, MATRIX, SYSTEM_POINTER, VECTOR
 
 
@@ -72,7 +72,7 @@ def quasi_static(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
 ):  # fmt: skip
-    """See ``raceway.core.ring.loops``; motion[1] is not a velocity here but the change over the last step."""
+    """See ``raceway.core.schemes.compiled``; motion[1] is not a velocity here but the change over the last step."""
     work = np.zeros((work_rows(scalars, table), 2 * ball.shape[0]))
     f, K, report, still, trial = np.empty(5), np.empty((5, 5)), np.zeros(2), motion.copy(), np.empty_like(ball)
     q, total, outer, time = np.empty(5), np.empty(5), np.empty(5), np.empty(1)

@@ -4,9 +4,9 @@ import numpy as np
 
 from raceway.core.jit import jit
 from raceway.core.ring.kernels.columns import work_rows
-from raceway.core.ring.loops import note_step
-from raceway.core.ring.loops.quasi_static import accept, extrapolate
 from raceway.core.ring.root import find_root
+from raceway.core.schemes.compiled import note_step
+from raceway.core.schemes.static.compiled import accept, extrapolate
 from raceway.core.signatures import LOOP
 
 
@@ -15,7 +15,7 @@ def quasi_static_tangential(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
 ):  # fmt: skip
-    """See ``raceway.core.ring.loops``; motion[1] is not a velocity here but the change over the last step."""
+    """See ``raceway.core.schemes.compiled``; motion[1] is not a velocity here but the change over the last step."""
     work = np.zeros((work_rows(scalars, table), 2 * ball.shape[0]))
     f, K, report, still, trial = np.empty(5), np.empty((5, 5)), np.zeros(2), motion.copy(), np.empty_like(ball)
     q, total, outer, time = np.empty(5), np.empty(5), np.empty(5), np.empty(1)

@@ -1,9 +1,10 @@
-"""Newmark's method and generalised-alpha for stepped systems; equations in ``raceway.core.ring.loops.implicit``."""
+"""The loop for systems that are stepped from Python; equations in ``raceway.core.schemes.one_step``."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from raceway.core.schemes.one_step.scheme import OneStep
 from raceway.core.stepping.protocol import State, SteppedSystem
 from raceway.core.stepping.recorder import Recorder
 from raceway.errors import ConvergenceError
@@ -14,19 +15,17 @@ HALVINGS = 8
 PATIENCE = 10
 #: A force that is none [N]: a motion that has died out is not resolved further.
 NOTHING = 1e-30
-#: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
-BOUND = 1.0
 
 
-def implicit(system: SteppedSystem, recorder: Recorder, coefficients: np.ndarray) -> None:
-    """Take all steps of the recorder's schedule; ``coefficients``: am, af, beta, gamma, tolerance of Newton."""
+def implicit(system: SteppedSystem, recorder: Recorder, scheme: OneStep) -> None:
+    """Take all steps of the recorder's schedule."""
     for step in range(1, recorder.schedule.steps + 1):
-        recorder.accept(_step(system, recorder, recorder.time_of(step), coefficients))
+        recorder.accept(_step(system, recorder, recorder.time_of(step), scheme))
 
 
-def _step(system: SteppedSystem, recorder: Recorder, t: float, coefficients: np.ndarray) -> State:
+def _step(system: SteppedSystem, recorder: Recorder, t: float, scheme: OneStep) -> State:
     """The state at time t, one step on."""
-    am, af, beta, gamma, tolerance = (float(c) for c in coefficients)
+    am, af, beta, gamma, tolerance = scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma, scheme.tolerance
     before, dt = recorder.state, recorder.schedule.dt
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
     predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
@@ -53,8 +52,6 @@ def _step(system: SteppedSystem, recorder: Recorder, t: float, coefficients: np.
         rounding = 1e-6 * to_a * system.measure(system.mass_times(np.abs(u)))
         scale = max(system.contacts()[2], load, system.measure(inertia), rounding)
         if norm <= tolerance * scale + NOTHING:
-            if np.abs(u).max() >= BOUND:
-                raise recorder.unbounded()
             return State(u, v, a, rest)
         if norm > (2.0 if len(history) < PATIENCE else 0.999) * norm_before and halvings < HALVINGS:
             halvings += 1

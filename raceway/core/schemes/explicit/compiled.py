@@ -1,22 +1,11 @@
-"""Central differences in the velocity form: explicit in the contacts, implicit in the constant linear damping.
-
-Notes
------
-v(1/2) = v0 + dt/2 a0,  q1 = q0 + dt v(1/2),  (M + dt/2 C) a1 = F1 - f(q1, v0 + dt a0) - K q1 - C v(1/2),
-v1 = v(1/2) + dt/2 a1.  Contact forces that depend on the rate see the predicted velocity v0 + dt a0, so that the order
-stays 2 with damped contacts.  Stable for dt < 2 / (largest natural frequency of the tangent).
-
-References
-----------
-Belytschko, Liu, Moran: Nonlinear Finite Elements for Continua and Structures, box 6.1.
-"""
+"""The compiled loop; equations in ``raceway.core.schemes.explicit``."""
 
 import numpy as np
 
 from raceway.core.jit import jit
-from raceway.core.kernel.dense import solve
+from raceway.core.ring.dense import solve
 from raceway.core.ring.kernels.columns import accept_balls, next_balls, work_rows
-from raceway.core.ring.loops import note_step, outer_force
+from raceway.core.schemes.compiled import note_step, outer_force
 from raceway.core.signatures import LOOP
 
 
@@ -25,7 +14,7 @@ def central_difference(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
 ):  # fmt: skip
-    """See ``raceway.core.ring.loops``."""
+    """See ``raceway.core.schemes.compiled``."""
     z = ball.shape[0]
     work = np.zeros((work_rows(scalars, table), 2 * z))
     # No tangents are asked for.

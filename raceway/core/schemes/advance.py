@@ -1,7 +1,4 @@
-"""Takes the steps of a schedule: compiled systems by a compiled loop, in chunks; others step by step from Python.
-
-Progress can be shown between chunks, and a stop is honoured.
-"""
+"""Runs a compiled loop in chunks: progress can be shown between them, and a stop is honoured."""
 
 from __future__ import annotations
 
@@ -10,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from raceway.core.ring.address import by_address
-from raceway.core.ring.loops import (
+from raceway.core.ring.system import System
+from raceway.core.schemes.compiled import (
     BALLS,
     CONTACT_FORCE,
     COUNTERS,
@@ -21,19 +19,16 @@ from raceway.core.ring.loops import (
     ROWS,
     UNBOUNDED,
 )
-from raceway.core.ring.system import System
-from raceway.core.stepping.protocol import SteppedSystem
 from raceway.core.stepping.record import Motion, OnChunk, Record, Schedule
 from raceway.core.stepping.states import check_start
-from raceway.errors import ConvergenceError, PluginError, StabilityError
+from raceway.errors import ConvergenceError, StabilityError
 
-__all__ = ["OnChunk", "advance"]
 _CHUNK = 20_000
 
 
 def advance(
     loop: Any,
-    system: System | SteppedSystem,
+    system: System,
     start: Motion,
     schedule: Schedule,
     coefficients: np.ndarray,
@@ -44,8 +39,6 @@ def advance(
     Parameters
     ----------
     loop : kernel with the signature ``raceway.core.signatures.LOOP``
-    system : compiled, or one that is stepped from Python by the loop of the same name in ``raceway.core.stepping``: a
-        ``SteppedSystem``, or one of the ring's five coordinates that is no compiled one (its ``companion`` is another)
     coefficients : (k,) the method's own numbers
 
     Raises
@@ -53,8 +46,6 @@ def advance(
     ConvergenceError, StabilityError
         With the reason, the time and the last good motion in ``state``.
     """
-    if not isinstance(system, System) or system.companion is not system:
-        return _step(loop, system, start, schedule, coefficients, on_chunk)
     check_start(system, start)
     z = system.ball_count
     rows = np.zeros((schedule.steps // schedule.stride, 16))
@@ -106,37 +97,6 @@ def advance(
             "max_penetration_m": float(counters[PENETRATION]),
             "peak_contact_force_n": float(counters[CONTACT_FORCE]),
         },
-    )
-
-
-def _step(
-    loop: Any, system: Any, start: Motion, schedule: Schedule, coefficients: np.ndarray, on_chunk: OnChunk | None
-) -> Record:
-    from raceway.core.ring.loops.central_difference import central_difference
-    from raceway.core.ring.loops.implicit import implicit
-    from raceway.core.ring.loops.quasi_static import quasi_static
-    from raceway.core.stepping import central_difference as explicit_loop
-    from raceway.core.stepping import implicit as implicit_loop
-    from raceway.core.stepping import quasi_static as static_loop
-    from raceway.core.stepping.recorder import Recorder
-
-    known = [
-        (implicit, implicit_loop.implicit),
-        (central_difference, explicit_loop.central_difference),
-        (quasi_static, static_loop.quasi_static),
-    ]
-    if not system.conservative:
-        from raceway.core.ring.loops.quasi_static_tangential import quasi_static_tangential
-
-        known.append((quasi_static_tangential, static_loop.quasi_static))
-    for compiled, stepped in known:
-        if loop is compiled:
-            stepper: SteppedSystem = system.stepped() if isinstance(system, System) else system
-            recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
-            stepped(stepper, recorder, coefficients)
-            return recorder.record()
-    raise PluginError(
-        f"loop `{loop.__name__}` has no counterpart for bodies that are stepped from Python: use a built-in one"
     )
 
 

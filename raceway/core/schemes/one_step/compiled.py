@@ -1,25 +1,12 @@
-"""Newmark's method and the generalised-alpha method in one loop: Newton in the displacement of the new step.
-
-Notes
------
-M [(1 - am) a1 + am a0] + (1 - af) r1 + af r0 = 0 with r = f + C v + K q - F,
-q1 = q0 + dt v0 + dt^2 [(1/2 - beta) a0 + beta a1],  v1 = v0 + dt [(1 - gamma) a0 + gamma a1].
-The a of generalised-alpha is an algorithmic quantity: it is carried from step to step, never recomputed from the
-balance of forces, which would cost an order.  Newmark is am = af = 0.  ``coefficients``: am, af, beta, gamma,
-tolerance of Newton.  The rates of the balls follow the second-order backward difference.
-
-References
-----------
-Newmark, J. Eng. Mech. Div. ASCE 85 (1959); Chung, Hulbert, J. Appl. Mech. 60 (1993), equations 16 to 27.
-"""
+"""The compiled loop; equations in ``raceway.core.schemes.one_step``.  ``coefficients``: am, af, beta, gamma, tolerance."""
 
 import numpy as np
 
 from raceway.core.jit import jit
-from raceway.core.kernel.dense import solve
+from raceway.core.ring.dense import solve
 from raceway.core.ring.kernels.columns import accept_balls, next_balls, work_rows
 from raceway.core.ring.kernels.layout import TILT_ARM
-from raceway.core.ring.loops import note_step, outer_force
+from raceway.core.schemes.compiled import note_step, outer_force
 from raceway.core.signatures import LOOP
 
 _NEWTON_LIMIT = 40
@@ -32,7 +19,7 @@ def implicit(
     system, law, force, law_params, scalars, table, force_params, mass, damping, stiffness, free, load, coefficients,
     dt, ramp, first, count, motion, ball, ball_before, law_state, stride, rows, probes, counters,
 ):  # fmt: skip
-    """See ``raceway.core.ring.loops``."""
+    """See ``raceway.core.schemes.compiled``."""
     am, af, beta, gamma, tolerance = (
         coefficients[0], coefficients[1], coefficients[2], coefficients[3], coefficients[4],
     )  # fmt: skip

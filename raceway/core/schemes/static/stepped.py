@@ -1,17 +1,17 @@
-"""The motion as a series of equilibria, for stepped systems."""
+"""The loop for systems that are stepped from Python; equations in ``raceway.core.schemes.static``."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.stepping.implicit import BOUND, HALVINGS, NEWTON_LIMIT, NOTHING, PATIENCE
+from raceway.core.schemes.one_step.stepped import HALVINGS, NEWTON_LIMIT, NOTHING, PATIENCE
 from raceway.core.stepping.protocol import State, SteppedSystem
-from raceway.core.stepping.recorder import Recorder
+from raceway.core.stepping.recorder import BOUND, Recorder
 from raceway.errors import ConvergenceError
 
 
-def quasi_static(system: SteppedSystem, recorder: Recorder, coefficients: np.ndarray) -> None:
-    """Take all steps of the recorder's schedule; ``coefficients``: tolerance.
+def quasi_static(system: SteppedSystem, recorder: Recorder, tolerance: float) -> None:
+    """Take all steps of the recorder's schedule.
 
     Notes
     -----
@@ -21,7 +21,7 @@ def quasi_static(system: SteppedSystem, recorder: Recorder, coefficients: np.nda
     nothing = np.zeros(system.size)
     for step in range(1, recorder.schedule.steps + 1):
         before = recorder.state
-        u, rest = equilibrium(system, recorder, recorder.time_of(step), before.u + before.v, float(coefficients[0]))
+        u, rest = equilibrium(system, recorder, recorder.time_of(step), before.u + before.v, tolerance)
         recorder.accept(State(u, u - before.u, nothing, rest), velocity=nothing)
 
 
