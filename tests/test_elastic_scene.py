@@ -125,7 +125,7 @@ def test_the_tangent_is_symmetric_and_positive(static):
 
 def test_a_ring_that_rides_along_with_its_shaft_feels_nothing_of_its_seat():
     """To the rounding of sums whose terms are as large as what the bed does where the ring stays behind."""
-    assembly = built(supports={"inner_seat": 1e12, "tilt": "free"}).bodies.bearing.system.assembly
+    assembly = built(supports={"inner_seat": 1e12, "tilt": "free"}).bearing.bearing.system.assembly
     for q in 1e-6 * np.eye(5):
         along, behind = (np.concatenate([q, part * (assembly.carried @ q)[assembly.free]]) for part in (1.0, 0.0))
         rides, stays = (np.abs(assembly.internal(y, assembly.nodal(y))).max() for y in (along, behind))
@@ -140,7 +140,7 @@ def test_the_shaft_s_tilt_stiffness_is_no_part_of_the_bearing_s():
 
 def test_dashpots_over_the_ellipse_at_the_reference_load_are_the_scene_s():
     model = built(contact={"damping": 500.0})
-    bearing = model.bodies.bearing
+    bearing = model.bearing.bearing
     a, b = model.inner.semi_axes(bearing.setup.reference_load)
     assert bearing.system.contact.damping * np.pi * a * b == pytest.approx(500.0, rel=1e-12)
 
@@ -148,7 +148,7 @@ def test_dashpots_over_the_ellipse_at_the_reference_load_are_the_scene_s():
 def test_the_matrix_of_a_step_is_that_of_its_forces():
     model = built(**EXCITED, rotor={"damping": 300.0}, supports={"tilt": "locked"})
     settle(model)
-    system = model.bodies.bearing.system
+    system = model.bearing.bearing.system
     y = np.random.default_rng(2).standard_normal(system.size) * system.assembly.unknown
     for parts, wanted in (((0.0, 1.0, 0.0), system.damping_times(y)), ((0.0, 0.0, 1.0), system.mass_times(y))):
         found = system.solver.image(*parts)(y)
@@ -245,7 +245,7 @@ REFUSED = [
     ({"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "kinematics.gyroscopic", "do not turn"),
     ({"bearing": {"tilt_arm": "pitch"}}, "bearing.tilt_arm", "shape of elastic rings"),
     ({"bearing": {"arrangement": "DB"}}, "bearing.arrangement", "one row of balls"),
-    ({**EXCITED, "integrator": {"kind": "periodic"}}, "integrator.kind", "thousands of states"),
+    ({**EXCITED, "integrator": {"kind": "periodic"}}, "integrator.kind", "has no driver `stepped`"),
     ({"mesh": {"element_size": 2e-5}}, "mesh.element_size", "larger elements"),
 ]
 
@@ -259,7 +259,7 @@ def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path,
 
 
 def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
-    monkeypatch.setattr("raceway.planning.elastic.machine_bytes", lambda: 2.0**24)
+    monkeypatch.setattr("raceway.bodies.elastic.plan.machine_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
 

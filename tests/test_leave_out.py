@@ -113,10 +113,10 @@ def _check_shapes(shapes, scene, plan):
 
     z = scene.bearing.ball_count
     # Positions, slips of what rubs, structural approaches of what deforms.
-    columns = 2 + 2 * (plan.balls == "tangential") + 2 * (scene.bodies.kind == "condensed") + 2 * plan.coupled
+    columns = 2 + 2 * (plan.balls == "tangential") + 2 * (scene.bodies.name == "condensed") + 2 * plan.coupled
     # Compliances of bodies and between balls stand behind the scalars.
     assert shapes["table"] == [z, COLUMNS]
-    assert (shapes["scalars"] == [SCALARS]) == (scene.bodies.kind == "rigid")
+    assert (shapes["scalars"] == [SCALARS]) == (scene.bodies.name == "rigid")
     assert shapes["law_params"][0] == 2 * z and shapes["law_state"] == [2 * z, 0]
     if plan.time_step_s is None:
         assert "gap" not in shapes

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from raceway.pipeline.pressure import approach_at, contact_ellipse
+from raceway.bodies.pressure import approach_at, contact_ellipse
 from raceway.pipeline.run import run
 from raceway.scene.file import scene_from_dict
 

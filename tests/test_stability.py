@@ -255,7 +255,7 @@ def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, exp
     build = scenes.build_model
 
     def refuse(scene, plan):
-        if scene.bodies.kind == "condensed":
+        if scene.bodies.name == "condensed":
             raise SceneError.at("contact.kind", law, "is stiffer than elastic bodies allow")
         return build(scene, plan)
 

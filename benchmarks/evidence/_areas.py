@@ -11,7 +11,7 @@ AREAS = {
     "rigid": """
         bodies/__init__ bodies/basis bodies/model bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
         core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/root
-        core/ring/system data/bearings pipeline/pressure pipeline/settle scene/inner_ring""",
+        core/ring/system data/bearings bodies/pressure pipeline/settle scene/inner_ring""",
     "motion": """
         core/excitations core/schemes/advance core/ring/changing_speed core/ring/energy core/ring/friction core/ring/loops core/ring/orbit
         core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__

@@ -115,9 +115,9 @@ def planned_bytes(scene: Scene, plan: Plan, before: int) -> float:
 
 def cheap(scene: Scene, plan: Plan) -> bool:
     """Whether a scene is run."""
-    if plan.predicted_work_s - START_S > (_SECONDS if scene.bodies.kind == "rigid" else _DEFORMING_S):
+    if plan.predicted_work_s - START_S > (_SECONDS if scene.bodies.name == "rigid" else _DEFORMING_S):
         return False
-    if scene.bodies.kind != "elastic" and plan.predicted_steps > _STEPS:
+    if scene.bodies.name != "elastic" and plan.predicted_steps > _STEPS:
         return False
     if scene.integrator.kind == "periodic" and scene.excitation is not None:
         return highest_frequency(scene) / (2.0 * math.pi * scene.excitation.frequency_hz) <= _ORDER
@@ -145,7 +145,7 @@ def tried(seed: int, folder: Path, watch: Watch, runs: bool) -> dict[str, Any]:
     memory, begun = Memory(), time.process_time()
     with limited(RUN_S):
         found["run"], fault = ran(scene)
-    found |= {"s": time.process_time() - begun, "planned_s": plan.predicted_wall_s, "bodies": scene.bodies.kind}
+    found |= {"s": time.process_time() - begun, "planned_s": plan.predicted_wall_s, "bodies": scene.bodies.name}
     found["faults"] += fault
     allowed = planned_bytes(scene, plan, memory.before)
     if memory.peak > 2 * allowed:

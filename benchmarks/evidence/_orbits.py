@@ -13,6 +13,7 @@ import numpy as np
 
 from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.periodic.branch import Point
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
@@ -25,7 +26,7 @@ from raceway.core.signals.identification import stiffness
 from raceway.errors import ConvergenceError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 
 Tables = dict[str, Any]

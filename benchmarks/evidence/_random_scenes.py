@@ -168,7 +168,7 @@ def outcome(tables: Tables) -> str:
         scene = scene_from_dict(tables)
         plan = make_plan(scene)
         if plan.predicted_steps > _STEPS or plan.predicted_work_s - START_S > _SECONDS + 3.0 * (
-            scene.bodies.kind == "condensed"
+            scene.bodies.name == "condensed"
         ):
             return PLANNED
         if scene.integrator.kind == "periodic" and scene.excitation is not None:

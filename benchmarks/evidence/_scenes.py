@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from raceway import build_model, make_plan, scene_from_dict
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 
 #: The rig's unbalance, 7.1 g at 90 mm; two bearings carry half of its force each.
 UNBALANCE = 7.1e-3 * 0.09

@@ -155,7 +155,7 @@ def zero() -> list[Row]:
     }.items():
         model = model_of(tables("free", **more))
         rings = [attrs.evolve(r, own=0.0 * r.own, across=0.0 * r.across) for r in _rings(model)]
-        rigid = model.bodies.rigid
+        rigid = model.bearing.rigid
         soft = elastic_system(rigid.system, ElasticBodies(rings[0], rings[1], 0.0, 0.0), np.full(12, 0.3))
         (q, ball, _), (p, place, _) = rigid.system.settle(rigid.guess), soft.settle(rigid.guess)
         one, two = rigid.system.evaluate(q, ball=ball).stiffness, soft.evaluate(p, ball=place).stiffness
@@ -170,7 +170,7 @@ def zero() -> list[Row]:
 
 
 def _rings(model: Any) -> list[Any]:
-    return [model.bodies.compliances.inner, model.bodies.compliances.outer]
+    return [model.bearing.compliances.inner, model.bearing.compliances.outer]
 
 
 def step() -> list[Row]:
@@ -237,7 +237,7 @@ for _ in range(2):
     model, _ = settled(tables())
     found.append(time.process_time() - begin)
 found[0] -= sum(spent[:2])
-bodies = model.bodies.compliances
+bodies = model.bearing.compliances
 print(json.dumps({"times": found, "calibration": sum(spent[:2]), "elements": bodies.inner.elements + bodies.outer.elements,
                   "memory": peak_bytes(), "before": before}))
 """

@@ -85,7 +85,7 @@ def _bearing() -> list[Row]:
     out = []
     for tilt, given in PROTOTYPE.items():
         model, found = solved_points(8, tilt)
-        columns = model.bodies.ball_columns(model, found)
+        columns = model.bearing.ball_columns(model, found)
         q, load = found.displacement, found.contact_force[: model.system.ball_count]
         mine = {
             "x": 1e6 * q[0], "y": 1e6 * q[1], "tilt": 1e3 * q[4], "load, largest": load.max(), "load, smallest": load.min(),

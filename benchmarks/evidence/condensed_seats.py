@@ -82,4 +82,4 @@ def series() -> list[Row]:
 def _area(tables: dict[str, Any], inner: bool) -> float:
     """Of a ring's seat [m2]."""
     model, divisions = model_of(tables), 360
-    return float(seat_areas(model.bodies.ring_section(model, inner), divisions).sum() * divisions)
+    return float(seat_areas(model.bearing.ring_section(model, inner), divisions).sum() * divisions)

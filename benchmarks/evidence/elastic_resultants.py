@@ -14,9 +14,10 @@ import numpy as np
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._kept import kept
 from benchmarks.evidence.condensed_calibrated import quantities, tables
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
 
@@ -84,7 +85,7 @@ def _mesh(name: str) -> list[Row]:
     model, found = _settled(elastic(mesh))
     cpu = time.process_time() - begin
     apart, where = _apart(quantities(found), _reference())
-    told = model.bodies.report(model, found)
+    told = model.bearing.report(model, found)
     cells, said = told["mesh"]["cells"], told["mesh"]
     note = (
         f"{where}; {cells} elements, {cpu:.1f} CPU-s; replaced {1e9 * said['replaced_inner_m_per_n']:.2f} and "

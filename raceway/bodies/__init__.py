@@ -1,14 +1,22 @@
-"""Builders of the kinds of bodies: from scene and plan to a system that can be settled and stepped.
+"""What rings and balls are made of: a folder a kind, each with its plan, its build and its report.
 
-``build(scene, plan) -> Built`` in a file for each ``bodies.kind``; ``raceway.bodies.model`` chooses.
-
-elastic     every node moves: pressures at points, or a calibrated force a contact
-elastic_report  what a result tells of those;  elastic_points, elastic_resultants: of their contacts
-basis       what all kinds share: geometry, Hertz contacts, parameters of the law, loads, mass, excitation
-rigid       only the contacts deform
-condensed   elastic rings and balls, one force for each contact
-inertia     what it costs that condensed bodies follow at once
-patches     the same with pressures at surface points (contact.discretisation = "nodal")
-patch_report  what a result tells of those
-locking     materials too incompressible for elements under surface points
+rigid, condensed, elastic   kinds of plug-in ``bodies``;  patches: contacts of condensed bodies at surface points
+model        everything that a run computes with;  bearing: what the pipeline asks of a bearing, whatever its bodies
+basis        what every kind starts from: geometry, contacts, loads, linear parts of the ring
+mounting     preload of a pair, an axial displacement that is held
+equilibrium  the static state;  pressure: of contact resultants;  contact_error: what a law itself is off by
+meshing      the meshes of a scene;  mesh_plan: their size before they are made;  mesh_fit: do they fit the bearing
 """
+
+from __future__ import annotations
+
+from raceway.framework.hookspecs import hookimpl
+
+
+@hookimpl
+def raceway_bodies() -> list[type]:
+    from raceway.bodies.condensed.kind import Condensed
+    from raceway.bodies.elastic.kind import Elastic
+    from raceway.bodies.rigid.kind import Rigid
+
+    return [Rigid, Condensed, Elastic]

@@ -42,24 +42,6 @@ class Basis:
     ball_load: float
 
 
-@attrs.frozen(eq=False)
-class Built:
-    """What the builder of a kind of bodies hands to the model.
-
-    Attributes
-    ----------
-    basis : geometry and contacts
-    system : ``raceway.core.ring.system.System``, or what offers the same
-    guess : (5,) first guess of the equilibrium, with a held axial displacement
-    bodies : what this kind knows beyond that; None for rigid bodies
-    """
-
-    basis: Basis
-    system: Any
-    guess: np.ndarray
-    bodies: Any = None
-
-
 def make_basis(scene: Scene) -> Basis:
     """Geometry and contacts of a scene."""
     b = scene.bearing

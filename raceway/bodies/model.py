@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Built
+from raceway.bodies.basis import Basis
+from raceway.bodies.bearing import Bearing
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.system import System
+from raceway.errors import PluginError
+from raceway.framework.contracts import Traits
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
 
@@ -22,24 +24,52 @@ class Model:
 
     Attributes
     ----------
-    geometry : lengths of the row;  inner, outer : load-independent Hertz contacts
-    azimuth : (Z,) at time zero, rows one after the other [rad];  guess : (5,) first guess of the equilibrium, with a held axial displacement
-    bodies : what the kind of bodies knows beyond that, see ``raceway.bodies``; None for rigid ones
+    bearing : what was built of the bodies;  system : its ring, or a copy at another speed
     """
 
     scene: Scene
     plan: Plan
-    geometry: BallBearing
-    inner: Ellipse
-    outer: Ellipse
-    azimuth: np.ndarray
+    bearing: Bearing
     system: System
-    guess: np.ndarray
-    bodies: Any = None
+
+    @property
+    def basis(self) -> Basis:
+        return self.bearing.basis
+
+    @property
+    def geometry(self) -> BallBearing:
+        """Lengths of the row."""
+        return self.basis.geometry
+
+    @property
+    def inner(self) -> Ellipse:
+        """Load-independent Hertz contact of the inner race."""
+        return self.basis.inner
+
+    @property
+    def outer(self) -> Ellipse:
+        """Load-independent Hertz contact of the outer race."""
+        return self.basis.outer
+
+    @property
+    def azimuth(self) -> np.ndarray:
+        """(Z,) at time zero, rows one after the other [rad]."""
+        return self.basis.azimuth
+
+    @property
+    def guess(self) -> np.ndarray:
+        """(5,) first guess of the equilibrium, with a held axial displacement."""
+        return self.bearing.guess
 
     @property
     def excitation(self) -> Any:
         return self.scene.excitation
+
+    @property
+    def traits(self) -> Traits:
+        """Of the bodies in this scene."""
+        traits: Traits = self.scene.bodies.traits(self.scene)
+        return traits
 
     @property
     def mass_used(self) -> float:
@@ -48,18 +78,18 @@ class Model:
 
 
 def build_model(scene: Scene, plan: Plan) -> Model:
-    """Arrays and kernels of a scene, by the builder of its kind of bodies.
+    """Arrays and kernels of a scene, by its kind of bodies.
 
     Raises
     ------
     PluginError
-        A law that builds parameters of a wrong shape.
+        A law that builds parameters of a wrong shape, or bodies that build no bearing.
     ConvergenceError
         No equilibrium under the axial load whose displacement is to be held.
     """
-    kind = "patches" if scene.contact.discretisation == "nodal" and scene.bodies.kind == "condensed" else scene.bodies.kind
-    built: Built = import_module(f"raceway.bodies.{kind}.build").build(scene, plan)
-    basis = built.basis
-    return Model(
-        scene, plan, basis.geometry, basis.inner, basis.outer, basis.azimuth, built.system, built.guess, built.bodies
-    )
+    bearing = scene.bodies.build(scene, plan)
+    if not isinstance(bearing, Bearing):
+        raise PluginError(
+            f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.bearing.Bearing"
+        )
+    return Model(scene, plan, bearing, bearing.system)

@@ -20,8 +20,8 @@ from raceway.scene.inner_ring import radial_growth
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.pipeline.settle import Equilibrium
 
 #: The force of a spring is met to this part of the preload.
 _TOLERANCE = 1e-9

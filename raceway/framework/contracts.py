@@ -236,6 +236,68 @@ class Executor(Protocol):
     def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]: ...
 
 
+@attrs.frozen
+class Traits:
+    """What a plan and an error estimate must know of bodies in a scene.
+
+    Attributes
+    ----------
+    compiled : contact forces are compiled: methods with a compiled driver run, and steady orbits are searched for
+    resultants : one force a contact, whose energy and pressure follow from its gap
+    calibrated : what the contacts' calibration leaves is part of the total error
+    every_node : all nodes are unknowns: a second run to compare with would cost as much as the first
+    """
+
+    compiled: bool = True
+    resultants: bool = True
+    calibrated: bool = False
+    every_node: bool = False
+
+
+@attrs.frozen
+class Cost:
+    """Predictions for a run, on the machine whose times the program knows.
+
+    Attributes
+    ----------
+    seconds : of processor time, kernels compiled, of the bodies nothing kept from before
+    once : seconds of it that a second run on the same bodies does not take again
+    unknowns : None for those of the ring and the balls alone
+    mesh : ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
+    scales : whether a slower machine takes longer in proportion
+    """
+
+    seconds: float
+    once: float = 0.0
+    unknowns: int | None = None
+    mesh: dict[str, Any] | None = None
+    scales: bool = True
+
+
+class BodiesKind(Protocol):
+    """What rings and balls are made of: what deforms, and how the ring follows its loads.
+
+    1. ``faults(scene)``: mistakes of the scene that these bodies cannot run, each with the remedy; nothing is built.
+    2. ``traits(scene)``: ``Traits``.
+    3. ``stable_step(scene)``: rough stable limit of explicit steps [s]; None where nothing is known.
+    4. ``decide(scene, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.parts``).
+    5. ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
+    6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
+    7. ``build(scene, plan)``: a ``raceway.bodies.bearing.Bearing``: arrays and kernels, nothing settled yet.
+    8. The fields of the class are the keys of the table [bodies] beside ``kind``.
+    """
+
+    name: ClassVar[str]
+
+    def faults(self, scene: Any) -> list[Any]: ...
+    def traits(self, scene: Any) -> Traits: ...
+    def stable_step(self, scene: Any) -> float | None: ...
+    def decide(self, scene: Any, parts: Any) -> None: ...
+    def unused(self, scene: Any) -> list[tuple[str, str]]: ...
+    def cost(self, scene: Any, balls: Any, motion: Any, parts: Any) -> Cost: ...
+    def build(self, scene: Any, plan: Any) -> Any: ...
+
+
 #: kind -> (registration hook, what a class of that kind must have)
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "contact_law": (
@@ -250,6 +312,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
     "mesher": ("raceway_meshers", ("mesh",)),
     "format": ("raceway_formats", ("suffixes", "read", "write")),
+    "bodies": ("raceway_bodies", ("faults", "traits", "stable_step", "decide", "unused", "cost", "build")),
     "report": ("raceway_reports", ("write",)),
     "executor": ("raceway_executors", ("compute",)),
 }

@@ -32,6 +32,11 @@ def raceway_identifiers() -> list[type]:  # type: ignore[empty-body]
 
 
 @hookspec
+def raceway_bodies() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.BodiesKind``."""
+
+
+@hookspec
 def raceway_meshers() -> list[type]:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Mesher``."""
 

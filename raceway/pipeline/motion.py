@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from raceway.bodies.model import Model
+from raceway.bodies.pressure import contact_ellipse
 from raceway.core.stepping.record import Record
-from raceway.pipeline.pressure import contact_ellipse
 
 
 def motion_table(model: Model, record: Record) -> dict[str, Any]:

@@ -7,10 +7,11 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
-from raceway.pipeline.settle import Equilibrium, beyond_the_groove, contact_angles, refuse_impossible_ellipses
+from raceway.pipeline.settle import beyond_the_groove, contact_angles, refuse_impossible_ellipses
 
 #: Samples of the last turn that are looked at.
 _SAMPLES = 60

@@ -11,14 +11,14 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import held_table, preload_table
+from raceway.bodies.pressure import contact_ellipse
 from raceway.core.ring.system import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
 from raceway.pipeline.motion import motion_table
-from raceway.pipeline.pressure import contact_ellipse
-from raceway.pipeline.settle import Equilibrium
 from raceway.pipeline.simulate import Simulation
 from raceway.storage.files import write_whole
 
@@ -153,9 +153,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         columns[f"peak_pressure_{word}_pa"] = pressure
         columns[f"semi_major_{word}_m"] = a
         columns[f"semi_minor_{word}_m"] = b
-    more = getattr(model.bodies, "ball_columns", None)
-    if more is not None:
-        columns |= more(model, equilibrium)
+    columns |= model.bearing.ball_columns(model, equilibrium)
     return {
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),

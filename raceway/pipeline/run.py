@@ -27,7 +27,7 @@ from raceway.pipeline.error.other_start import start_warnings
 from raceway.pipeline.error.series import series_warnings, with_series_error
 from raceway.pipeline.plausibility import inertia_warnings, motion_warnings, refuse_impossible
 from raceway.pipeline.result import Result
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.planning.implausible import implausible
 from raceway.planning.plan import make_plan
@@ -104,8 +104,7 @@ def _run(
     identification: Identification | None = None
     motions: list[tuple[Model, Simulation]] = []
     error, error_s = no_error("the scene is static: nothing is identified"), 0.0
-    if model.bodies is not None:
-        error["mesh"], error["how"]["mesh"] = model.bodies.mesh_error(model, equilibrium)
+    error["mesh"], error["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
     if scene.excitation is None:
         error["contact"], error["how"]["contact"] = contact_error(model, equilibrium)
     else:
@@ -136,7 +135,7 @@ def _run(
         error_s = working_clock() - identified
     done = working_clock()
     compile_s = take_compile_seconds()
-    bodies = None if model.bodies is None else model.bodies.report(model, equilibrium)
+    bodies = model.bearing.report(model, equilibrium) or None
     result = Result(
         model=model,
         equilibrium=equilibrium,
@@ -157,7 +156,7 @@ def _run(
                     *misfit_warnings(model, error),
                     *start_warnings(model, error),
                     *series_warnings(identification),
-                    *_bodies_warnings(model, equilibrium),
+                    *model.bearing.warnings(model, equilibrium),
                     *([] if identification is None else inertia_warnings(bodies, error["total"])),
                     *equilibrium.warnings,
                     *_motion_warnings(motions),
@@ -190,12 +189,6 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
         wanted |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, wanted)
-
-
-def _bodies_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
-    """What the bodies have to say of the equilibrium."""
-    say = getattr(model.bodies, "warnings", None)
-    return [] if say is None else say(model, equilibrium)
 
 
 def _unresolved(error: dict[str, Any]) -> list[str]:
@@ -262,7 +255,7 @@ def _drift(model: Model, simulation: Simulation) -> float | None:
     """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
     if simulation.whole.energies:
         return drift(simulation.whole.energies)
-    if model.scene.contact.discretisation == "nodal":
+    if not model.traits.resultants:
         return None  # the energy that points store is not told by the gap of the pair
     law = model.scene.contact.law
     potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0

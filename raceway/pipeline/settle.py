@@ -4,39 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import lost_preload
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import COORDINATES
 from raceway.errors import ConvergenceError
 from raceway.scene.inner_ring import load_at_edge, shoulder_height
-
-
-@attrs.frozen(eq=False)
-class Equilibrium:
-    """The static state under the constant loads.
-
-    Attributes
-    ----------
-    displacement : (5,) x, y, z [m], tilts [rad];  stiffness : (5, 5) tangent of the contacts
-    ball : (Z, 2) positions in the meridian planes [m]
-    gap, contact_force : (2 Z,) inner races first [m, N]
-    angle_inner, angle_outer : (Z,) contact angles [rad], nan where a contact is open
-    warnings : what a user should know
-    """
-
-    displacement: np.ndarray
-    stiffness: np.ndarray
-    ball: np.ndarray
-    gap: np.ndarray
-    contact_force: np.ndarray
-    angle_inner: np.ndarray
-    angle_outer: np.ndarray
-    iterations: int
-    warnings: tuple[str, ...]
 
 
 def settle(
@@ -58,9 +34,8 @@ def settle(
     _refuse_no_load(model)
     if on_progress is not None:
         system.follow(_telling(on_progress))
-    if model.scene.bodies.kind == "elastic":
-        _foresee_free_motion(model)
-    q, ball, iterations = _settled(model, near)
+    _foresee_free_motion(model)
+    q, ball, iterations = model.bearing.settle(near)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
     stiffness = still.stiffness_at(q, now)
@@ -69,16 +44,6 @@ def settle(
     refuse_impossible_ellipses(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
     return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
-
-
-def _settled(model: Model, near: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, int]:
-    if near is not None and model.scene.contact.discretisation == "nodal":
-        # What is held stays where the model holds it.
-        try:
-            return model.system.settle(np.where(model.system.free > 0.0, near, model.guess))
-        except ConvergenceError:
-            pass  # the model's own guess decides whether there is an equilibrium
-    return model.system.settle(model.guess)
 
 
 def _telling(on_progress: Callable[[str, int, int], None]) -> Callable[[float], None]:
@@ -92,7 +57,7 @@ def contact_angles(
     """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
     z = model.system.ball_count
     axial, radial = model.system.centre_vectors(q, t, ball)[0].T
-    if model.plan.balls == "weightless" and model.scene.bodies.kind != "elastic":
+    if not model.bearing.has_places(model.plan.balls):
         inner = outer = np.arctan2(axial, radial)
     else:
         inner = np.arctan2(axial - ball[:, 0], radial - ball[:, 1])
@@ -110,9 +75,11 @@ def _refuse_no_load(model: Model) -> None:
 
 
 def _foresee_free_motion(model: Model) -> None:
-    """What nothing holds shows on the same ring with rigid bodies in milliseconds; elastic ones would iterate for minutes."""
-    rigid = model.system.companion
-    q, ball, _ = rigid.settle(model.guess)
+    """What nothing holds shows on another system in milliseconds, where the bearing's own equilibrium takes minutes."""
+    rigid = model.bearing.foreseen
+    if rigid is None:
+        return
+    q, ball, _ = rigid.settle(model.bearing.guess)
     now = rigid.evaluate(q, ball=ball)
     _refuse_free_motion(model, rigid.stiffness_at(q, now), q)
 

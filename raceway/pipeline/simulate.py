@@ -9,13 +9,14 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.ring.orbit import Orbit
 from raceway.core.ring.start import at_rest, from_orbit, static_orbit
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import StabilityError
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 from raceway.pipeline.starting import Start, chosen_start
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn

@@ -7,11 +7,11 @@ from typing import Any
 
 import attrs
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.system import System
 from raceway.errors import BeyondPlanError, ConvergenceError
-from raceway.pipeline.settle import Equilibrium
 from raceway.planning.steady_orbits import searches_orbits
 
 Watch = Callable[[], None]

@@ -7,17 +7,11 @@ from typing import Any
 
 import attrs
 
+from raceway.core.schemes.drivers import missing_driver
 from raceway.errors import Mistake, SceneError
-from raceway.planning.elastic import elastic_faults, memory_faults
-from raceway.planning.mesh import mesh_faults
-from raceway.planning.patches import patch_faults
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
-from raceway.planning.sections import seat_faults, section_faults
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.tables import Scene
-
-#: Kinds of bodies that this version can compute.
-BODIES = ("rigid", "condensed", "elastic")
 
 
 def refuse_what_cannot_run(scene: Scene) -> None:
@@ -29,48 +23,29 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake(path, value, why))
 
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
-    listed = " or ".join(f"'{kind}'" for kind in BODIES)
-    refuse(scene.bodies.kind not in BODIES, "bodies.kind", scene.bodies.kind, f"is not available yet: use {listed}")
-    if scene.bodies.kind == "elastic":
-        faults += elastic_faults(scene)
-    unmeshed = mesh_faults(scene)
-    faults += unmeshed or (memory_faults(scene) if scene.bodies.kind == "elastic" and not faults else [])
-    rigid, condensed = scene.bodies.kind == "rigid", scene.bodies.kind == "condensed"
-    if condensed:
-        _refuse_condensed(scene, refuse)
-        faults += seat_faults(scene)
+    faults += scene.bodies.faults(scene)
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
-    elif contact.discretisation == "nodal" and condensed:
-        faults += [] if unmeshed else patch_faults(scene) or section_faults(scene)
-    elif condensed:
-        faults += [] if unmeshed else section_faults(scene)
-    elif contact.discretisation == "nodal" and rigid:
-        why = "rigid bodies have no surface points: use 'resultant'"
-        faults.append(Mistake("contact.discretisation", "nodal", why))
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
     alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
     why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
     refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
-    elastic = scene.bodies.kind == "elastic"
-    where, what = ("bodies.kind", "elastic") if elastic else ("contact.discretisation", "nodal")
+    compiled = scene.bodies.traits(scene).compiled
     why = (
         f"has no terms that follow the changing speed of '{getattr(scene.excitation, 'name', None)}', which contact resultants on "
         "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
     )
-    refuse(scene.spin_changes and (elastic or contact.discretisation == "nodal"), where, what, why)
-    for seat in ("outer_seat", "inner_seat"):
-        value = getattr(scene.supports, seat)
-        stiff = rigid and value != "rigid"
-        refuse(stiff, f"supports.{seat}", value, "rigid rings have rigid seats: leave it out, or bodies.kind = 'condensed'")
+    refuse(scene.spin_changes and not compiled, *_slow(scene), why)
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
     if scene.excitation is not None:
         _refuse_identifier(scene, refuse)
+        if "record" in scene.identifier.method.needs:
+            _refuse_driver(scene, refuse)
         if method.steady and "record" in scene.identifier.method.needs:
             _refuse_steady(scene, refuse)
     if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
@@ -85,14 +60,22 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         raise SceneError(faults)
 
 
-def _refuse_condensed(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
-    """What condensed rings need: dimensions of bodies of revolution, and the elements of the structured mesher."""
-    if scene.mesh is not None:
-        why = "condensed bodies are bodies of revolution, swept from their sections: use mesh.kind = 'structured'"
-        refuse(scene.mesh.name != "structured", "mesh.kind", scene.mesh.name, why)
-    for key in ("bore", "outer_diameter", "width"):
-        value = getattr(scene.bearing, key)
-        refuse(value is None, f"bearing.{key}", value, "is needed by elastic rings: give it, or take bodies.kind = 'rigid'")
+def _slow(scene: Scene) -> tuple[str, str]:
+    """The key, and its value, by which bodies have no compiled forces."""
+    if scene.bodies.traits(scene).every_node or scene.contact.discretisation == "resultant":
+        return "bodies.kind", scene.bodies.name
+    return "contact.discretisation", scene.contact.discretisation
+
+
+def _refuse_driver(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+    """A method without the driver that the bodies ask for."""
+    missing = missing_driver(scene.integrator.method.scheme, scene.bodies.traits(scene).compiled)
+    key, value = _slow(scene)
+    why = (
+        f"has no driver `{missing}`, which {key} = '{value}' needs: its forces are not compiled. Use 'newmark' or "
+        "'quasi_static', or contact resultants on rigid or condensed bodies"
+    )
+    refuse(bool(missing), "integrator.kind", scene.integrator.kind, why)
 
 
 def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
@@ -137,10 +120,6 @@ def _refuse_steady(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) 
     refuse(scene.contact.friction > 0.0, "integrator.kind", kind, why)
     why = f"contact law '{scene.contact.kind}' has a memory: its motion cannot be solved for by itself: {other}"
     refuse(scene.contact.law.state_size > 0, "integrator.kind", kind, why)
-    large = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
-    what = "bodies.kind is elastic" if scene.bodies.kind == "elastic" else "contact.discretisation is nodal"
-    why = f"{what}: it linearises thousands of states and needs forces that are compiled, those of resultants: {other}"
-    refuse(large, "integrator.kind", kind, why)
     alone = (
         excitation.sense != 0
         and not any(scene.load.radial)

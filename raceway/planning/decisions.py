@@ -6,9 +6,7 @@ from math import pi
 
 import attrs
 
-from raceway.planning.elastic import ElasticCost, words
 from raceway.planning.parts import Decisions
-from raceway.planning.patches import PatchCost
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.planning.steady_orbits import remembers_its_start
 from raceway.scene.inner_ring import ring_inertia
@@ -89,46 +87,6 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
     return Balls(kind, inertia, moments, friction)
 
 
-def decide_bodies(scene: Scene, parts: Decisions, elastic: ElasticCost | None, patches: PatchCost | None) -> bool:
-    """What deforms; whether condensed rings let balls act on each other.
-
-    Parameters
-    ----------
-    elastic : predicted cost of elastic bodies;  patches : of pressures at points of condensed ones; None of other bodies
-    """
-    kind = scene.bodies.kind
-    why = f"bodies.kind is {kind}: finite elements of rings and balls"
-    why += ", reduced to structural compliances" if kind == "condensed" else ""
-    why += f", every node: {words(elastic)}" if elastic is not None else ""
-    parts.decide(kind != "rigid", "elastic rings and balls", why, "bodies.kind is rigid: only contacts deform")
-    if patches is not None:
-        why = (
-            f"contact.discretisation is nodal: some {patches.points} points carry a contact, {patches.bytes / 2**20:.0f} MiB"
-        )
-        parts.keep("pressures at surface points", why)
-        moves = uses_record(scene) and scene.integrator.method.inertial and scene.kinematics.ball_inertia
-        part, why = "inertia of the balls in their meridian planes", "two coordinates a ball, in steps of time"
-        parts.decide(moves, part, why, "their slowest mode lies at some kHz: they follow at once")
-    elif kind == "condensed":
-        why_not = "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
-        part = "effect of balls on each other through the rings"
-        coupled = parts.decide(_balls_meet(scene), part, "soft seats or thick rings", why_not)
-        if scene.excitation is not None:
-            why = "rings and balls follow at once; what that costs is told by `model.inertia` of the result"
-            parts.leave_out("inertia of the bodies' deformation", why)
-        return coupled
-    elif kind == "elastic":
-        nodal, whole = scene.contact.discretisation == "nodal", "contact.discretisation is resultant"
-        why_not = f"{whole}: one force a contact, whose law replaces what the mesh below it gives way"
-        parts.decide(
-            nodal, "pressures at surface points", "elastic bodies touch at the points of the balls' surfaces", why_not
-        )
-        parts.keep("ideal cage", "holds each ball at its azimuth and keeps it from turning")
-        why_not = "balls do not orbit: the cage holds them, their centrifugal force is kept where the plan says so"
-        parts.leave_out("travel of the balls", why_not)
-    return False
-
-
 def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -> Motion:
     """What moves, and how many turns of it are integrated."""
     dynamic, integrator, identifier = scene.excitation is not None, scene.integrator, scene.identifier
@@ -157,40 +115,10 @@ def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -
 
 
 def decide_output(scene: Scene, parts: Decisions, motion: Motion) -> None:
-    """Which bodies stand for their likes, and what of the answer is not made."""
-    decide_likes(scene, parts)
+    """What of the answer is not made."""
     every = motion.steps_per_turn
     samples = recorded_per_turn(every, motion.turns, scene.integrator.method.inertial) if motion.recorded else 0
     why_not = f"{samples} of {every} steps a turn are recorded: lines up to some tens of 1x need no more"
     part, why = "history of every step", f"the {every} steps of a turn are the samples of the answer"
     parts.decide(0 < every <= samples, part, why, why_not if every else "nothing moves")
     parts.leave_out("pictures", "drawn by --pictures only")
-
-
-def decide_likes(scene: Scene, parts: Decisions) -> None:
-    """What deforming bodies are computed for: equal ones once or each, a half or the whole, stresses inside or none."""
-    kind = scene.bodies.kind
-    flat = "bodies.kind is rigid: no body is meshed"
-    why_not = flat if kind == "rigid" else "balls are equal and rings are bodies of revolution"
-    why = "every node of every ball and ring is an unknown"
-    parts.decide(kind == "elastic", "a compliance for each ball and contact", why, why_not)
-    why_not = "rings and balls are symmetric about each plane through their axis: a harmonic is one real system"
-    why = "every node of both halves: the forces may have any direction; a half model is no part of this program"
-    parts.decide(kind == "elastic", "other mirror half", why, flat if kind == "rigid" else why_not)
-    parts.leave_out("stress recovery", flat if kind == "rigid" else "no stress inside the bodies is asked for")
-
-
-def _balls_meet(scene: Scene) -> bool:
-    """Whether one ball's load reaches the next one through a ring.
-
-    Notes
-    -----
-    On a rigid seat at depth t below the groove the field of a load falls off within t: 2e-4 of a contact's compliance is left
-    at 3.7 t (B7206C).
-    """
-    b = scene.bearing
-    if scene.supports.inner_seat != "rigid" or scene.supports.outer_seat != "rigid":
-        return True
-    walls = [0.5 * (b.pitch_diameter - b.ball_diameter - (b.bore or 0.0))]
-    walls.append(0.5 * ((b.outer_diameter or 0.0) - b.pitch_diameter - b.ball_diameter))
-    return bool(pi * (b.pitch_diameter - b.ball_diameter) / b.ball_count < 2.5 * max(walls))

@@ -57,7 +57,7 @@ def foreseen(scene: Scene) -> list[Mistake]:
         why = f"is longer than the record of {turns} turns: shorten it, or integrate more turns"
         found.append(Mistake("identifier.window_turns", window, why))
     steps = scene.integrator.steps_per_turn
-    if not scene.integrator.method.implicit and isinstance(steps, int) and scene.bodies.kind != "elastic":
+    if not scene.integrator.method.implicit and isinstance(steps, int) and not scene.bodies.traits(scene).every_node:
         period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
         least = int(0.5 * period * highest_frequency(scene))
         if steps * _ROUGH < least:

@@ -66,7 +66,7 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
     def decide(needed: bool, module: str, why: str, why_not: str) -> None:
         found.append(Module(module, needed, why if needed else why_not))
 
-    kind = scene.bodies.kind
+    kind = scene.bodies.name
     # Friction and gyroscopic moments are added to an equilibrium without them.
     base = "inertial" if centrifugal else "weightless"
     for word, what in _BALLS.items():

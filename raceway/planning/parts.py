@@ -34,6 +34,10 @@ class Decisions:
         (self.kept if stays else self.left_out).append(Part(part, why if needed else "forced" if stays else why_not))
         return stays
 
+    def keeps(self, part: str) -> bool:
+        """Whether a part was kept, by its name."""
+        return any(one.part == part for one in self.kept)
+
     def keep(self, part: str, why: str) -> None:
         """A part that no scene of this kind can do without."""
         self.kept.append(Part(part, why))

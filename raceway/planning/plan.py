@@ -13,15 +13,11 @@ from typing import Any
 import attrs
 
 from raceway.planning.combinations import refuse_what_cannot_run
-from raceway.planning.decisions import decide_balls, decide_bodies, decide_motion, decide_output, decide_tilts
-from raceway.planning.elastic import elastic_cost
+from raceway.planning.decisions import decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.machine import slowness
-from raceway.planning.mesh import predicted_mesh
 from raceway.planning.modules import Module, as_dicts, optional_modules
 from raceway.planning.parts import Decisions, Part
-from raceway.planning.patches import patch_cost
 from raceway.planning.recording import refuse_memory
-from raceway.planning.wall_time import predicted_work
 from raceway.scene.tables import Scene
 
 
@@ -33,12 +29,12 @@ class Plan:
     ----------
     balls : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
     centrifugal, gyroscopic : whether the balls have these loads
-    coupled : whether condensed rings let balls act on each other
     free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
     turns : turns that are integrated
     dofs : unknowns of the ring and of the balls
     time_step_s : None in a static scene;  predicted_wall_s : of a whole run on this machine
     predicted_work_s : the same on the machine whose times the plan knows: no machine's speed changes it
+    predicted_once_s : seconds of that which a second run on the same bodies does not take again
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
     modules : optional modules, and whether a run imports them
     """
@@ -48,7 +44,6 @@ class Plan:
     balls: str
     centrifugal: bool
     gyroscopic: bool
-    coupled: bool
     free: tuple[int, ...]
     turns: int
     dofs: int
@@ -56,8 +51,13 @@ class Plan:
     predicted_steps: int
     predicted_wall_s: float
     predicted_work_s: float
+    predicted_once_s: float = 0.0
     mesh: dict[str, Any] | None = None
     modules: tuple[Module, ...] = ()
+
+    def keeps(self, part: str) -> bool:
+        """Whether a part is kept, by its name."""
+        return any(one.part == part for one in self.kept)
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -85,19 +85,16 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         For combinations that cannot run, each with the reason and the remedy.
     """
     refuse_what_cannot_run(scene)
-    elastic = elastic_cost(scene) if scene.bodies.kind == "elastic" else None
-    nodal = scene.bodies.kind == "condensed" and scene.contact.discretisation == "nodal"
-    patches = patch_cost(scene) if nodal else None
     parts = Decisions(force)
     tilts = decide_tilts(scene, parts)
     balls = decide_balls(scene, parts)
-    coupled = decide_bodies(scene, parts, elastic, patches)
+    scene.bodies.decide(scene, parts)
     motion = decide_motion(scene, parts, tilts, balls.friction)
     decide_output(scene, parts, motion)
     count = scene.bearing.ball_count * len(scene.bearing.rows)
     if motion.recorded:
         refuse_memory(scene, motion.turns, motion.steps_per_turn, count)
-    work = predicted_work(scene, balls, motion, coupled, elastic, patches)
+    cost = scene.bodies.cost(scene, balls, motion, parts)
     free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return Plan(
@@ -106,15 +103,15 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         balls=balls.kind,
         centrifugal=balls.centrifugal,
         gyroscopic=balls.gyroscopic,
-        coupled=coupled,
         free=free,
         turns=motion.turns,
-        dofs=unknowns if elastic is None else elastic.unknowns,
+        dofs=cost.unknowns or unknowns,
         time_step_s=_period(scene) / motion.steps_per_turn if motion.recorded else None,
         predicted_steps=motion.turns * motion.steps_per_turn,
-        predicted_wall_s=work if elastic is not None else work * slowness(),
-        predicted_work_s=work,
-        mesh=predicted_mesh(scene),
+        predicted_wall_s=cost.seconds * (slowness() if cost.scales else 1.0),
+        predicted_work_s=cost.seconds,
+        predicted_once_s=cost.once,
+        mesh=cost.mesh,
         modules=optional_modules(scene, balls.kind, balls.centrifugal, motion.recorded),
     )
 

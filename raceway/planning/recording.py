@@ -5,8 +5,6 @@ from __future__ import annotations
 from math import ceil
 
 from raceway.errors import SceneError
-from raceway.planning.closed_form import highest_frequency
-from raceway.planning.elastic import steps_per_turn
 from raceway.scene.tables import Scene
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
@@ -34,10 +32,8 @@ def predicted_steps_per_turn(scene: Scene) -> int:
     if scene.integrator.method.implicit:
         return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-    if scene.bodies.kind == "elastic":
-        least = steps_per_turn(scene, period, 0.8) or 0
-    else:
-        least = int(period / (0.8 * 2.0 / highest_frequency(scene))) + 1
+    stable = scene.bodies.stable_step(scene)
+    least = 0 if stable is None else int(period / (0.8 * stable)) + 1
     return STEPS_PER_TURN * max(1, ceil(least / STEPS_PER_TURN))
 
 

@@ -17,8 +17,7 @@ def has_orbits(scene: Scene) -> bool:
     if excitation is None or method.steady or not method.inertial:
         return False
     repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
-    compiled = scene.bodies.kind != "elastic" and contact.discretisation != "nodal"
-    return repeats and compiled and contact.law.state_size == 0
+    return repeats and scene.bodies.traits(scene).compiled and contact.law.state_size == 0
 
 
 def remembers_its_start(scene: Scene) -> bool:
@@ -29,7 +28,7 @@ def remembers_its_start(scene: Scene) -> bool:
     With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
     fits over several speeds no transient is estimated: a second run of them would tell nothing more.
     """
-    if scene.excitation is None or scene.contact.friction == 0.0 or scene.bodies.kind == "elastic":
+    if scene.excitation is None or scene.contact.friction == 0.0 or scene.bodies.traits(scene).every_node:
         return False
     needs = scene.identifier.method.needs
     return "record" in needs and "speeds" not in needs
@@ -46,8 +45,7 @@ def compares_with_steady_motion(scene: Scene) -> bool:
     method, excitation = scene.integrator.method, scene.excitation
     if excitation is None or not method.inertial or method.steady:
         return False
-    steps_in_python = scene.bodies.kind == "elastic" or scene.contact.discretisation == "nodal"
-    if steps_in_python or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
+    if not scene.bodies.traits(scene).compiled or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
         return False
     if excitation.period_s is None:
         return getattr(excitation, "steady", None) is not None

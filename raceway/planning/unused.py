@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import attrs
+
 from raceway.framework.options import unused_options
 from raceway.scene.tables import Scene
 
@@ -9,6 +11,7 @@ from raceway.scene.tables import Scene
 def unused(scene: Scene) -> tuple[str, ...]:
     """A sentence for each key that is given and has no effect: of the plug-ins by their own word, of the core here."""
     plugins = {
+        "bodies": scene.bodies,
         "contact": scene.contact.law,
         "integrator": scene.integrator.method,
         "identifier": scene.identifier.method,
@@ -51,16 +54,11 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     locked = scene.supports.tilt == "locked"
     told(locked and not slow, "supports.tilt is locked", "rotor.transverse_inertia", "rotor.polar_inertia")
     told(scene.contact.friction == 0.0, "contact.friction is 0", "contact.stick_stiffness")
-    points = scene.bodies.kind == "condensed" and scene.contact.discretisation == "nodal"
-    told(points, "points stick by the compliance of rings and balls themselves", "contact.stick_stiffness")
-    whole = scene.bodies.kind == "elastic"
-    told(not whole, f"bodies.kind is '{scene.bodies.kind}'", "bodies.formulation", "bodies.hourglass")
-    plain = whole and scene.bodies.formulation != "one_point"
-    told(
-        plain,
-        f"bodies.formulation is '{scene.bodies.formulation}': only 'one_point' has hourglass modes",
-        "bodies.hourglass",
-    )
+    for path, why in scene.bodies.unused(scene):
+        told(True, why, path)
+    own = {field.name for field in attrs.fields(type(scene.bodies))}
+    others = [f"bodies.{key}" for key in scene.source.get("bodies", {}) if key != "kind" and key not in own]
+    told(True, f"bodies.kind is '{scene.bodies.name}'", *others)
     told(scene.bearing.arrangement == "single", "the bearing has one row", "bearing.row_distance")
     told(scene.bearing.preload == 0.0, "bearing.preload is 0", "bearing.preload_kind")
     return found

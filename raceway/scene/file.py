@@ -25,6 +25,7 @@ from raceway.storage.user_files import size_of
 #: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
 PLUGIN_TABLES = {
     "excitation": ("excitation", None),
+    "bodies": ("bodies", "rigid"),
     "mesh": ("mesher", "structured"),
     "contact": ("contact_law", "hertz"),
     "integrator": ("integrator", "newmark"),
@@ -32,6 +33,8 @@ PLUGIN_TABLES = {
 }
 #: Those of them that may be absent, which means something.
 OPTIONAL_TABLES = ("excitation", "mesh")
+#: Tables whose kinds are swapped most: keys of another kind stay without effect, which ``raceway.planning.unused`` tells.
+SWAPPED_TABLES = ("bodies",)
 #: Bytes of a scene file at most.
 _LONGEST = 2**24
 #: Likeness of two files' names from which one is taken for a slip of the other.
@@ -198,7 +201,7 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    known = [*TABLES, "excitation", "mesh", *STUDY_TABLES, "requires", "title"]
+    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "requires", "title"]
     for name in tables:
         if name not in known:
             mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
@@ -306,6 +309,9 @@ def _plugin_table(
         return None
     options = {key: value for key, value in table.items() if key not in own and key != "kind"}
     known = [*own, *(a.name for a in attrs.fields(plugin))]
+    if name in SWAPPED_TABLES:
+        others = {a.name for e in registry.all() if e.kind == kind for a in attrs.fields(e.plugin)}
+        options = {key: value for key, value in options.items() if key in known or key not in others}
     for key in [k for k in options if k not in known]:
         rule = f"unknown key{nearest(key, known)}; known for kind '{word}': {', '.join(k for k in known if k != 'kind')}"
         mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))

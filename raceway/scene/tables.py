@@ -214,22 +214,6 @@ class Load:
 
 
 @attrs.frozen
-class Bodies:
-    kind: str = option("rigid", help="what deforms", rule=one_of("rigid", "condensed", "elastic"))
-    formulation: str = option(
-        "incompatible",
-        help="hexahedra of elastic bodies: 'one_point' with hourglass control, 'full' (2 x 2 x 2), with 'incompatible' modes",
-        rule=one_of("one_point", "full", "incompatible"),
-    )
-    hourglass: float = option(
-        0.05,
-        help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu; impacts want 0.005 and elements "
-        "of at most 0.6 of the contact's radius",
-        rule=positive(),
-    )
-
-
-@attrs.frozen
 class Kinematics:
     orbiting: bool = option(False, help="balls travel at cage speed")
     ball_inertia: bool = option(True, help="centrifugal force of the balls at cage speed")
@@ -294,7 +278,7 @@ class Scene:
     rotor: Rotor
     load: Load
     excitation: Any
-    bodies: Bodies
+    bodies: Any
     mesh: Any
     contact: Contact
     kinematics: Kinematics
@@ -324,10 +308,10 @@ class Scene:
             part = getattr(self, name)
             if part is not None:
                 tables[name] = _plain(part)
-        if self.excitation is not None:
-            tables["excitation"] = {"kind": self.excitation.name, **_plain(self.excitation)}
-        if self.mesh is not None:
-            tables["mesh"] = {"kind": self.mesh.name, **_plain(self.mesh)}
+        for name in ("bodies", "excitation", "mesh"):
+            plugin = getattr(self, name)
+            if plugin is not None:
+                tables[name] = {"kind": plugin.name, **_plain(plugin)}
         return tables
 
 
@@ -337,7 +321,6 @@ TABLES: dict[str, type] = {
     "supports": Supports,
     "rotor": Rotor,
     "load": Load,
-    "bodies": Bodies,
     "contact": Contact,
     "kinematics": Kinematics,
     "integrator": Integration,

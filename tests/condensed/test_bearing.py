@@ -61,7 +61,7 @@ def test_rings_that_do_not_deform_are_in_series_with_their_beds(seats):
     firm = settled(**plain, supports={"tilt": "locked"})[1].stiffness[0, 0]
     bed = 5e10
     case, found = settled(**plain, supports={"tilt": "locked", **{f"{seat}_seat": bed for seat in seats}})
-    areas = (seat_areas(case.bodies.ring_section(case, seat == "inner"), 360).sum() * 360 for seat in seats)
+    areas = (seat_areas(case.bearing.ring_section(case, seat == "inner"), 360).sum() * 360 for seat in seats)
     expected = 1.0 / (1.0 / firm + sum(1.0 / (bed * area) for area in areas))
     assert expected < 0.8 * firm
     assert found.stiffness[0, 0] == pytest.approx(expected, rel=1e-3)
@@ -98,7 +98,7 @@ def test_the_mesh_error_bounds_what_a_finer_mesh_changes(size, along):
     _, fine = settled(mesh={"kind": "structured", "element_size": 0.5 * size, "nodes_per_semi_axis": 2 * along})
     free = case.system.free > 0.0
     change = np.abs(np.diag(fine.stiffness)[free] / np.diag(found.stiffness)[free] - 1.0).max()
-    assert change < case.bodies.mesh_error(case, found)[0] < 10.0 * change
+    assert change < case.bearing.mesh_error(case, found)[0] < 10.0 * change
 
 
 @pytest.fixture

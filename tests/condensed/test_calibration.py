@@ -38,11 +38,11 @@ def test_thin_walls_are_within_what_is_stated_of_pressures_at_surface_points(til
     assert "surface points" in how and 0.005 < stated < 0.02
     for index in range(3):
         assert ours.stiffness[index, index] == pytest.approx(theirs.stiffness[index, index], rel=stated + 0.006)
-    matched = attrs.evolve(model.bodies.compliances, calibrations=(None, None))
-    assert matched.at(0.3)[0] < 1.08 * model.bodies.compliances.at(0.3)[0]
+    matched = attrs.evolve(model.bearing.compliances, calibrations=(None, None))
+    assert matched.at(0.3)[0] < 1.08 * model.bearing.compliances.at(0.3)[0]
 
 
 def test_the_calibration_holds_for_both_signs_of_the_angle():
     """Both lands of this preset are alike."""
-    bodies = settled()[0].bodies.compliances
+    bodies = settled()[0].bearing.compliances
     assert bodies.own(0, np.array([-0.3])) - bodies.own(0, np.array([0.3])) == pytest.approx(0.0, abs=0.01e-9)

@@ -225,7 +225,7 @@ REFUSED = [
     ({"contact": {"kind": "unilateral"}}, "contact.discretisation", "law 'unilateral' supports 'nodal'"),
     ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "kinematics.orbiting", "azimuth"),
     ({"mesh": {"element_size": 8e-3}}, "mesh.element_size", "larger than the wall"),
-    ({**EXCITED, "integrator": {"kind": "periodic"}}, "integrator.kind", "use 'newmark'"),
+    ({**EXCITED, "integrator": {"kind": "periodic"}}, "integrator.kind", "Use 'newmark'"),
 ]
 
 

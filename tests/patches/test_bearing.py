@@ -133,7 +133,7 @@ def test_contacts_that_leave_their_points_get_more():
 
 def test_without_more_points_it_is_a_failure_that_says_where(free):
     case, _ = free
-    alone = attrs.evolve(case.system, pool=Pool(model().bodies.pool.patches), load=16.0 * case.system.load)
+    alone = attrs.evolve(case.system, pool=Pool(model().bearing.pool.patches), load=16.0 * case.system.load)
     with pytest.raises(ConvergenceError, match="leaves its surface points along"):
         alone.settle(case.guess)
 
@@ -141,7 +141,7 @@ def test_without_more_points_it_is_a_failure_that_says_where(free):
 def test_the_edge_of_the_groove_is_told_with_the_load():
     case = model(bearing={"shoulder_height": 0.9e-3}, load={"axial": 3000.0, "radial": [0.0, 0.0]})
     found = settle(case)
-    said = case.bodies.warnings(case, found)
+    said = case.bearing.warnings(case, found)
     assert any("cut off by the groove's edge" in one and "N a ball" in one for one in said)
 
 
@@ -158,7 +158,7 @@ def test_the_result_tells_pressures_approaches_and_points(free):
     assert result.bodies["mesh"]["least_nodes_per_semi_axis"] > 2.0
     assert result.bodies["elasticity"][0][0] > 0.02
     case, found = free
-    field = case.bodies.pressure_field(case, found, 0)
+    field = case.bearing.pressure_field(case, found, 0)
     assert field.pressure.max() == pytest.approx(nodal, rel=1e-6)
     assert case.system.without(CAGE).pool is case.system.pool
 
@@ -172,7 +172,7 @@ def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
     # 1 % of Hertz's approach at the typical load; it grows with the cube root of the load over its area, and contacts on
     # finite rings approach less than half-spaces: some percent.
     assert 0.005 < size < 0.03 and "not part of the total" in how
-    columns = case.bodies.ball_columns(case, found)
+    columns = case.bearing.ball_columns(case, found)
     assert size >= (columns["approach_penetration_inner_m"] / columns["approach_inner_m"])[0]
 
 
@@ -183,16 +183,16 @@ def test_the_mesh_error_is_near_what_twice_as_many_points_change():
     weight = np.array([1.0, 1.0, 1.0, coarse.system.arm, coarse.system.arm])
     moved = np.abs((other.displacement - found.displacement) * weight).max()
     change = moved / np.abs(found.displacement * weight).max()
-    assert 1.0 / 3.0 < coarse.bodies.mesh_error(coarse, found)[0] / change < 3.0
+    assert 1.0 / 3.0 < coarse.bearing.mesh_error(coarse, found)[0] / change < 3.0
 
 
 def test_the_mesh_error_is_that_of_the_state(free, monkeypatch):
     """Each state is dropped before the next, so that its place in memory is used again."""
     case, _ = free
     compared = staticmethod(lambda coarser, model, equilibrium: (float(equilibrium.displacement[0]), ""))
-    monkeypatch.setattr(type(case.bodies), "_compared", compared)
+    monkeypatch.setattr(type(case.bearing), "_compared", compared)
     parts = (1.0, 0.2, 0.05)
-    told = [case.bodies._change_from_coarser(case, SimpleNamespace(displacement=np.full(5, part)))[0] for part in parts]
+    told = [case.bearing._change_from_coarser(case, SimpleNamespace(displacement=np.full(5, part)))[0] for part in parts]
     assert told == list(parts)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import build_model, make_plan
+from raceway.bodies.patches.plan import patch_cost
 from raceway.core.patches.balls import Given
 from raceway.core.patches.contact import Contact, Held
 from raceway.core.patches.friction import Friction, Gripped
@@ -16,7 +17,6 @@ from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.core.patches.history import History
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
-from raceway.planning.patches import patch_cost
 from raceway.planning.unused import unused
 from tests.patches.single import single
 from tests.patches.test_bearing import model, scene

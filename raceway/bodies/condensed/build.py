@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Built
+from raceway.bodies.bearing import Bearing, Told
 from raceway.bodies.condensed.calibration_error import calibration_error
 from raceway.bodies.condensed.compliances import elastic_bodies, element_sizes, typical_load
 from raceway.bodies.condensed.inertia import inertia_table
+from raceway.bodies.condensed.kind import BETWEEN_BALLS
+from raceway.bodies.contact_error import untold
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid import build as rigid
+from raceway.bodies.rigid.build import RigidBearing
 from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
 from raceway.core.condensed.structural import ring_section
 from raceway.core.mesh.ring_shape import ring_shape
@@ -23,9 +26,9 @@ from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
     from raceway.core.revolution.profile import Profile
-    from raceway.pipeline.settle import Equilibrium
 
 #: How much coarser the mesh is that error.mesh is estimated with.
 _COARSER = 2.0
@@ -33,31 +36,31 @@ _COARSER = 2.0
 _NOTHING = 1e-6
 
 
-def build(scene: Scene, plan: Plan) -> Built:
-    """The system of a scene with condensed bodies; see ``raceway.bodies.model.build_model``."""
+def build(scene: Scene, plan: Plan) -> CondensedBearing:
+    """The bearing of a scene with condensed bodies and contact resultants."""
     stiff = rigid.build(scene, plan)
     bodies = elastic_bodies(scene, stiff.basis)
     _refuse_stiff_law(scene, stiff, bodies)
     _refuse_dashpots(scene, plan, bodies)
-    angles = _angles(scene, stiff) if plan.coupled else None
+    angles = _angles(scene, stiff) if plan.keeps(BETWEEN_BALLS) else None
     system = elastic_system(stiff.system, bodies, angles)
     system.table[:, ring.SHIFT] = 0.0
     guess = place_ring(scene, stiff.basis, system)
-    return Built(stiff.basis, system, guess, Condensed(stiff, bodies, angles))
+    return CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
 
 
 @attrs.frozen(eq=False)
-class Condensed:
-    """What is known of condensed bodies beyond their system: the rigid-ring model beside it, compliances, mesh.
+class CondensedBearing(Bearing):
+    """Condensed rings and balls with contact resultants.
 
     Attributes
     ----------
-    rigid : the same scene with rigid rings and balls
+    rigid : the same bearing with rigid rings and balls
     compliances : of rings and balls
     angles : (Z,) at which the compliances between balls were taken [rad]; None where they are left out
     """
 
-    rigid: Built
+    rigid: RigidBearing
     compliances: ElasticBodies
     angles: np.ndarray | None
 
@@ -96,7 +99,7 @@ class Condensed:
             "inertia": inertia_table(model, equilibrium),
         }
 
-    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
         scene = model.scene
         coarse = elastic_bodies(scene, self.rigid.basis, _COARSER)
@@ -111,8 +114,10 @@ class Condensed:
         other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
         return float(np.abs(other / fine - 1.0).max()), "largest change of a diagonal stiffness from a mesh twice as coarse"
 
-    def calibration_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
-        """Relative error of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
+        if not model.traits.calibrated:
+            return untold(model)
         return calibration_error(self.compliances, model, equilibrium)
 
     def ring_section(self, model: Model, inner: bool) -> Profile:
@@ -137,7 +142,7 @@ def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | No
     ]
 
 
-def _angles(scene: Scene, stiff: Built) -> np.ndarray:
+def _angles(scene: Scene, stiff: RigidBearing) -> np.ndarray:
     """(Z,) contact angles with rigid rings: the free one where a ball carries nothing; their mean for balls that orbit."""
     system: System = stiff.system
     angles = np.full(system.ball_count, scene.bearing.contact_angle)
@@ -153,7 +158,7 @@ def _angles(scene: Scene, stiff: Built) -> np.ndarray:
     return np.where(loaded, found, angles)
 
 
-def _refuse_stiff_law(scene: Scene, stiff: Built, bodies: ElasticBodies) -> None:
+def _refuse_stiff_law(scene: Scene, stiff: RigidBearing, bodies: ElasticBodies) -> None:
     """A law so stiff that the bodies take off more compliance than its contact has."""
     taken = min(bodies.at(scene.bearing.contact_angle))
     if taken >= 0.0:

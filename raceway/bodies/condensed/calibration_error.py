@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
     from raceway.core.condensed.elastic_bodies import ElasticBodies
-    from raceway.pipeline.settle import Equilibrium
 
 
 def calibration_error(

@@ -11,8 +11,8 @@ from raceway.core.condensed.modes import first_frequency
 from raceway.core.mesh.ring_shape import ring_shape
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.pipeline.settle import Equilibrium
 
 
 def inertia_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:

@@ -8,8 +8,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, Built, made_by, make_basis
+from raceway.bodies.basis import Basis, made_by, make_basis
 from raceway.bodies.elastic.points import ElasticPoints
+from raceway.bodies.elastic.report import ElasticBodies
 from raceway.bodies.elastic.resultants import ElasticResultants
 from raceway.bodies.meshing import mesh_scene
 from raceway.bodies.mounting import place_ring
@@ -32,8 +33,8 @@ from raceway.scene.tables import Scene
 _ENOUGH = 5.0
 
 
-def build(scene: Scene, plan: Plan) -> Built:
-    """The system of a scene with elastic bodies; see ``raceway.bodies.model.build_model``.
+def build(scene: Scene, plan: Plan) -> ElasticBodies:
+    """The bearing of a scene with elastic bodies.
 
     Raises
     ------
@@ -64,8 +65,9 @@ def build(scene: Scene, plan: Plan) -> Built:
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
     held_by = scene.load.axial if scene.supports.axial == "displacement" else None
     system = ElasticRing(**fields, bodies=bodies, held_by=held_by)
-    known = ElasticResultants(bodies, rigid, guess, compliances) if whole else ElasticPoints(bodies, rigid, guess)
-    return Built(basis, system, guess, known)
+    if whole:
+        return ElasticResultants(basis, system, guess, bodies, rigid, compliances)
+    return ElasticPoints(basis, system, guess, bodies, rigid)
 
 
 def _angles(scene: Scene, plan: Plan, rigid: System, guess: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ _FROM, _ONE_POINT = 0.49, 0.4
 
 def locking(scene: Scene) -> list[str]:
     """A warning for each material that is nearly incompressible."""
-    one_point = scene.bodies.kind == "elastic" and scene.bodies.formulation == "one_point"
+    one_point = scene.bodies.name == "elastic" and scene.bodies.formulation == "one_point"
     least = _ONE_POINT if one_point else _FROM
     found = []
     for part in ("rings", "balls"):

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from raceway.bodies.bearing import Told
+from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.report import ElasticBodies
 from raceway.core.elastic.contacts.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.pipeline.settle import Equilibrium
 
 #: Points in a loaded contact below which its pressure is off by tens of percent.
 _FEW_POINTS = 60
@@ -34,6 +36,10 @@ class ElasticPoints(ElasticBodies):
         for race, word in enumerate(("inner", "outer")):
             out |= {name.format(word): values[race * z : (race + 1) * z] for name, values in found.items()}
         return out
+
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """The overlap that a law leaves."""
+        return overlap(self.ball_columns(model, equilibrium), equilibrium)
 
     def contact_table(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         columns = self.ball_columns(model, equilibrium)

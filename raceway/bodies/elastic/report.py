@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
+from raceway.bodies.bearing import Bearing
 from raceway.bodies.elastic.locking import locking
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.ring.system import COORDINATES, System
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.pipeline.settle import Equilibrium
 
 
 @attrs.frozen(eq=False)
-class ElasticBodies(ABC):
-    """Elastic bodies beyond their system.
+class ElasticBodies(Bearing):
+    """Rings and balls of which every node moves.
 
     Attributes
     ----------
     bearing : ElasticBearing
-    rigid : the same scene with rigid bodies and whole contacts;  guess : (5,) where its equilibrium is looked for
+    rigid : the same scene with rigid bodies and contact resultants
     """
 
     bearing: ElasticBearing
     rigid: System
-    guess: np.ndarray
+
+    @property
+    def foreseen(self) -> System:
+        """The same ring with rigid bodies: elastic ones would iterate for minutes."""
+        return self.system.companion
+
+    def has_places(self, balls: str) -> bool:
+        """Always: balls are bodies."""
+        return True
 
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,).

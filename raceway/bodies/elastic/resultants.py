@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.bodies.bearing import Told
 from raceway.bodies.condensed.calibration_error import calibration_error
+from raceway.bodies.contact_error import untold
 from raceway.bodies.elastic.report import ElasticBodies
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
     from raceway.core.condensed.elastic_bodies import ElasticBodies as Compliances
-    from raceway.pipeline.settle import Equilibrium
 
 #: Turn of a contact [rad] that puts it a quarter of its ellipse away from where the mesh was asked: the local compliance there is
 #: another by 0.5 % of a contact's, measured on elements of 3.2 mm.
@@ -75,8 +77,10 @@ class ElasticResultants(ElasticBodies):
             )
         return found + super().warnings(model, equilibrium)
 
-    def calibration_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
-        """Relative error of a ball's stiffness by what the calibration leaves, and by how well the mesh knows what is taken off."""
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Of a ball's stiffness by what the calibration leaves, and by how well the mesh knows what is taken off."""
+        if not model.traits.calibrated:
+            return untold(model)
         contact: Any = self.bearing.system.contact
         spread = 0.5 * max(float(one.spread) for one in contact.touches)
         size, how = calibration_error(self.compliances, model, equilibrium, spread)

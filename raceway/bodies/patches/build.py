@@ -12,9 +12,10 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, Built, made_by, make_basis
+from raceway.bodies.basis import Basis, made_by, make_basis
 from raceway.bodies.mounting import place_ring
-from raceway.bodies.patches.report import PatchBodies
+from raceway.bodies.patches.plan import nodes_of
+from raceway.bodies.patches.report import NodalBearing
 from raceway.bodies.rigid.build import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.core.mesh.ring_shape import ring_shape
@@ -32,7 +33,6 @@ from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel
-from raceway.planning.patches import nodes_of
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
 
@@ -42,8 +42,8 @@ BULK = 0.8e-3
 _ROOM = 1.2
 
 
-def build(scene: Scene, plan: Plan) -> Built:
-    """The system of a scene with nodal contacts; see ``raceway.bodies.model.build_model``.
+def build(scene: Scene, plan: Plan) -> NodalBearing:
+    """The bearing of a scene with condensed bodies and pressures at surface points.
 
     Raises
     ------
@@ -68,8 +68,8 @@ def build(scene: Scene, plan: Plan) -> Built:
         coarse, _ = _system(scene, basis, system, reach, 0.5 * nodes, load)
         return coarse
 
-    bodies = PatchBodies(nodes, load, spacing, system.pool, rigid, beside, coarser if nodes >= 2.0 else None)
-    return Built(basis, system, guess, bodies)
+    fewer = coarser if nodes >= 2.0 else None
+    return NodalBearing(basis, system, guess, nodes, load, spacing, system.pool, rigid, beside, fewer)
 
 
 def _system(

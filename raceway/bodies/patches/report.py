@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.bodies.bearing import Bearing, Told
 from raceway.bodies.condensed.inertia import inertia_table
+from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.locking import locking
 from raceway.core.patches.contact import Pressed
 from raceway.core.patches.field import PressureField, pressure_field
@@ -16,12 +18,12 @@ from raceway.core.patches.patch import Spacing
 from raceway.core.patches.pool import Pool
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import COORDINATES, Evaluation, System
-from raceway.errors import RacewayError
+from raceway.errors import ConvergenceError, RacewayError
 from raceway.scene.inner_ring import load_at_edge
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.pipeline.settle import Equilibrium
 
 #: Entries of the stiffness below this part of sqrt(K_ii K_jj) are ripple or cancel out: no relative difference.
 _NOTHING = 0.02
@@ -30,15 +32,15 @@ _ENOUGH = 3.0
 
 
 @attrs.frozen(eq=False)
-class PatchBodies:
-    """Nodal contacts beyond their system.
+class NodalBearing(Bearing):
+    """Condensed rings and balls with pressures at surface points.
 
     Attributes
     ----------
     nodes : points along each semi-axis of the inner contact at ``load`` [N]
     spacing : Spacing
     pool : patches as they are now
-    rigid : the same scene with rigid bodies;  guess : (5,) where its equilibrium is looked for
+    rigid : the same scene with rigid bodies;  beside : (5,) where its equilibrium is looked for
     coarser : builds the same system with half as many points; None where there are no fewer
     """
 
@@ -47,9 +49,22 @@ class PatchBodies:
     spacing: Spacing
     pool: Pool
     rigid: System
-    guess: np.ndarray
+    beside: np.ndarray
     coarser: Callable[[], System] | None
     _errors: dict[bytes, tuple[float | None, str]] = attrs.field(init=False, factory=dict)
+
+    def settle(self, near: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, int]:
+        """From a near equilibrium, what is held staying where it is; from the own guess where that fails."""
+        if near is not None:
+            try:
+                return self.system.settle(np.where(self.system.free > 0.0, near, self.guess))
+            except ConvergenceError:
+                pass  # the own guess decides whether there is an equilibrium
+        return super().settle()
+
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """The overlap that a law leaves."""
+        return overlap(self.ball_columns(model, equilibrium), equilibrium)
 
     def pressed(self, model: Model, equilibrium: Equilibrium) -> tuple[Evaluation, list[Pressed]]:
         """The state and the contacts' answers at the equilibrium, inner races first."""
@@ -92,7 +107,7 @@ class PatchBodies:
 
     def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         """The table ``model`` of result.json."""
-        q, ball, _ = self.rigid.settle(self.guess)
+        q, ball, _ = self.rigid.settle(self.beside)
         stiffness = self.rigid.evaluate(q, ball=ball).stiffness
         columns = self.ball_columns(model, equilibrium)
         error, how = self._change_from_coarser(model, equilibrium)

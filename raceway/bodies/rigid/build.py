@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.bodies.basis import Basis, Built, changing_speed, excitation, law_params, linear_parts, make_basis
+from raceway.bodies.basis import Basis, changing_speed, excitation, law_params, linear_parts, make_basis
+from raceway.bodies.bearing import Bearing, Told
+from raceway.bodies.contact_error import against_hertz
 from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
@@ -19,13 +21,29 @@ from raceway.planning.plan import Plan
 from raceway.scene.inner_ring import radial_growth
 from raceway.scene.tables import Scene
 
+if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
 
-def build(scene: Scene, plan: Plan) -> Built:
-    """The system of a scene with rigid bodies; see ``raceway.bodies.model.build_model``."""
+
+class RigidBearing(Bearing):
+    """Rigid rings and balls: what their law is off by is all there is to tell."""
+
+    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """None."""
+        return None, "rigid bodies have no mesh"
+
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Against Hertz."""
+        return against_hertz(model, equilibrium)
+
+
+def build(scene: Scene, plan: Plan) -> RigidBearing:
+    """The bearing of a scene with rigid bodies."""
     basis = make_basis(scene)
     system = rigid_system(scene, plan, basis)
     probe(scene, basis, system)
-    return Built(basis, system, place_ring(scene, basis, system))
+    return RigidBearing(basis, system, place_ring(scene, basis, system))
 
 
 def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:

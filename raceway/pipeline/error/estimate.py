@@ -24,17 +24,18 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.system import TOLERANCE
 from raceway.core.signals.identification import Identification
 from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
-from raceway.pipeline.error.contact import contact_error, is_calibrated
+from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.error.finer_series import finer_value, more_equilibria
 from raceway.pipeline.error.free_vibration import Clean, without_free_vibration
 from raceway.pipeline.error.misfit import largest_misfit
 from raceway.pipeline.error.other_start import Run, distance
 from raceway.pipeline.error.steady_motion import settled_value
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 from raceway.planning.recording import fits
 from raceway.planning.steady_orbits import compares_with_steady_motion, remembers_its_start
@@ -87,10 +88,7 @@ def error_table(
     """
     table = no_error("")
     how: dict[str, str] = table["how"]
-    how["mesh"] = "rigid bodies have no mesh"
-    mesh = None
-    if model.bodies is not None:
-        mesh, how["mesh"] = model.bodies.mesh_error(model, equilibrium)
+    mesh, how["mesh"] = model.bearing.mesh_error(model, equilibrium)
     table["contact"], how["contact"] = contact_error(model, equilibrium)
     if not motions:
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
@@ -108,7 +106,7 @@ def error_table(
             "identification": _identification(model, equilibrium, found),
         }
     parts["mesh"] = Part(mesh, how["mesh"])
-    if is_calibrated(model):
+    if model.traits.calibrated:
         parts["contact"] = Part(table["contact"], how["contact"])
     # The same for all runs on these bodies, and of the size of Z alone.
     table["bodies"] = sum(parts[name].size or 0.0 for name in ("mesh", "contact") if name in parts)
@@ -119,7 +117,7 @@ def error_table(
     )
     if found.series_error:
         how["total"] += f"; of the last window alone, at {60.0 * found.frequency_hz:.6g} r/min"
-    if model.scene.bodies.kind == "elastic":
+    if model.traits.every_node:
         how["total"] = "not estimated: that of the mesh is not known, and is the largest"
         return table
     if motions and _wanders(motions[-1][1], found):
@@ -181,7 +179,7 @@ def _time_step(
     if method.steady:
         own = first.whole.counts.get("error")
         return Part(own, "the method's own estimate, of the displacement over its amplitude"), None
-    if model.scene.bodies.kind == "elastic":
+    if model.traits.every_node:
         return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), None
     if not method.inertial:
         return _sampling(motions, equilibrium, model, value, on_progress), None

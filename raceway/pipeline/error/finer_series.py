@@ -16,8 +16,9 @@ from __future__ import annotations
 
 import attrs
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 
 #: Least equilibria a turn of a second series.

@@ -26,10 +26,10 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.signals.identification import fourier_line, stiffness, without_drift
 from raceway.core.stepping.record import Record
-from raceway.pipeline.settle import Equilibrium
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.identifiers.tangent import Tangent
 from raceway.plugins.identifiers.whole_turns import whole_turns

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import pi
 from typing import Any
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.signals.identification import Identification
-from raceway.pipeline.settle import Equilibrium
 from raceway.pipeline.simulate import simulate
 from raceway.plugins.identifiers.fft_1x import Fft1x
 
@@ -32,7 +32,7 @@ def largest_misfit(model: Model, equilibrium: Equilibrium, found: Identification
         No motion at the scene's own speed.
     """
     series = list(found.series)
-    if all(abs(w / found.speed - 1.0) > _SAME for w, _ in series) and model.scene.bodies.kind != "elastic":
+    if all(abs(w / found.speed - 1.0) > _SAME for w, _ in series) and not model.traits.every_node:
         record = simulate(model, equilibrium).record
         series.append((found.speed, Fft1x().identify([record], equilibrium, model).dynamic_stiffness))
     sizes = []

@@ -16,10 +16,10 @@ from typing import Any
 
 import attrs
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.pipeline.error.free_vibration import without_free_vibration
-from raceway.pipeline.settle import Equilibrium
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 from raceway.planning.steady_orbits import remembers_its_start
 

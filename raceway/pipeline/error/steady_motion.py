@@ -8,11 +8,12 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.signals.identification import Identification, fourier_line, stiffness
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import BeyondPlanError, RacewayError
-from raceway.pipeline.settle import Equilibrium, settle
+from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation
 
 #: Samples of the steady turn, and the error of its displacement over its amplitude.

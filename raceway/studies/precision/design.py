@@ -180,7 +180,7 @@ def default_points(scene: Scene, registry: Registry) -> list[tuple[str, dict[str
     others = {
         "contact.kind": [n for n in registry.names("contact_law") if n != scene.contact.kind],
         "contact.discretisation": [d for d in ("resultant", "nodal") if d != scene.contact.discretisation],
-        "bodies.kind": [b for b in BODIES if b != scene.bodies.kind],
+        "bodies.kind": [n for n in registry.names("bodies") if n != scene.bodies.name],
     }
     if scene.excitation is not None:
         others["identifier.kind"] = [n for n in registry.names("identifier") if n != scene.identifier.kind]
@@ -190,7 +190,8 @@ def default_points(scene: Scene, registry: Registry) -> list[tuple[str, dict[str
 
 def is_steady(method: type) -> bool:
     """Whether an integrator solves for the periodic motion itself."""
-    return method.steady
+    steady: bool = method.steady  # type: ignore[attr-defined]
+    return steady
 
 
 def short(text: str) -> str:

@@ -144,12 +144,12 @@ def _at_rest(case: Case, shown: dict[str, Any], changes: dict[str, Any], registr
     def axial() -> Measured:
         model = build_model(scene, make_plan(scene))
         found = settle(model)
-        if scene.bodies.kind != "rigid":
+        if scene.bodies.name != "rigid":
             return axial_force(model, found), None
         load = found.contact_force[: model.system.ball_count]
         return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(found.angle_inner)), 0.0))), None
 
-    rigid = scene.bodies.kind == "rigid"
+    rigid = scene.bodies.name == "rigid"
     words = "sum of the balls' axial forces [N]" if rigid else "axial slope of the stored energy [N]"
     rows.append(judged(case.name, shown, words, _BALANCE if rigid else _SLOPE, scene.load.axial, axial))
     if a.get("closed_form"):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.start import at_rest
 from raceway.core.stepping.record import Record, Schedule
-from raceway.pipeline.settle import Equilibrium
 
 #: Step of the difference over the deepest penetration: its error is the square of that.
 _PART = 1e-3

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from raceway.framework.registry import Registry
-from raceway.planning.patches import INTEGRATORS
 from raceway.studies.stability.case import Case, Measured, Near, Row, judged
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
@@ -60,17 +59,18 @@ def surface_cases(base: Changes, registry: Registry) -> Iterator[Case]:
             }  # fmt: skip
             yield Case(f"surface points: {name}", "scenes:warning", arguments, 3.0)
         for name in transient(registry):
-            yield _moving(base, law, name)
+            yield _moving(base, law, name, registry)
 
 
-def _moving(base: Changes, law: str, name: str) -> Case:
+def _moving(base: Changes, law: str, name: str, registry: Registry) -> Case:
     changes: Changes = {**_POINTS, "contact.kind": law, "integrator.turns": 1, "integrator.steps_per_turn": 40}
     arguments: Changes = {
         "tables": base,
         "integrator": name,
         "shown": {"law": law, "bodies": "condensed, points", "integrator": name},
     }
-    if name in INTEGRATORS:
+    method: Any = registry.find("integrator", name).plugin
+    if method.implicit:
         return Case("surface points: a turn", "surface:turn", {**arguments, "changes": changes}, 12.0)
     arguments["changes"] = {**changes, "integrator.kind": name}
     arguments |= {"words": "through too many steps", "reason": "a step takes a tenth of a second"}

@@ -15,10 +15,10 @@ from raceway.scene.tables import Scene
 from raceway.studies.many.points import tables_at
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
     from raceway.core.ring.system import System
     from raceway.core.stepping.record import Motion
-    from raceway.pipeline.settle import Equilibrium
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
 BASE: dict[str, Any] = {

@@ -14,7 +14,6 @@ from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import Lost, Refused
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
-from raceway.planning.sections import section_cost
 from raceway.planning.wall_time import START_S
 from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.identity import differences, identity
@@ -92,11 +91,10 @@ def _chain_length(found: Survey, design: Design) -> int:
     """From the design and the predicted time of a point alone, so that a sweep that is resumed computes the same chains."""
     scene = found.scene
     try:
-        seconds = make_plan(scene).predicted_work_s - START_S
+        plan = make_plan(scene)
+        seconds = plan.predicted_work_s - plan.predicted_once_s - START_S
     except RacewayError:
         return 1
-    if scene.bodies.kind == "condensed" and scene.contact.discretisation == "resultant":
-        seconds -= section_cost(scene).seconds  # its sections are meshed once
     by_time = int(_CHAIN_S / max(seconds, 1e-3))
     return max(1, min(_LONGEST, by_time, design.size // _CHAINS))
 

@@ -64,5 +64,5 @@ def _hertz(model: Model) -> dict[str, float]:
 
 def _nodal(model: Model) -> dict[str, float]:
     """Largest pressure at a surface point of each race [MPa]."""
-    columns = model.bodies.ball_columns(model, settle(model))
+    columns = model.bearing.ball_columns(model, settle(model))
     return {race: 1e-6 * float(np.max(columns[f"peak_pressure_nodal_{race}_pa"])) for race in ("inner", "outer")}

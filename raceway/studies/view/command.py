@@ -52,7 +52,7 @@ def view(
         from raceway.studies.view.study import Wanted, draw
 
         result = run(loaded, registry, progress)
-        mesh = _mesh(loaded, folder) if loaded.bodies.kind == "elastic" else None
+        mesh = _mesh(loaded, folder) if loaded.bodies.traits(loaded).every_node else None
         content = draw(result, folder, Wanted(page, frames if animate else 0, mesh), progress)
     show(content, as_json, None, lambda: _screen(content))
     return 0

@@ -73,7 +73,7 @@ def _section(axes: Axes, bearing: Bearing, state: State, ball: int) -> None:
 
 def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, place: float) -> None:
     """The mesh that a condensed ring was computed on."""
-    compute = getattr(bearing.result.model.bodies, "ring_section", None)
+    compute = getattr(bearing.result.model.bearing, "ring_section", None)
     if compute is None:
         return
     from matplotlib.collections import PolyCollection

@@ -125,7 +125,7 @@ def _bearing_words(result: Result) -> str:
     name = f"{b.preset}: " if b.preset else ""
     return (
         f"{name}{b.ball_count} balls of {1e3 * b.ball_diameter:.4g} mm on {1e3 * b.pitch_diameter:.4g} mm, contact angle "
-        f"{scene.bearing.contact_angle * 57.29577951308232:.4g} deg; {scene.bodies.kind} bodies, tilt {scene.supports.tilt}"
+        f"{scene.bearing.contact_angle * 57.29577951308232:.4g} deg; {scene.bodies.name} bodies, tilt {scene.supports.tilt}"
     )
 
 

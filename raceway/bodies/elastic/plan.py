@@ -7,9 +7,9 @@ from math import ceil, inf, pi
 
 import attrs
 
+from raceway.bodies.mesh_plan import predicted_mesh, refined
 from raceway.errors import Mistake
 from raceway.planning.closed_form import axial_approach
-from raceway.planning.mesh import predicted_mesh, refined
 from raceway.scene.tables import Scene
 
 #: Bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory measured at 4500 and
@@ -169,12 +169,6 @@ def memory_faults(scene: Scene) -> list[Mistake]:
         "nodes_per_semi_axis, or bodies.kind = 'condensed'"
     )
     return [Mistake("mesh.kind", scene.mesh.name, why)]
-
-
-def steps_per_turn(scene: Scene, period: float, safety: float) -> int | None:
-    """Explicit steps a turn that elements and contacts ask for; None where nothing is known."""
-    cost = elastic_cost(scene)
-    return None if cost is None or cost.stable_step_s == 0.0 else int(period / (safety * cost.stable_step_s)) + 1
 
 
 def words(cost: ElasticCost) -> str:

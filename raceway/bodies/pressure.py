@@ -50,7 +50,7 @@ def contact_ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarr
     """
     ellipse: Ellipse = (model.inner, model.outer)[race]
     contact = model.scene.contact
-    if contact.discretisation != "resultant" or not getattr(contact.law, "foundation", False):
+    if not model.traits.resultants or not getattr(contact.law, "foundation", False):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
     approach = approach_at(model, race, load)

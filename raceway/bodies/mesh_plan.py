@@ -14,25 +14,22 @@ if TYPE_CHECKING:
 
 
 def mesh_faults(scene: Scene) -> list[Mistake]:
-    """Why the table [mesh] cannot be used: bodies without a mesh, contacts without cells, sizes that its mesher refuses or the memory does not hold."""
+    """Why the table [mesh] cannot be used: sizes that its mesher refuses or the memory does not hold."""
     if scene.mesh is None:
-        return []
-    if scene.bodies.kind == "rigid":
-        why = "rigid bodies have no mesh: leave the table out, or give [bodies] a kind that deforms"
-        return [Mistake("mesh", None, why)]
-    if not refined(scene) and (scene.bodies.kind, scene.contact.discretisation) != ("elastic", "resultant"):
-        who = "sections of condensed bodies" if scene.bodies.kind == "condensed" else "pressures at surface points"
-        why = (
-            f"{who} need cells along a contact: take at least 1, or elastic bodies with contact.discretisation = 'resultant'"
-        )
-        return [Mistake("mesh.nodes_per_semi_axis", 0, why)]
-    if scene.bodies.kind == "condensed":  # meshes of sections: a few thousand nodes
         return []
     try:
         _prediction(scene)
     except MeshError as error:
         return [error.mistake or Mistake("mesh", None, str(error))]
     return []
+
+
+def unrefined(scene: Scene, who: str) -> list[Mistake]:
+    """A mesh without cells along a contact, which some bodies need; ``who``: in words."""
+    if scene.mesh is None or refined(scene):
+        return []
+    why = f"{who} need cells along a contact: take at least 1, or elastic bodies with contact.discretisation = 'resultant'"
+    return [Mistake("mesh.nodes_per_semi_axis", 0, why)]
 
 
 def refined(scene: Scene) -> bool:
@@ -47,7 +44,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
     -------
     dict or None
         ``bodies[{name, cells, bytes}]`` (what each mesh keeps), ``cells`` of all, ``bytes`` at the peak while they are
-        made; None for bodies without a mesh of their own, without [mesh], and where the mesher cannot tell before it reads or meshes.
+        made; None without [mesh], and where the mesher cannot tell before it reads or meshes.
 
     Raises
     ------
@@ -56,7 +53,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
     PluginError
         A mesher whose prediction is none.
     """
-    found = _prediction(scene) if scene.mesh is not None and scene.bodies.kind == "elastic" else None
+    found = None if scene.mesh is None else _prediction(scene)
     if found is None:
         return None
     from raceway.core.mesh.size import body_bytes

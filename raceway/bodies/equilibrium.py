@@ -1,0 +1,30 @@
+"""The static state of a bearing under its constant loads."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+
+@attrs.frozen(eq=False)
+class Equilibrium:
+    """The static state under the constant loads.
+
+    Attributes
+    ----------
+    displacement : (5,) x, y, z [m], tilts [rad];  stiffness : (5, 5) tangent of the contacts
+    ball : (Z, 2) positions in the meridian planes [m]
+    gap, contact_force : (2 Z,) inner races first [m, N]
+    angle_inner, angle_outer : (Z,) contact angles [rad], nan where a contact is open
+    warnings : what a user should know
+    """
+
+    displacement: np.ndarray
+    stiffness: np.ndarray
+    ball: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    angle_inner: np.ndarray
+    angle_outer: np.ndarray
+    iterations: int
+    warnings: tuple[str, ...]
