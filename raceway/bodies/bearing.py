@@ -9,6 +9,8 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis
+from raceway.bodies.grooves import beyond_the_groove, contact_angles, refuse_impossible_ellipses
+from raceway.bodies.pressure import contact_ellipse
 from raceway.core.ring.system import System
 
 if TYPE_CHECKING:
@@ -61,6 +63,35 @@ class Bearing(ABC):
         balls : the plan's "weightless", "inertial" or "tangential"
         """
         return balls != "weightless"
+
+    def contact_angles(
+        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Inner and outer contact angles (Z,) [rad] under contact forces (2 Z,); nan where a contact carries nothing."""
+        return contact_angles(model, q, ball, force, t)
+
+    def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Peak pressure [Pa] and semi-axes [m] (n,) of the contacts of a race (0 inner, 1 outer) at loads (n,) [N]."""
+        return contact_ellipse(model, race, load)
+
+    def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
+        """Loads (2 Z,) that no contact can carry.
+
+        Raises
+        ------
+        ConvergenceError
+            With ``state``, the solution that says so.
+        """
+        refuse_impossible_ellipses(model, force, state)
+
+    def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+        """A sentence for each race whose contacts run over its edge; angles (Z,), forces (2 Z,)."""
+        return beyond_the_groove(model, inner, outer, force)
+
+    @property
+    def largest_motion(self) -> float:
+        """Displacement [m] beyond which no ball stays in its groove."""
+        return self.basis.geometry.centre_distance
 
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,)."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from raceway.bodies.model import Model
 from raceway.core.contact.hertz import Ellipse
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Model
 
 #: Halvings of an interval of approaches: to the last bit.
 _HALVINGS = 80

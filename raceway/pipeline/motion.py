@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from raceway.bodies.model import Model
-from raceway.bodies.pressure import contact_ellipse
 from raceway.core.stepping.record import Record
 
 
@@ -23,8 +22,8 @@ def motion_table(model: Model, record: Record) -> dict[str, Any]:
     return {
         "axial_displacement_m": float(record.displacement[:, 0].mean()),
         "peak_ball_load_n": inner,
-        "peak_pressure_inner_pa": float(contact_ellipse(model, 0, np.array([inner]))[0][0]),
-        "peak_pressure_outer_pa": float(contact_ellipse(model, 1, np.array([outer]))[0][0]),
+        "peak_pressure_inner_pa": float(model.bearing.contact_ellipse(model, 0, np.array([inner]))[0][0]),
+        "peak_pressure_outer_pa": float(model.bearing.contact_ellipse(model, 1, np.array([outer]))[0][0]),
     }
 
 

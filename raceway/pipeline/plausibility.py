@@ -11,7 +11,6 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
-from raceway.pipeline.settle import beyond_the_groove, contact_angles, refuse_impossible_ellipses
 
 #: Samples of the last turn that are looked at.
 _SAMPLES = 60
@@ -28,7 +27,7 @@ def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) ->
         The ring moves further than the groove centres are apart: the ball would climb out of its groove.
     """
     moved = float(np.abs(record.displacement[:, :3] - equilibrium.displacement[:3]).max())
-    limit = model.geometry.centre_distance
+    limit = model.bearing.largest_motion
     if moved > limit:
         raise ConvergenceError(
             f"the ring moves by {1e3 * moved:.3g} mm, more than the groove centres are apart ({1e3 * limit:.3g} mm): balls "
@@ -51,10 +50,10 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
     for k in chosen:
         force = record.contact_force[k]
         now = attrs.evolve(model, system=model.system.at_speed(record.time[k]))
-        inner, outer = contact_angles(now, record.displacement[k], record.ball[k], force, record.time[k])
+        inner, outer = model.bearing.contact_angles(now, record.displacement[k], record.ball[k], force, record.time[k])
         least = min(least, float(np.nanmin(inner, initial=np.inf)))
-        refuse_impossible_ellipses(now, force)
-        for text in beyond_the_groove(model, inner, outer, force):
+        model.bearing.refuse_impossible(now, force)
+        for text in model.bearing.edge_warnings(model, inner, outer, force):
             beyond.setdefault(text.split(" reaches ")[0], text)
     if model.geometry.contact_angle > 0.0 and least <= 0.0:
         found.append("the bearing unseats during a turn: the contact angle of a loaded ball is zero or negative")

@@ -14,7 +14,6 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import held_table, preload_table
-from raceway.bodies.pressure import contact_ellipse
 from raceway.core.ring.system import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
@@ -149,7 +148,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         "contact_angle_outer_deg": np.degrees(equilibrium.angle_outer),
     }
     for race, (word, load) in enumerate((("inner", load_inner), ("outer", load_outer))):
-        pressure, a, b = contact_ellipse(model, race, load)
+        pressure, a, b = model.bearing.contact_ellipse(model, race, load)
         columns[f"peak_pressure_{word}_pa"] = pressure
         columns[f"semi_major_{word}_m"] = a
         columns[f"semi_minor_{word}_m"] = b

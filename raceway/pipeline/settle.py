@@ -12,7 +12,6 @@ from raceway.bodies.mounting import lost_preload
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import COORDINATES
 from raceway.errors import ConvergenceError
-from raceway.scene.inner_ring import load_at_edge, shoulder_height
 
 
 def settle(
@@ -40,8 +39,8 @@ def settle(
     now = still.evaluate(q, ball=ball)
     stiffness = still.stiffness_at(q, now)
     _refuse_free_motion(model, stiffness, q)
-    inner, outer = contact_angles(model, q, now.ball, now.contact_force)
-    refuse_impossible_ellipses(model, now.contact_force, {"q": q, "ball": now.ball})
+    inner, outer = model.bearing.contact_angles(model, q, now.ball, now.contact_force)
+    model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
     return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
@@ -49,20 +48,6 @@ def settle(
 def _telling(on_progress: Callable[[str, int, int], None]) -> Callable[[float], None]:
     count = iter(range(1, 1_000_000))
     return lambda residual: on_progress(f"equilibrium, residual {residual:.1e}", next(count), 0)
-
-
-def contact_angles(
-    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
-    z = model.system.ball_count
-    axial, radial = model.system.centre_vectors(q, t, ball)[0].T
-    if not model.bearing.has_places(model.plan.balls):
-        inner = outer = np.arctan2(axial, radial)
-    else:
-        inner = np.arctan2(axial - ball[:, 0], radial - ball[:, 1])
-        outer = np.arctan2(ball[:, 0], ball[:, 1])
-    return np.where(force[:z] > 0, inner, np.nan), np.where(force[z:] > 0, outer, np.nan)
 
 
 def _refuse_no_load(model: Model) -> None:
@@ -114,48 +99,4 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
         found.append("`load.moment` has no effect: supports.tilt is locked")
     if model.scene.contact.friction > 0.0:
         found.append("friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have")
-    return (*found, *beyond_the_groove(model, inner, outer, force))
-
-
-def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
-    """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
-    z, d = model.system.ball_count, model.geometry.ball_diameter
-    found = []
-    depth = shoulder_height(model.scene)
-    edge = np.arccos(1.0 - depth / (0.5 * d))
-    for race, ellipse, angle, load in (
-        ("inner", model.inner, inner, force[:z]),
-        ("outer", model.outer, outer, force[z:]),
-    ):
-        half = ellipse.semi_axes(load)[0] / (0.5 * d)
-        over = np.abs(angle) + half
-        reach = np.nanmax(over, initial=0.0)
-        if reach > edge:
-            begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
-            assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
-            found.append(
-                f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
-                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
-                f"contact angle from {begins:.3g} N a ball"
-            )
-    return found
-
-
-def refuse_impossible_ellipses(model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
-    """Loads (2 Z,) [N] that no ball can carry: a contact ellipse longer than half its circumference.
-
-    Raises
-    ------
-    ConvergenceError
-        With ``state``, the solution that says so.
-    """
-    z, radius = model.system.ball_count, 0.5 * model.geometry.ball_diameter
-    for race, ellipse, load in (("inner", model.inner, force[:z]), ("outer", model.outer, force[z:])):
-        half = ellipse.semi_axes(load)[0] / radius
-        if half.max(initial=0.0) >= 0.5 * np.pi:
-            raise ConvergenceError(
-                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball long, more than half "
-                f"its circumference, under {load[np.argmax(half)]:.3g} N a ball: no such contact exists. Check units and loads "
-                "(bearing.rings.young in Pa, lengths in m)",
-                state,
-            )
+    return (*found, *model.bearing.edge_warnings(model, inner, outer, force))

@@ -10,7 +10,6 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import contact_angles
 from raceway.scene.inner_ring import shoulder_height
 from raceway.scene.tables import Scene
 
@@ -80,7 +79,7 @@ def _reaches(result: Result) -> tuple[float, float, float]:
     edge = float(np.arccos(1.0 - shoulder_height(model.scene) / radius))
     reach, least = [0.0, 0.0], np.inf
     for q, ball, force, t in zip(record.displacement, record.ball, record.contact_force, record.time, strict=True):
-        angles = contact_angles(model, q, ball, force, t)
+        angles = model.bearing.contact_angles(model, q, ball, force, t)
         for lane, (ellipse, angle, load) in enumerate(
             ((model.inner, angles[0], force[:z]), (model.outer, angles[1], force[z:]))
         ):

@@ -12,7 +12,6 @@ import numpy as np
 
 from raceway.errors import SceneError
 from raceway.pipeline.result import Result, equilibrium_table
-from raceway.pipeline.settle import contact_angles
 from raceway.studies.view.bearing import State
 
 if TYPE_CHECKING:
@@ -88,7 +87,7 @@ def last_turn(result: Result, frames: int) -> Turn:
     for k in chosen:
         load, t = record.contact_force[k], float(record.time[k])
         now = attrs.evolve(model, system=model.system.at_speed(t))
-        angle = np.concatenate(contact_angles(now, record.displacement[k], record.ball[k], load, t))
+        angle = np.concatenate(now.bearing.contact_angles(now, record.displacement[k], record.ball[k], load, t))
         halves, peaks = zip(
             *(_ellipse(e, part) for e, part in ((model.inner, load[:z]), (model.outer, load[z:]))), strict=True
         )

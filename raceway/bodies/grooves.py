@@ -1,0 +1,71 @@
+"""Contacts of balls in grooves: their angles, ellipses that run over the edge, loads that no ball carries."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from raceway.errors import ConvergenceError
+from raceway.scene.inner_ring import load_at_edge, shoulder_height
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Model
+
+
+def contact_angles(
+    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
+    z = model.system.ball_count
+    axial, radial = model.system.centre_vectors(q, t, ball)[0].T
+    if not model.bearing.has_places(model.plan.balls):
+        inner = outer = np.arctan2(axial, radial)
+    else:
+        inner = np.arctan2(axial - ball[:, 0], radial - ball[:, 1])
+        outer = np.arctan2(ball[:, 0], ball[:, 1])
+    return np.where(force[:z] > 0, inner, np.nan), np.where(force[z:] > 0, outer, np.nan)
+
+
+def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+    """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
+    z, d = model.system.ball_count, model.geometry.ball_diameter
+    found = []
+    depth = shoulder_height(model.scene)
+    edge = np.arccos(1.0 - depth / (0.5 * d))
+    for race, ellipse, angle, load in (
+        ("inner", model.inner, inner, force[:z]),
+        ("outer", model.outer, outer, force[z:]),
+    ):
+        half = ellipse.semi_axes(load)[0] / (0.5 * d)
+        over = np.abs(angle) + half
+        reach = np.nanmax(over, initial=0.0)
+        if reach > edge:
+            begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
+            assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
+            found.append(
+                f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
+                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
+                f"contact angle from {begins:.3g} N a ball"
+            )
+    return found
+
+
+def refuse_impossible_ellipses(model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
+    """Loads (2 Z,) [N] that no ball can carry: a contact ellipse longer than half its circumference.
+
+    Raises
+    ------
+    ConvergenceError
+        With ``state``, the solution that says so.
+    """
+    z, radius = model.system.ball_count, 0.5 * model.geometry.ball_diameter
+    for race, ellipse, load in (("inner", model.inner, force[:z]), ("outer", model.outer, force[z:])):
+        half = ellipse.semi_axes(load)[0] / radius
+        if half.max(initial=0.0) >= 0.5 * np.pi:
+            raise ConvergenceError(
+                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball long, more than half "
+                f"its circumference, under {load[np.argmax(half)]:.3g} N a ball: no such contact exists. Check units and loads "
+                "(bearing.rings.young in Pa, lengths in m)",
+                state,
+            )
