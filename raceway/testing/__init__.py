@@ -1,8 +1,9 @@
 """Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
 
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
-contact_law, excitation, integrator, identifier, mesher, format, report, executor   one suite a file
+contact_law, excitation, integrator, identifier, bodies, mesher, format, report, executor   one suite a file
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
+bearings       scenes and bearings that kinds of bodies are tried on
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
 
 Subclass a suite in a test file, and pytest collects its checks::
@@ -32,6 +33,7 @@ SUITES: dict[str, tuple[str, str]] = {
     "identifier": ("raceway.testing.identifier", "IdentifierSuite"),
     "mesher": ("raceway.testing.mesher", "MesherSuite"),
     "format": ("raceway.testing.format", "FormatSuite"),
+    "bodies": ("raceway.testing.bodies", "BodiesSuite"),
     "report": ("raceway.testing.report", "ReportSuite"),
     "executor": ("raceway.testing.executor", "ExecutorSuite"),
 }
@@ -45,6 +47,7 @@ _PUBLIC = {
 }
 __all__ = [
     "SUITES",
+    "BodiesSuite",
     "Conformity",
     "ContactLawSuite",
     "ExcitationSuite",
