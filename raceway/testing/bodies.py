@@ -14,7 +14,7 @@ from raceway.bodies.bearing import Bearing
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.start import at_rest, static_orbit
-from raceway.core.schemes.drivers import Drivers, integrate
+from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import Cost, Traits
@@ -29,6 +29,7 @@ from raceway.planning.parts import Decisions
 from raceway.planning.plan import make_plan
 from raceway.scene.tables import Scene
 from raceway.testing.bearings import OTHERS, is_key, registry_with, scene_of, settled, unbalanced
+from raceway.testing.drivers import FromPython, has_both
 from raceway.testing.suite import ConformityError, Suite, check_class, duty, require
 
 #: Part of the loads that an equilibrium may leave: compiled ones leave 1e-11, finite elements are iterated to 1e-7.
@@ -216,8 +217,8 @@ class BodiesSuite(Suite):
             moved = record.displacement - found.displacement
             size = float(np.abs(moved).max())
             require(np.isfinite(moved).all() and size > 0.0, f"{method.name}: the ring does not move under the force")
-            if compiled and method.scheme.stepped is not None:
-                other = integrate(_Stepped(method), system, start, schedule)
+            if compiled and has_both(method):
+                other = integrate(FromPython(method), system, start, schedule)
                 worst = max(worst, float(np.abs(other.displacement - record.displacement).max()) / size)
                 # Both end their iterations at 1e-9 of all forces, of which the excitation is a small part.
                 require(worst < 1e-5, f"{method.name}: drivers differ by {worst:.2g} of the motion")
@@ -266,17 +267,6 @@ class BodiesSuite(Suite):
 _MASSLESS = {"kinematics": {"ball_inertia": False}}
 #: Of ``OTHERS``, what moves the ring of every bearing.
 _MOVES = ("inertia of the balls", "an expanded inner ring", "a soft seat")
-
-
-@attrs.frozen
-class _Stepped:
-    """An integrator by its driver from Python alone."""
-
-    method: Any
-
-    @property
-    def scheme(self) -> Drivers:
-        return Drivers(stepped=self.method.scheme.stepped)
 
 
 def _carried(model: Model, found: Equilibrium) -> str:

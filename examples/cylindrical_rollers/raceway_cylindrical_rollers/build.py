@@ -66,7 +66,9 @@ class RollerBearing(Bearing):
         z, diameter = model.system.ball_count, self.basis.geometry.ball_diameter
         for race, load in enumerate((force[:z], force[z:])):
             if 2.0 * self.contact_ellipse(model, race, load)[2].max() >= 0.5 * diameter:
-                raise ConvergenceError(f"{load.max():.3g} N a roller make a contact wider than half a roller: check the units", state)
+                raise ConvergenceError(
+                    f"{load.max():.3g} N a roller make a contact wider than half a roller: check the units", state
+                )
 
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
         """None: the length is the effective one, inside the edges."""
@@ -141,8 +143,6 @@ def _law_params(scene: Scene, basis: Basis, length: float, radii: tuple[float, f
 
 def _scalars(scene: Scene, basis: Basis, clearance: float) -> np.ndarray:
     out = np.zeros(ring.SCALARS)
-    # Not used by the kernel: the search for equilibria takes its first radius from it.
-    out[ring.REST_AXIAL] = 1e-3 * basis.geometry.ball_diameter
     out[ring.REST_RADIAL] = scene.kinematics.radial_expansion - 0.5 * clearance
     out[ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
     out[ring.DAMPING] = scene.contact.damping

@@ -66,12 +66,19 @@ class CylindricalRollers:
         b, supports, contact, moving = scene.bearing, scene.supports, scene.contact, scene.kinematics
         nothing = "cylindrical rollers carry no axial load: something else holds the ring, supports.axial = 'displacement'"
         refuse(supports.axial != "displacement", "supports.axial", supports.axial, nothing)
-        refuse(scene.load.axial != 0.0, "load.axial", scene.load.axial, "cylindrical rollers carry no axial load: leave it out")
+        refuse(
+            scene.load.axial != 0.0, "load.axial", scene.load.axial, "cylindrical rollers carry no axial load: leave it out"
+        )
         why = "the rollers' stiffness against tilts is not computed: use 'locked'"
         refuse(supports.tilt != "locked", "supports.tilt", supports.tilt, why)
         why = "is no law of line contacts: use 'palmgren'"
         refuse(not getattr(contact.law, "line_contact", False), "contact.kind", contact.kind, why)
-        refuse(contact.discretisation != "resultant", "contact.discretisation", contact.discretisation, "line contacts are resultants: use 'resultant'")
+        refuse(
+            contact.discretisation != "resultant",
+            "contact.discretisation",
+            contact.discretisation,
+            "line contacts are resultants: use 'resultant'",
+        )
         refuse(contact.friction > 0.0, "contact.friction", contact.friction, "is not computed for rollers: set it to 0")
         gyroscopic = "rollers that stay parallel to the axis have no gyroscopic moment: use 'none'"
         refuse(moving.gyroscopic != "none", "kinematics.gyroscopic", moving.gyroscopic, gyroscopic)

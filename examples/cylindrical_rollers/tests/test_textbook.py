@@ -59,7 +59,7 @@ def load_integral(eps, n=N):
 
 def test_the_constant_is_harris_own():
     # Q = 8.06e4 L^(8/9) delta^(10/9) in mm and N, to its three digits.
-    assert (1.0 / 3.84e-5) ** N == pytest.approx(8.06e4, rel=1e-3)
+    assert pytest.approx(8.06e4, rel=1e-3) == (1.0 / 3.84e-5) ** N
 
 
 def test_the_load_integral_is_the_tabulated_one():
@@ -146,5 +146,7 @@ def test_what_rollers_cannot_do_is_refused_by_its_key(table, keys, path):
 def test_a_run_says_whose_bodies_it_used():
     tables = {**raceway_cylindrical_rollers.CylindricalRollers.example_scene(), "bodies": TABLES["bodies"]}
     told = run(scene_from_dict(tables, REGISTRY), REGISTRY).as_dict()
-    assert {p["name"]: p["distribution"] for p in told["environment"]["plugins"]}["cylindrical_rollers"].startswith("raceway_cyl")
+    assert {p["name"]: p["distribution"] for p in told["environment"]["plugins"]}["cylindrical_rollers"].startswith(
+        "raceway_cyl"
+    )
     assert not [warning for warning in told["warnings"] if "unseats" in warning or "groove" in warning]
