@@ -198,10 +198,10 @@ class BodiesSuite(Suite):
         words = [*bearing.warnings(model, found), *edges]
         require(all(isinstance(one, str) and one for one in words), f"warnings are sentences, not {words!r}")
         for name in ("mesh_error", "contact_error"):
-            told = getattr(bearing, name)(model, found)
-            good = isinstance(told, tuple) and len(told) == 2 and isinstance(told[1], str) and bool(told[1])
-            require(good, f"{name}() returns {told!r}, not (number or None, how it was found)")
-            require(told[0] is None or 0.0 <= told[0] < np.inf, f"{name}() is {told[0]!r}")
+            answer: Any = getattr(bearing, name)(model, found)
+            good = isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[1], str) and bool(answer[1])
+            require(good, f"{name}() returns {answer!r}, not (number or None, how it was found)")
+            require(answer[0] is None or 0.0 <= answer[0] < np.inf, f"{name}() is {answer[0]!r}")
 
     @duty(
         "steps of newmark, central_difference and quasi_static; where forces are compiled, compiled and stepped drivers agree"
