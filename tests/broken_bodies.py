@@ -92,6 +92,18 @@ def deaf(self, scene, plan):
     return Rigid.build(self, attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, radial_expansion=0.0)), plan)
 
 
+def dry(self, scene, plan):
+    return Rigid.build(self, attrs.evolve(scene, contact=attrs.evolve(scene.contact, friction=0.0)), without(plan))
+
+
+def without(plan):
+    return plan if plan.gyroscopic else attrs.evolve(plan, balls="inertial" if plan.centrifugal else "weightless")
+
+
+def still(self, scene, plan):
+    return Rigid.build(self, attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, orbiting=False)), plan)
+
+
 def single(self, scene, plan):
     if scene.bearing.arrangement != "single":
         raise ConvergenceError("one row only")
@@ -130,6 +142,8 @@ BROKEN = [
     (of_system("Divided", evaluate=another), "steps", "newmark: drivers differ by"),
     (made("Drifting", build=drifting), "repeats", "`displacement` differs"),
     (made("Deaf", build=deaf), "refused_or_computed", "an expanded inner ring: changes nothing"),
+    (made("Dry", build=dry), "refused_or_computed", "friction: changes nothing"),
+    (made("Still", build=still), "refused_or_computed", "orbiting balls: changes nothing"),
     (made("Single", build=single), "refused_or_computed", "a pair of rows: neither refused by faults\\(\\) nor computed"),
     (of_bearing("Obscure", report=lambda *_: {"what": object()}), "run", "TypeError"),
 ]  # fmt: skip

@@ -35,6 +35,7 @@ OTHERS: dict[str, dict[str, dict[str, Any]]] = {
     "inertia of the balls": {"kinematics": {"ball_inertia": True}},
     "gyroscopic moments": {"kinematics": {"ball_inertia": True, "gyroscopic": "outer_race"}},
     "orbiting balls": {"kinematics": {"orbiting": True}},
+    "damping of the contacts": {"contact": {"damping": 100.0}},
     "friction": {"contact": {"friction": 0.05}},
     "a pair of rows": {"bearing": {"arrangement": "DB", "row_distance": 0.02}},
     "surface points": {"contact": {"discretisation": "nodal"}},
