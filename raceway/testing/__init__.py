@@ -3,7 +3,8 @@
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
 contact_law, excitation, integrator, identifier, bodies, mesher, format, report, executor   one suite a file
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
-bearings       scenes and bearings that kinds of bodies are tried on;  drivers: one driver of a scheme by itself
+bearings       scenes and bearings that kinds of bodies are tried on;  asked: what else those may be asked for
+drivers        one driver of a scheme by itself
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
 
 Subclass a suite in a test file, and pytest collects its checks::

@@ -28,7 +28,8 @@ from raceway.planning.decisions import decide_balls, decide_motion, decide_tilts
 from raceway.planning.parts import Decisions
 from raceway.planning.plan import make_plan
 from raceway.scene.tables import Scene
-from raceway.testing.bearings import OTHERS, is_key, registry_with, scene_of, settled, unbalanced
+from raceway.testing.asked import OTHERS, PLAIN
+from raceway.testing.bearings import is_key, registry_with, scene_of, settled, unbalanced
 from raceway.testing.drivers import FromPython, has_both
 from raceway.testing.suite import ConformityError, Suite, check_class, duty, require
 
@@ -78,7 +79,7 @@ class BodiesSuite(Suite):
     def test_faults(self, bodies: Any) -> str:
         registry, refused = registry_with(bodies), []
         with _nothing_built():
-            for word, changes in {"its example": {}, **OTHERS}.items():
+            for word, changes in {"its example": {}, **{word: one.changes for word, one in OTHERS.items()}}.items():
                 scene = scene_of(bodies, changes, registry)
                 found = bodies.faults(scene)
                 require(isinstance(found, list), f"{word}: faults() returns {type(found).__name__}, not a list")
@@ -233,9 +234,9 @@ class BodiesSuite(Suite):
     @duty("what else a scene asks for is refused by the plan, or computed: nothing is left out in silence")
     def test_refused_or_computed(self, bodies: Any) -> str:
         registry, computed = registry_with(bodies), []
-        plain = settled(scene_of(bodies, _MASSLESS, registry))[1].displacement
-        for word, changes in OTHERS.items():
-            scene = scene_of(bodies, changes, registry)
+        plain = settled(scene_of(bodies, PLAIN, registry))[1].displacement
+        for word, asked in OTHERS.items():
+            scene = scene_of(bodies, asked.changes, registry)
             if _refusal(scene) is None and bodies.traits(scene).resultants:
                 computed.append(word)
                 self._computes(word, scene, plain)
@@ -248,7 +249,7 @@ class BodiesSuite(Suite):
             raise ConformityError(f"{word}: neither refused by faults() nor computed: {why}") from why
         left = unbalanced(model, found.displacement, found.ball)
         require(left < _BALANCE, f"{word}: {left:.2g} of the loads is left")
-        require(_shows(word, model, found, plain), f"{word}: changes nothing: refuse it by faults()")
+        require(OTHERS[word].shows(model, found, plain), f"{word}: changes nothing: refuse it by faults()")
 
     @duty("a whole run ends with a stiffness, an error table and a result.json that names the kind")
     def test_run(self, bodies: Any) -> str:
@@ -259,10 +260,6 @@ class BodiesSuite(Suite):
         stiffness = told["identification"]["equivalent_stiffness"]
         require(stiffness is not None and stiffness > 0.0, f"the stiffness is {stiffness} N/m")
         return f"K = {stiffness:.4g} N/m"
-
-
-#: Without what the first of ``OTHERS`` add.
-_MASSLESS = {"kinematics": {"ball_inertia": False}}
 
 
 def _carried(model: Model, found: Equilibrium) -> str:
@@ -277,23 +274,3 @@ def _carried(model: Model, found: Equilibrium) -> str:
     left = float(np.abs(rest).max() / load.sum())
     require(left < _ANGLES, f"with their angles the inner races' forces leave {left:.2g} of them unbalanced")
     return f"{left:.1e} of them is left"
-
-
-def _shows(word: str, model: Model, found: Equilibrium, plain: np.ndarray) -> bool:
-    """Whether one of ``OTHERS`` has an effect on the system, or moves the ring from where it was, ``plain`` (5,)."""
-    system = model.system
-    if word in ("friction", "gyroscopic moments"):
-        return not system.conservative
-    if word == "free tilts":
-        return bool(system.free.all())
-    if word == "a held axial displacement":
-        return bool(system.free[0] == 0.0)
-    if word == "a pair of rows":
-        return system.ball_count == 2 * model.scene.bearing.ball_count
-    if word == "damping of the contacts":
-        # Bodies that are stepped from Python may know rates in motion only.
-        return not model.traits.compiled or bool(system.evaluate(found.displacement, ball=found.ball).damping.any())
-    if word == "orbiting balls":
-        now, later = (system.evaluate(found.displacement, ball=found.ball, t=t).contact_force for t in (0.0, 1e-3))
-        return not np.array_equal(now, later)
-    return not np.array_equal(found.displacement, plain)
