@@ -14,7 +14,7 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import held_table, preload_table
-from raceway.core.ring.system import COORDINATES
+from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
 from raceway.pipeline.motion import motion_table
