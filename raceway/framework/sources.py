@@ -14,7 +14,7 @@ from pathlib import Path
 from traceback import extract_tb
 from typing import Any
 
-from raceway.errors import PluginError
+from raceway.errors import PluginError, RacewayError
 from raceway.framework.options import nearest
 from raceway.storage.user_files import size_of
 
@@ -67,6 +67,26 @@ def foreign_words() -> Iterator[None]:
     """What plug-ins print while they are loaded goes to standard error: standard output may be JSON."""
     with redirect_stdout(sys.stderr):
         yield
+
+
+@contextmanager
+def blamed(who: str, duty: str) -> Iterator[None]:
+    """Put what a plug-in's own code raises to its name.
+
+    Raises
+    ------
+    PluginError
+        Instead of anything but a ``RacewayError``, which passes through.
+    """
+    try:
+        with foreign_words():
+            yield
+    except RacewayError:
+        raise
+    except BaseException as why:
+        if not is_foreign_fault(why):
+            raise
+        raise PluginError(f"{who}: {duty} raises {type(why).__name__}: {why}") from why
 
 
 def import_file(path: Path) -> tuple[Any, str]:
