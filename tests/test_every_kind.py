@@ -91,7 +91,9 @@ def test_a_run_uses_law_excitation_integrator_identifier_and_report(files, tmp_p
         "identifier.kind=three_harmonics",
     ]  # fmt: skip
     scene = tmp_path / "scene.toml"
-    scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[excitation]\nkind = "pulse"\nspeed_rpm = 12000\n')
+    scene.write_text(
+        '[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[excitation]\nkind = "pulse"\nspeed_rpm = 12000\n'
+    )
     changes = [word for change in words for word in ("--set", change)]
     kinds = ("contact_law", "excitation", "integrator", "identifier")
     out, path = tmp_path / "out", os.pathsep.join([str(site), str(ROOT)])
@@ -155,7 +157,10 @@ def test_json_holds_the_result_and_the_reports_failure(tmp_path):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("run", MINIMAL, "--report", "picturs"), "no report named 'picturs' (did you mean 'pictures'?); installed: pictures"),
+        (
+            ("run", MINIMAL, "--report", "picturs"),
+            "no report named 'picturs' (did you mean 'pictures'?); installed: pictures",
+        ),
         (("mesh", MINIMAL, "--format", "vtk"), "installed: abaqus, msh, vtu"),
         (("sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"), "installed: dask, joblib, serial"),
         (("check", MINIMAL, "--set", "mesh.kind=moon"), "installed: file, gmsh, structured"),

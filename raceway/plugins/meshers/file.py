@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.errors import MeshError
+from raceway.errors import MeshError, PluginError
 from raceway.framework.options import nearest, option
 from raceway.framework.sources import blamed
 from raceway.plugins.meshers._bodies import (
@@ -92,7 +92,10 @@ def _read(path: str) -> HexMesh:
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.framework.registry import default_registry
 
-    form = default_registry().format_of(path)
+    try:
+        form = default_registry().format_of(path)
+    except PluginError as why:
+        raise MeshError(str(why)) from None
     with blamed(str(form), "read()"):
         mesh = form.plugin().read(path)
     if not isinstance(mesh, HexMesh):
