@@ -9,8 +9,8 @@ import pytest
 from raceway.errors import PluginError
 from raceway.framework.contracts import KINDS
 from raceway.framework.registry import Registry
-from tests.command_line import MINIMAL, install, raceway
 from tests.test_docs import FILES
+from validation.command_line import MINIMAL, install, raceway
 
 ROOT = Path(__file__).parents[1]
 #: The plug-ins of docs/plugins.md by kind.

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from raceway.pipeline.result import tilts_follow
-from tests.command_line import ARTICLE, invoke
+from validation.command_line import ARTICLE, invoke
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
 #: All but the module that writes numbers with so many digits.

@@ -11,7 +11,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
 from raceway.bodies.model import Model
 from raceway.core.periodic.branch import Point
@@ -27,6 +26,7 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import Equilibrium, settle
 from raceway.pipeline.simulate import simulate
+from validation.scenes import model_of, rotating
 
 Tables = dict[str, Any]
 
