@@ -1,14 +1,14 @@
-"""Builders of the kinds of bodies: from scene and plan to a system that can be settled and stepped.
+"""Rings and balls: from scene and plan to a system that can be settled and stepped.
 
-``build(scene, plan) -> Built`` in a file for each ``bodies.kind``; ``raceway.bodies.model`` chooses.
+``build(scene, plan) -> Built`` in a folder for each kind of bodies; ``model`` chooses.
 
-elastic     every node moves: pressures at points, or a calibrated force a contact
-elastic_report  what a result tells of those;  elastic_points, elastic_resultants: of their contacts
+model       the model of a scene: bodies, contacts, loads, constraints
 basis       what all kinds share: geometry, Hertz contacts, parameters of the law, loads, mass, excitation
+mounting    preload of a pair, axial displacement that is held
+meshing     meshes of the bodies by the scene's mesher
+mesh_fit    whether meshes have the size of the bearing
 rigid       only the contacts deform
-condensed   elastic rings and balls, one force for each contact
-inertia     what it costs that condensed bodies follow at once
-patches     the same with pressures at surface points (contact.discretisation = "nodal")
-patch_report  what a result tells of those
-locking     materials too incompressible for elements under surface points
+condensed   finite elements of rings and balls, condensed onto one resultant a contact
+patches     the same, condensed onto pressures at surface points (``contact.discretisation = "nodal"``)
+elastic     every node of rings and balls is a degree of freedom
 """
