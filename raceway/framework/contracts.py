@@ -1,4 +1,4 @@
-"""What a plug-in of each kind must do, as numbered duties.
+"""Contracts of plug-ins: the duties of each kind, numbered.
 
 A plug-in is a frozen attrs class: its fields are its options (declared with ``raceway.framework.options.option``), its class
 attribute ``name`` is the word that a scene writes as ``kind``.  The class is light; ``kernel()`` imports what is

@@ -1,4 +1,4 @@
-"""Where plug-ins come from: entry points of installed distributions, and one-off files."""
+"""Sources of plug-ins: entry points of installed distributions, and one-off files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which parts a scene needs, and why: its coordinates, its balls, its bodies, its motion, its output."""
+"""Parts that a scene needs, and why: coordinates, balls, bodies, motion, output."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a plan says of elastic bodies: what they cannot do, how large they are, and what they cost."""
+"""Plan of elastic bodies: their limits, size and cost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a scene says that is possible and unlikely, as a rule in another unit; and what a run of it would fail at."""
+"""Values of a scene that are possible and unlikely, mostly in another unit; failures of a run that can be foreseen."""
 
 from __future__ import annotations
 

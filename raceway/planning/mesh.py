@@ -1,4 +1,4 @@
-"""What a scene's mesh will be: its size predicted, and what is wrong with it.  Nothing is meshed."""
+"""Predicted size of a scene's mesh, and its mistakes.  Nothing is meshed."""
 
 from __future__ import annotations
 

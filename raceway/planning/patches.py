@@ -1,4 +1,4 @@
-"""What a plan says of contacts at surface points of condensed bodies: what they cannot do, and what they cost."""
+"""Plan of contacts at surface points of condensed bodies: their limits and cost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What condensed rings with one force a contact will take, and what they cannot be; nothing is meshed."""
+"""Plan of condensed rings with contact resultants: cost and limits of their sections; nothing is meshed."""
 
 from __future__ import annotations
 

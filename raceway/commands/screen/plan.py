@@ -1,4 +1,4 @@
-"""What ``raceway plan`` prints."""
+"""Tables of ``raceway plan``."""
 
 from __future__ import annotations
 

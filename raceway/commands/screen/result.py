@@ -1,4 +1,4 @@
-"""One run: what ``raceway run`` prints, from the content of result.json."""
+"""Tables of ``raceway run``, from the content of result.json."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an elastic bearing is beyond its meshes."""
+"""Data of an elastic bearing beyond its meshes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far contacts go: windows of contact angles and the widest ellipse."""
+"""Extent of contacts: windows of contact angles, and the widest ellipse."""
 
 from __future__ import annotations
 

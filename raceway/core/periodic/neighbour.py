@@ -1,4 +1,4 @@
-"""What a periodic motion lends to that of a similar problem: how it differs from its own linear response.
+"""First guess of a periodic motion from a similar problem: the difference of that motion from its own linear response.
 
 Notes
 -----

@@ -1,4 +1,4 @@
-"""What the study runs: every setting at every axial load over all speeds, made from one scene."""
+"""Runs of the study: every setting at every axial load over all speeds, made from one scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What causes the change of K(w) along the leading axis: usually stiffness over speed."""
+"""Causes of the change of K(w) along the leading axis: usually stiffness over speed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a comparison found, in numbers: rows, effects, trends."""
+"""Findings of a comparison in numbers: rows, effects, trends."""
 
 from __future__ import annotations
 

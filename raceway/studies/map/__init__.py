@@ -1,4 +1,4 @@
-"""Where k(speed) hardens or softens.
+"""Regions of hardening and softening of k(speed).
 
 design    axes, start and definitions
 point     one point: stiffness, contact, edges of the grooves

@@ -1,4 +1,4 @@
-"""What the rows of a precision study are held against, with a bound of its own error.
+"""Reference of a precision study, with a bound of its own error.
 
 In this order:
 

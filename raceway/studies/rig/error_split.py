@@ -1,4 +1,4 @@
-"""Where an error of K comes from: one cause at a time is switched on, all others off.
+"""Error of K by its causes: one is switched on at a time, all others off.
 
 Signals without noise, drift and run-out, read by order tracking and inverted with the beam that made them, are exact.
 """

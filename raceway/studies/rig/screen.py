@@ -1,4 +1,4 @@
-"""What a person sees of a rig's study and of identified signals.  Prints nothing by itself."""
+"""Tables of a rig's study and of identified signals.  Prints nothing by itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How ROSS 2 reads a table of coefficients, and how to make it pass through the points."""
+"""Interpolation of a table of coefficients by ROSS 2, and tables that pass through the points there."""
 
 from __future__ import annotations
 

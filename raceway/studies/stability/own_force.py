@@ -1,4 +1,4 @@
-"""What a law's own force function says of a bearing: approaches and displacements by numerical inversion, slopes."""
+"""Approaches and displacements of a bearing from a law's own force function, by numerical inversion; slopes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all contacts of an elastic system share: forces and tangents from gaps, memory, friction, bounds of steps."""
+"""Forces and tangents of a contact from gaps, memory and friction, with bounds of steps: common to all kinds of contacts."""
 
 from __future__ import annotations
 

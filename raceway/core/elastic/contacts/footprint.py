@@ -1,4 +1,4 @@
-"""Where a whole contact acts on a meshed body, and how the body's surface moves there.
+"""Footprint of a contact resultant on a mesh: nodal weights of its force, and the motion of the surface there.
 
 Notes
 -----

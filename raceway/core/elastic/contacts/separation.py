@@ -1,4 +1,4 @@
-"""What a mesh's own compliance under a contact is: what the calibrated law takes off, because Hertz's formula has it already.
+"""Local compliance of a mesh under a contact: the part that Hertz's formula contains, and that the calibrated law replaces.
 
 Notes
 -----
