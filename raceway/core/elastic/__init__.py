@@ -6,7 +6,7 @@ cage        an ideal cage: mean azimuth and mean rotation of each ball
 contacts    forces between two bodies
 touching    the contacts of a ball bearing, of either kind
 solver      conjugate gradients with multigrid and the rigid frames' own coordinates
-whole_contacts  contact resultants and the cage as low-rank parts of the preconditioner
+whole_contacts  contact resultants and the cage as low-rank changes of the preconditioner
 factorised  sparse factors instead of multigrid, for small systems
 statics     Newton's method with a line search; the last good state is kept
 system      all of it as one system, settled or stepped in time

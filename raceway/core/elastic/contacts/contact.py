@@ -16,14 +16,14 @@ _STIFFER = 1.02
 
 
 class Contact(ABC):
-    """Places at which forces act between two bodies: points of a surface, or whole contacts.
+    """Places at which forces act between two bodies: points of a surface, or contact resultants.
 
     Parameters
     ----------
-    place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for whole contacts
+    place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for resultants
     counts : (pairs,) places of each pair of surfaces;  surfaces : (pairs, 8), see ``raceway.core.elastic.contacts.gap``
     law, params, state_size : kernel of signature ``LAW``, (n, k) its parameters, columns of its memory
-    damping : normal damping, pressure per gap rate [N s/m3]; of whole contacts [N s/m]
+    damping : normal damping, pressure per gap rate [N s/m3]; of resultants [N s/m]
     friction : Friction | None
 
     Attributes
@@ -36,7 +36,7 @@ class Contact(ABC):
     A p n: forces on the nodes are f = -B^T F and the tangent is B^T D B with 3 x 3 blocks D.  No momentum is lost.
     """
 
-    #: Whether each place is a whole contact: few of them, and each on many nodes.
+    #: Whether each place is a contact resultant: few of them, and each on many nodes.
     whole = False
 
     def __init__(

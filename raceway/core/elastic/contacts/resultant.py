@@ -1,4 +1,4 @@
-"""Whole contacts on a mesh: one force each, by a law whose compliance replaces that of the mesh below it."""
+"""Contact resultants on a mesh: one force each, by a law whose compliance replaces that of the mesh below it."""
 
 from __future__ import annotations
 
