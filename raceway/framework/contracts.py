@@ -48,7 +48,7 @@ class ContactLaw(Protocol):
 
 @attrs.frozen(eq=False)
 class ContactPairs:
-    """What a law may know of its contacts; arrays (n,), inner races first, then outer.
+    """Contacts as a law sees them; arrays (n,), inner races first, then outer.
 
     Attributes
     ----------
@@ -252,7 +252,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
 
 
 def broken_duties(kind: str, plugin: Any) -> list[str]:
-    """What keeps a class from being a plug-in of a kind; empty when nothing does."""
+    """Duties of a kind that a class breaks; empty when it is a plug-in."""
     if not isinstance(plugin, type):
         return [f"{plugin!r} is not a class"]
     faults = []

@@ -41,7 +41,7 @@ def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
 
 
 def _called(point: EntryPoint) -> set[str]:
-    """What an entry point may be called: its own name and its distribution's."""
+    """Names of an entry point: its own and its distribution's."""
     return {point.name, owner(point)[0]}
 
 

@@ -20,7 +20,7 @@ OTHER_TURNS = "other turns"
 
 @attrs.frozen
 class Balls:
-    """What the balls need.
+    """Requirements of the balls.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Balls:
 
 @attrs.frozen
 class Motion:
-    """What is integrated: nothing, where ``recorded`` is False."""
+    """Motion that is integrated: none, where ``recorded`` is False."""
 
     recorded: bool
     turns: int
@@ -130,7 +130,7 @@ def decide_bodies(scene: Scene, parts: Decisions, elastic: ElasticCost | None, p
 
 
 def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -> Motion:
-    """What moves, and how many turns of it are integrated."""
+    """Coordinates that move, and the turns that are integrated."""
     dynamic, integrator, identifier = scene.excitation is not None, scene.integrator, scene.identifier
     spins = scene.rotor.polar_inertia + ring_inertia(scene)[2] > 0.0 and scene.spin_speed != 0.0
     part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"

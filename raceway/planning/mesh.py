@@ -66,7 +66,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
 
 
 def _prediction(scene: Scene) -> Prediction | None:
-    """What the mesher's ``predict`` says, if it has one; refused where it would not fit."""
+    """Prediction by the mesher's ``predict``, if it has one; refused where it would not fit."""
     mesher = scene_mesher(scene)
     if not hasattr(mesher, "predict"):
         return None

@@ -28,7 +28,7 @@ class SectionCost:
 
 
 def section_cost(scene: Scene) -> SectionCost:
-    """What the rings of a condensed scene will take."""
+    """Predicted cost of the rings of a condensed scene."""
     b = scene.bearing
     length = 0.34 * b.ball_diameter
     size, along = 0.62 * length, 0.077 * length

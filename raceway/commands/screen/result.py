@@ -83,7 +83,7 @@ def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
 
 
 def _mounted(found: Mapping[str, Any]) -> list[Row]:
-    """What was built in at standstill, and what has become of it."""
+    """Preload and held axial force: mounted and running."""
     rows, preload, held = [], found["preload"], found["held_axial"]
     if preload is not None:
         forces = ", ".join(f"{force:.5g}" for force in preload["rows_n"])
@@ -170,7 +170,7 @@ def _error(result: Mapping[str, Any]) -> list[Row]:
 
 
 def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
-    """What elastic bodies change, how good their mesh is, and what their inertia would; each where it is told."""
+    """Effect of elasticity, quality of the mesh, and error of the missing inertia; each where the result has it."""
     if not model:
         return []
     rows = [("Elastic bodies", "", str(model.get("bodies", "")))]

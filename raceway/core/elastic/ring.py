@@ -57,7 +57,7 @@ class ElasticRing(System):
         return SteppedElastic(self.bodies.system, self.bodies.look, self.ball_count)
 
     def follow(self, on_residual: Callable[[float], None] | None) -> None:
-        """What to call with the relative residual of every iteration of an equilibrium."""
+        """Callback for the relative residual of every iteration of an equilibrium."""
         self.bodies.system.on_residual = on_residual
 
     def settle(
@@ -122,7 +122,7 @@ class ElasticRing(System):
         ball_gain: float = 0.0,
         memory: np.ndarray | None = None,
     ) -> Evaluation:
-        """What the last equilibrium holds; its tangent is that of the ring with all nodes in balance.
+        """The last equilibrium; its tangent is that of the ring with all nodes in balance.
 
         Raises
         ------

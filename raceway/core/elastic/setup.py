@@ -16,7 +16,7 @@ Material = tuple[float, float, float]
 
 @attrs.frozen(eq=False)
 class Setup:
-    """What a bearing is beyond its meshes.
+    """Data of a bearing beyond its meshes.
 
     Attributes
     ----------

@@ -16,7 +16,7 @@ Window = tuple[float, float]
 
 @attrs.frozen
 class Reach:
-    """What patches have to hold.
+    """Extent that patches have to cover.
 
     Attributes
     ----------

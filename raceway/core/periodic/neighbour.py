@@ -40,7 +40,7 @@ class Neighbour:
     share: float
 
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path | None:
-        """Where Newton's iteration may begin on a mesh; None where this motion is none of the problem's unknowns.
+        """First guess for Newton's iteration on a mesh; None where this motion is none of the problem's unknowns.
 
         Parameters
         ----------

@@ -160,7 +160,7 @@ class Design:
 
 
 def shaft_tilt_stiffness(diameter: float = SHAFT_DIAMETER, span: float = SPAN, young: float = YOUNG) -> float:
-    """What the rig's shaft opposes to a tilt of the inner ring [N m/rad].
+    """Tilt stiffness of the rig's shaft at the inner ring [N m/rad].
 
     Notes
     -----

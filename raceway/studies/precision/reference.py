@@ -45,7 +45,7 @@ class Reference:
 
     @property
     def size(self) -> float:
-        """What relative errors of the main quantity refer to."""
+        """Size that relative errors of the main quantity refer to."""
         return main_size(self.values)
 
     @property

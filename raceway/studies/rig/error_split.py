@@ -85,7 +85,7 @@ def _disturbed(rig: Rig, held: Bearing, state: State, quiet: Signals) -> list[Ca
 
 
 def _window(line: Rotor, held: Bearing, state: State, clean: Recording) -> list[Cause]:
-    """What a Fourier transform of all samples, whole turns or not, makes of the line."""
+    """The line by a Fourier transform of all samples, whole turns or not."""
     y = clean.y - clean.y.mean()
     lines = 2.0 * np.fft.rfft(y) / len(y)
     found = complex(lines[int(np.argmax(np.abs(lines)))])

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """What ROSS 2 finds at the points of a table: a cubic smoothing spline with scipy's default bound.
+    """Values by ROSS 2 at the points of a table: a cubic smoothing spline with scipy's default bound.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ _LOADS = (1.0, 5.0)
 
 
 def inverted(function: Callable[[float], float], value: float, first: float) -> float:
-    """Where a function that grows from 0 at 0 takes a value; ``first``: a guess of the size."""
+    """Argument at which a function that grows from 0 at 0 takes a value; ``first``: a guess of the size."""
     low, high = 0.0, first
     while function(high) < value:
         low, high = high, 2.0 * high

@@ -163,7 +163,7 @@ class Contact(ABC):
         return np.minimum.reduceat(self.gap, np.r_[0, np.cumsum(self.counts)[:-1]])
 
     def energy(self) -> float:
-        """What the law and sticking points store at the last gaps [J]; meant for laws without memory."""
+        """Energy stored by the law and by sticking points at the last gaps [J]; meant for laws without memory."""
         n = len(self.gap)
         out = np.empty(n)
         stored_energy(self.law, self.params, self.memory, self._trial.copy(), self.gap, np.zeros((6, n)), out)
@@ -171,7 +171,7 @@ class Contact(ABC):
         return float(self.area @ out) + stored
 
     def friction_energy(self) -> float:
-        """What friction has taken up to the last commit [J]."""
+        """Work of friction up to the last commit [J]."""
         return 0.0 if self.friction is None else float(self.area @ self.friction.dissipated)
 
     def stiffened(self) -> bool:

@@ -142,7 +142,7 @@ class ResultantContact(Contact):
         return shallow
 
     def energy(self) -> float:
-        """What the law stores at the last gaps, less what the meshes do in its place [J]."""
+        """Energy stored by the law at the last gaps, less the local energy of the meshes [J]."""
         return super().energy() - 0.5 * float(self.local @ self._carried**2)
 
 
