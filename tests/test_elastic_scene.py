@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from raceway.bodies.model import build_model
-from raceway.core.ring.orbit import steady_orbit
 from raceway.core.elastic.start import from_orbit
+from raceway.core.ring.orbit import steady_orbit
 from raceway.errors import RacewayError, SceneError
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle

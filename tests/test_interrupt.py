@@ -18,8 +18,8 @@ from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.executors.joblib import Joblib
 from raceway.studies.sweep import open_store
-from tests.command_line import ARTICLE, raceway
-from tests.sessions import left, members
+from validation.command_line import ARTICLE, raceway
+from validation.sessions import left, members
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 

@@ -17,7 +17,7 @@ from raceway.core.jit import jit
 from raceway.core.signatures import LAW
 from raceway.errors import PluginError
 from raceway.storage.cache_folder import current_folder, make, refusal
-from tests.command_line import python
+from validation.command_line import python
 
 #: The smallest kernels, three in a file, one used once; what was compiled and read, what was warned of, numba's own settings.
 USE = """

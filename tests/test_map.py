@@ -17,7 +17,7 @@ from raceway.studies.map.curves import SATURATED, curves, trend, words
 from raceway.studies.map.design import ANGLE, AXIAL, METHODS, SPEED, TILT, design
 from raceway.studies.map.point import small_signal
 from raceway.studies.map.study import study_map
-from tests.command_line import EXAMPLES, invoke, raceway
+from validation.command_line import EXAMPLES, invoke, raceway
 
 REGISTRY = default_registry()
 TABLES = read_toml(EXAMPLES.parent / "raceway" / "data" / "map.toml")

@@ -13,8 +13,8 @@ from raceway.pipeline.run import run
 from raceway.pipeline.simulate import _stride
 from raceway.planning.recording import samples_per_turn
 from raceway.scene.file import scene_from_dict
-from tests.command_line import EXAMPLES
-from tests.conftest import b7206c
+from validation.command_line import EXAMPLES
+from validation.tables import b7206c
 
 EXCITED = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
 

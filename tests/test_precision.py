@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.evidence import error_estimate as evidence
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.error.free_vibration import hann_line
@@ -21,7 +20,8 @@ from raceway.studies.precision import study as module
 from raceway.studies.precision.design import make_design
 from raceway.studies.precision.result import THRESHOLDS
 from raceway.studies.precision.study import precision
-from tests.command_line import ARTICLE, invoke
+from validation import error_estimate as evidence
+from validation.command_line import ARTICLE, invoke
 
 TABLES = read_toml(ARTICLE)
 FEW = {**TABLES, "integrator": {"kind": "newmark", "turns": 4}}

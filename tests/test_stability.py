@@ -25,7 +25,7 @@ from raceway.studies.stability.stored import axial_force
 from raceway.studies.stability.study import stability
 from raceway.studies.stability.systems import BASE, pair_laws, scene_at, transient
 from raceway.studies.stability.workers import in_parallel, rows_of
-from tests.command_line import ARTICLE, invoke
+from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
 CUBIC = Path(__file__).with_name("cubic_law.py")

@@ -32,8 +32,8 @@ from raceway.studies.sweep import sweep as study
 from raceway.studies.sweep.store import facts_digest, written
 from raceway.studies.sweep.variables import values_of
 from raceway.studies.sweep.work import Work
-from tests.command_line import ARTICLE, invoke
 from tests.deadly_work import Deadly
+from validation.command_line import ARTICLE, invoke
 
 SCENE: dict[str, Any] = {
     "title": "test",

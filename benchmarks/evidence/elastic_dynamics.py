@@ -27,7 +27,7 @@ from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
-from tests.stepping.block import Block
+from validation.block import Block
 
 TITLE = "Elastic bodies in motion"
 COMMAND = "python -m benchmarks.evidence elastic_dynamics"

@@ -1,4 +1,4 @@
-"""What commands share: options, progress, writing and showing results.  Part of ``raceway.cli``."""
+"""Options, progress, writing and showing of results, shared by all commands.  Part of ``raceway.cli``."""
 
 from __future__ import annotations
 

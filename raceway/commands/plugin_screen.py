@@ -1,4 +1,4 @@
-"""What a person sees of plug-ins: what is installed, whether it conforms, what was written.  Prints nothing by itself."""
+"""Tables of plug-ins: what is installed, whether it conforms, what was written.  Prints nothing by itself."""
 
 from __future__ import annotations
 

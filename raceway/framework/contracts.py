@@ -1,4 +1,4 @@
-"""What a plug-in of each kind must do, as numbered duties.
+"""Contracts of plug-ins: the duties of each kind, numbered.
 
 A plug-in is a frozen attrs class: its fields are its options (declared with ``raceway.framework.options.option``), its class
 attribute ``name`` is the word that a scene writes as ``kind``.  The class is light; ``kernel()`` imports what is
@@ -47,7 +47,7 @@ class ContactLaw(Protocol):
 
 @attrs.frozen(eq=False)
 class ContactPairs:
-    """What a law may know of its contacts; arrays (n,), inner races first, then outer.
+    """Contacts as a law sees them; arrays (n,), inner races first, then outer.
 
     Attributes
     ----------
@@ -319,7 +319,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
 
 
 def broken_duties(kind: str, plugin: Any) -> list[str]:
-    """What keeps a class from being a plug-in of a kind; empty when nothing does."""
+    """Duties of a kind that a class breaks; empty when it is a plug-in."""
     if not isinstance(plugin, type):
         return [f"{plugin!r} is not a class"]
     faults = []

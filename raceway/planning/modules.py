@@ -1,4 +1,4 @@
-"""Which of the program's optional modules a scene needs: what is left out is neither imported nor compiled.
+"""Optional modules that a scene needs: the others are neither imported nor compiled.
 
 A kernel is compiled when its module is imported, so a module that is not imported costs nothing.
 """

@@ -1,4 +1,8 @@
-"""Built-in excitations, identifiers, meshers, formats, reports and executors, one a file in a folder for each kind."""
+"""Built-in plug-ins, one a file in a folder for each kind.
+
+excitations, identifiers, meshers, formats, reports, executors
+system_libraries   system libraries that packages for meshes and pictures need
+"""
 
 from __future__ import annotations
 

@@ -1,9 +1,16 @@
 """Many runs, or many numbers, made into one answer.  Studies call ``raceway.pipeline.run`` and never reach into a time loop.
 
-reference          the reference cases in ``raceway/data/cases.json``
-verify             every case against this program's own numbers; verify_bearings, verify_impacts: how each is computed
-compare            one scene varied along axes: the table and what causes what; axes, effects, findings, explain, causes,
-                   inertia, phrases, comparison: its parts, from the numbers to words and picture
-sweep              one scene at thousands of points: a package, with its store, what executors compute, and data sets
-processes          tasks of a study in processes of their own
+compare     effects of keys of a scene, everything else the same
+sweep       a scene at thousands of points, in a store
+precision   error against run time
+stability   stiff and extreme cases with expectations
+verify      reference cases against this program
+article     the article's figures, and a verdict on each of its claims
+map         hardening and softening of k(speed)
+rig         a simulated test rig;  shaft: its shaft on two bearings
+measured    K and C from measured signals
+ross        coefficients for the rotor program ROSS
+view        pictures of bearings and meshes
+many        points, processes and stores that studies share
+command     ``raceway study``
 """

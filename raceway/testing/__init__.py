@@ -2,8 +2,13 @@
 
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
 contact_law, excitation, integrator, identifier, mesher, format, report, executor   one suite a file
+steady         duties of integrators that solve for the steady motion
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
+scenes         a small scene and its result
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
+child          duties in child processes with limits of time and memory
+units          units of options
+scaffold       the package of a new plug-in
 
 Subclass a suite in a test file, and pytest collects its checks::
 

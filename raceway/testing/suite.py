@@ -1,4 +1,4 @@
-"""What all conformance suites share: checks, their rows, expected failures, and how they become pytest methods.
+"""Common parts of all conformance suites: checks, their rows, expected failures, pytest methods.
 
 A check is a method ``test_<name>(self, plugin)`` marked with ``@duty("what the contract says")``.  It calls ``require`` and
 may return a note.  pytest sees a method without arguments that runs the check on every example of the plug-in.

@@ -20,8 +20,8 @@ from raceway.studies.rig.sensors import record, response
 from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor
-from tests.command_line import EXAMPLES, invoke
 from tests.rig.conftest import SPEED
+from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "test_rig.toml"
 SHORT = ["--set", "rig.speeds_rpm=[13000.0]", "--set", "rig.axial_loads=[2000.0]", "--set", "rig.signals.duration=0.25"]

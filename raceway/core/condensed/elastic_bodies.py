@@ -19,7 +19,7 @@ _WIDTH = 0.2
 
 @attrs.frozen(eq=False)
 class ElasticBodies:
-    """What rings and balls add to the approach of each contact beyond Hertz.
+    """Structural compliances of rings and balls, added to the approach of each contact.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class ElasticBodies:
         return self._matched(race, angles) + self.beyond(race, angles)
 
     def beyond(self, race: int, angles: np.ndarray) -> np.ndarray:
-        """What contacts at surface points have beyond compliances matched at depth, at contact angles [rad], in m/N."""
+        """Compliance of contacts at surface points beyond that of depth matching, at contact angles [rad], in m/N."""
         calibration = self.calibrations[race]
         if calibration is None:
             return np.zeros(len(angles))

@@ -115,7 +115,7 @@ class ElasticRing(Ring):
         ball_gain: float = 0.0,
         memory: np.ndarray | None = None,
     ) -> Evaluation:
-        """What the last equilibrium holds; its tangent is that of the ring with all nodes in balance.
+        """The last equilibrium; its tangent is that of the ring with all nodes in balance.
 
         Raises
         ------

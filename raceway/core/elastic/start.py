@@ -1,4 +1,4 @@
-"""Where a time integration of elastic bodies begins: what ``raceway.core.ring.start`` does for systems of five coordinates."""
+"""Initial states of elastic bodies in time, as ``raceway.core.ring.start`` gives them for five coordinates."""
 
 from __future__ import annotations
 

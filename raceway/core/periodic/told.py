@@ -69,7 +69,7 @@ def several(told: list[dict[str, Any]]) -> tuple[str, ...]:
 
 
 def unstable(one: dict[str, Any]) -> str:
-    """How disturbances of a motion grow."""
+    """Growth of disturbances of a motion, in words."""
     return f"disturbances grow {one['multiplier']:.4g} times a turn, {_WAYS[one['leaves_by']]}"
 
 

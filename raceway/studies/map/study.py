@@ -57,7 +57,7 @@ class Map:
 
 
 def definitions(method: str) -> dict[str, str]:
-    """What the numbers of a map are."""
+    """Definitions of the numbers of a map."""
     how = {
         "quasi_static": "secant: 1x line of the force over that of the displacement, the orbit as a series of equilibria "
         "under the force as given; the contacts carry just this force",

@@ -1,4 +1,4 @@
-"""What the rows of a precision study are held against, with a bound of its own error.
+"""Reference of a precision study, with a bound of its own error.
 
 In this order:
 
@@ -45,7 +45,7 @@ class Reference:
 
     @property
     def size(self) -> float:
-        """What relative errors of the main quantity refer to."""
+        """Size that relative errors of the main quantity refer to."""
         return main_size(self.values)
 
     @property

@@ -80,9 +80,14 @@ class Point:
                 }
                 for one in self.readings
             ],
-            "identified": {**self.found.as_dict(), "error": self.found.state.stiffness / true - 1.0},
+            "identified": self._identified(),
             "split": [attrs.asdict(cause) for cause in self.causes],
         }
+
+    def _identified(self) -> dict[str, Any]:
+        found, true = self.found.as_dict(), self.state.stiffness
+        uncertain = found["identification"]["equivalent_stiffness_error"] / true
+        return {**found, "error": self.found.state.stiffness / true - 1.0, "relative_uncertainty": uncertain}
 
 
 @attrs.frozen(eq=False)
@@ -107,8 +112,18 @@ class RigStudy:
                 "rows": [point.as_dict() for point in self.points],
                 "failed": self.failed,
                 "worst": self.worst,
+                "worst_by_cause": self.worst_by_cause,
             }
         )
+
+    @property
+    def worst_by_cause(self) -> list[dict[str, Any]]:
+        """Of each cause alone the error of K that is largest over all points, with its sign."""
+        worst: dict[tuple[str, str], float] = {}
+        for cause in (cause for point in self.points for cause in point.causes):
+            key = (cause.kind, cause.what)
+            worst[key] = max(worst.get(key, 0.0), cause.error, key=abs)
+        return [{"kind": kind, "what": what, "error": error} for (kind, what), error in worst.items()]
 
     @property
     def worst(self) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""What the scene's bearing does under a turning force and moment, by ``raceway.pipeline.run``."""
+"""Response of the scene's bearing to a turning force and moment, by ``raceway.pipeline.run``."""
 
 from __future__ import annotations
 

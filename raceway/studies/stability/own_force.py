@@ -1,4 +1,4 @@
-"""What a law's own force function says of a bearing: approaches and displacements by numerical inversion, slopes."""
+"""Approaches and displacements of a bearing from a law's own force function, by numerical inversion; slopes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LOADS = (1.0, 5.0)
 
 
 def inverted(function: Callable[[float], float], value: float, first: float) -> float:
-    """Where a function that grows from 0 at 0 takes a value; ``first``: a guess of the size."""
+    """Argument at which a function that grows from 0 at 0 takes a value; ``first``: a guess of the size."""
     low, high = 0.0, first
     while function(high) < value:
         low, high = high, 2.0 * high

@@ -1,4 +1,4 @@
-"""What the energy stored in contacts and bodies says of the forces on the ring: a second way to the same numbers."""
+"""Forces on the ring from the energy stored in contacts and bodies: a second way to the same numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What decides the numbers of a sweep beside its scenes: the program and the plug-ins, by version and by content."""
+"""Identity of a sweep's numbers beside its scenes: the program and the plug-ins, by version and by content."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _MOST_MISTAKES = 10
 
 @attrs.frozen
 class Survey:
-    """What a sweep needs.
+    """Requirements of a sweep.
 
     Attributes
     ----------

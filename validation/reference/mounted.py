@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from raceway.scene.file import scene_from_dict
-from tests.reference.ring import Ring
+from validation.reference.ring import Ring
 
 #: Turning force of ``secant`` [N].
 FORCE = 200.0

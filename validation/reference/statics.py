@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import root
 
-from tests.reference.ring import Ring
+from validation.reference.ring import Ring
 
 
 def equilibrium(

@@ -8,7 +8,7 @@ from benchmarks.plan_time import LEAST, MOST, SCENE, SCENES
 from raceway import load_scene
 from raceway.planning import machine
 from raceway.planning.plan import make_plan
-from tests.command_line import ARTICLE
+from validation.command_line import ARTICLE
 
 #: Processor times [s] of whole runs on the reference machine, as `python -m benchmarks.plan_time` measured them: what a test can
 #: hold a prediction against without a clock.  All but start-up, 1.2 s, is what the predictions tell apart.

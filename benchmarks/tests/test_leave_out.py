@@ -13,7 +13,7 @@ from raceway import load_scene
 from raceway.pipeline.run import run as compute
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import recorded_per_turn
-from tests.command_line import ARTICLE, invoke, python
+from validation.command_line import ARTICLE, invoke, python
 
 #: A run in a process of its own: plan, modules, shapes of arrays, compiled kernels with their signatures.
 RUN = """

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from raceway.studies.command import STUDIES
-from tests.command_line import ARTICLE, EXAMPLES, invoke
+from validation.command_line import ARTICLE, EXAMPLES, invoke
 
 
 def _command(file: str, *words: Any) -> Callable[[Path], Path]:
@@ -23,7 +23,7 @@ def _article(folder: Path) -> Path:
     """The page of the article's study around invented curves, which costs no run; its figures are all there."""
     from raceway.studies.article.figures import pictures
     from raceway.studies.article.report import page
-    from tests.article_study import curves, study
+    from validation.article_study import curves, study
 
     found = study(curves(lambda setting, load, w: 1e8 * (1.0 + 0.3 * w**2) * (load / 1000.0) ** 0.3, ("rigid", "condensed")))
     return page(found, pictures(found), "raceway study article").write(folder / "article.html")

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from tests.reference.ring import Ring
+from validation.reference.ring import Ring
 
 Force = Callable[[float], np.ndarray]
 

@@ -17,7 +17,7 @@ from benchmarks.evidence._fuzz_scenes import fill, wild
 from benchmarks.evidence._random_scenes import Chance
 from raceway import load_scene
 from raceway.errors import ConvergenceError
-from tests.command_line import MINIMAL
+from validation.command_line import MINIMAL
 
 
 def test_checked_scenes_end_in_a_plan_or_a_message(tmp_path):

@@ -73,9 +73,9 @@ def test_a_change_ages_the_reports_that_measure_it_and_no_others(changed, aged, 
     assert aged <= measuring and not spared & measuring
 
 
-def test_what_a_report_imports_of_benchmarks_and_tests_is_measured_and_the_runner_is_not():
+def test_what_a_report_imports_beside_the_package_is_measured_and_the_runner_is_not():
     files = {path.relative_to(_age.ROOT).as_posix() for path in _age.measured("equilibria")}
-    assert {"benchmarks/evidence/equilibria.py", "benchmarks/evidence/_scenes.py"} <= files
+    assert {"benchmarks/evidence/equilibria.py", "validation/scenes.py"} <= files
     assert "benchmarks/evidence/_files.py" not in files
 
 

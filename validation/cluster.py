@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from raceway.studies.sweep import Store, Sweep, grid, prepare, work
-from tests.command_line import install
-from tests.conftest import b7206c
+from validation.command_line import install
+from validation.tables import b7206c
 
 #: Of the steady orbit: some ten milliseconds a point here; on the workers it sleeps, so that they are killed at work.
 POINTS = 24

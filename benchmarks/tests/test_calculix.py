@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks import against_calculix, calculix
-from benchmarks.groove import meshes
+from validation.groove import meshes
 
 MESH = {"growth": 2.2, "coarse": 1.6e-3}
 

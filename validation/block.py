@@ -12,7 +12,7 @@ from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.stepping.protocol import Observation, State
 from raceway.core.stepping.record import Motion
-from tests.reference import elastic
+from validation.reference import elastic
 
 YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0
 

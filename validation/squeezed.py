@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.plugins.formats.abaqus import Abaqus
-from tests.mesh.cubes import block
+from validation.cubes import block
 
 YOUNG, POISSON, PRESSURE = 212e9, 0.29, 1e9
 

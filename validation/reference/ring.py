@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import root
 
-from tests.reference.hertz import factor
+from validation.reference.hertz import factor
 
 
 @dataclass

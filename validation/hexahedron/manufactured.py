@@ -7,8 +7,8 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg
 
 from raceway.core.hexahedron.operator import HexOperator
-from tests.hexahedron.blocks import warped
-from tests.reference.hexahedron import gauss, slopes, values
+from validation.hexahedron.blocks import warped
+from validation.reference.hexahedron import gauss, slopes, values
 
 DIRECTION = np.array([1.0, -0.5, 0.7])
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from raceway.pipeline.result import Result
 from raceway.scene.inner_ring import ring_inertia
-from tests.reference.ring import Ring
-from tests.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory
+from validation.reference.ring import Ring
+from validation.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory
 
 Tables = dict[str, Any]
 #: Speed of the force in both scenes [rad/s].
