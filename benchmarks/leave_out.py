@@ -349,7 +349,7 @@ for entry in registry.all():
             (plugin.examples()[0] if hasattr(plugin, "examples") else plugin()).kernel()
         except TypeError:
             pass  # needs options
-from raceway.core.ring.kernels import condensed_inertial, condensed_tangential, condensed_weightless
+from raceway.core.ring.kernels import condensed, rigid_inertial, rigid_tangential, rigid_weightless
 from raceway.core.ring.loops import central_difference, implicit, quasi_static
 from raceway.core.periodic import steady
 from raceway.core.hexahedron import operator

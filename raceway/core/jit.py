@@ -11,11 +11,13 @@ as they were found.
 from __future__ import annotations
 
 import gc
+import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -136,6 +138,13 @@ class Kernel(CPUDispatcher):  # type: ignore[misc]
         self.compile()
         return self
 
+    def __reduce__(self) -> Any:
+        """By name, uncompiled, where it has one: a cached kernel made around it is found again by this."""
+        module, name = self.py_func.__module__, self.py_func.__qualname__
+        if getattr(sys.modules.get(module), name, None) is self:
+            return _named, (module, name)
+        return super().__reduce__()
+
     def _reduce_states(self) -> dict[str, Any]:
         return {"function": self.py_func, "signature": self.signature, "options": self.targetoptions, "uuid": self._uuid}
 
@@ -209,6 +218,10 @@ class Kernel(CPUDispatcher):  # type: ignore[misc]
                 pass
         lines = [line.strip() for line in str(why).splitlines() if line.strip()]
         return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
+
+
+def _named(module: str, name: str) -> Any:
+    return getattr(import_module(module), name)
 
 
 def jit(

@@ -26,7 +26,7 @@ outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
 rigid_tangential   the same with gyroscopic moments or friction: no potential
-condensed_*        the same three kernels on elastic rings and balls: see ``structural`` and ``between``
+condensed          each of these on elastic rings and balls: see ``structural`` and ``between``
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """
 
