@@ -102,7 +102,10 @@ def _numba_cache_in(folder: Path) -> Iterator[None]:
         config.CACHE_DIR = before
 
 
-class Kernel(CPUDispatcher):  # type: ignore[misc]
+_Dispatcher: Any = CPUDispatcher  # numba types a part of it only
+
+
+class Kernel(_Dispatcher):
     """A function that is compiled for its one signature, or read from the cache, at its first use.
 
     That is a call from Python, its address being taken, or the compiling of a kernel that calls it.
@@ -170,7 +173,9 @@ class Kernel(CPUDispatcher):  # type: ignore[misc]
         self.disable_compile()
         hit = sum(self.stats.cache_hits.values()) > 0
         # Kernels that this one calls were compiled meanwhile, and have told their own seconds.
-        clock["load_s" if hit else "compile_s"] += time.perf_counter() - start - (clock["compile_s"] + clock["load_s"] - billed)
+        clock["load_s" if hit else "compile_s"] += (
+            time.perf_counter() - start - (clock["compile_s"] + clock["load_s"] - billed)
+        )
         if not hit:
             clock["compile_processor_s"] = processor_billed + time.thread_time() - processor
         clock["loaded" if hit else "compiled"] += 1
@@ -255,7 +260,6 @@ def jit(
         options["forceinline"] = True
     if releases:
         options["nogil"] = True
-    return lambda function: Kernel(function, signature, options)
     return lambda function: Kernel(function, signature, options)
 
 
