@@ -351,8 +351,8 @@ for entry in registry.all():
             (plugin.examples()[0] if hasattr(plugin, "examples") else plugin()).kernel()
         except TypeError:
             pass  # needs options
-from raceway.core.ring.kernels import condensed_inertial, condensed_tangential, condensed_weightless
-from raceway.core.schemes.compiled import central_difference, implicit, quasi_static
+from raceway.core.ring.kernels import condensed, rigid_inertial, rigid_tangential, rigid_weightless
+import raceway.core.schemes.explicit.compiled, raceway.core.schemes.one_step.compiled, raceway.core.schemes.static.compiled
 from raceway.core.periodic import steady
 from raceway.core.hexahedron import operator
 import gmsh, matplotlib.figure, meshio, pyvista

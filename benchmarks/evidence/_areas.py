@@ -20,8 +20,7 @@ AREAS = {
     "errors": "pipeline/error pipeline/plausibility",
     "condensed": """
         bodies/condensed bodies/patches core/condensed core/contact/half_space core/contact/sphere core/patches core/revolution/grooves
-        core/ring/kernels/between core/ring/kernels/condensed_inertial core/ring/kernels/condensed_tangential
-        core/ring/kernels/condensed_weightless core/ring/kernels/structural core/ring/kernels/structural_rows""",
+        core/ring/kernels/between core/ring/kernels/condensed core/ring/kernels/structural core/ring/kernels/structural_rows""",
     "revolution": "core/revolution storage/array_cache",
     "elastic": "bodies/elastic core/elastic core/ring/stepped core/stepping",
     "solids": "core/hexahedron core/linear core/ring/address",

@@ -26,7 +26,7 @@ outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
 rigid_tangential   the same with gyroscopic moments or friction: no potential
-condensed_weightless, condensed_inertial, condensed_tangential   the same on elastic rings and balls
+condensed   each of these on elastic rings and balls
 structural         contacts and structural compliances in series;  structural_rows: rows of ``work`` for them
 between            balls that act on each other through elastic rings
 section            one ball's contribution to the ring
