@@ -11,6 +11,7 @@ from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.kernel.plugin_kernel import plugin_kernel
+from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
@@ -25,6 +26,7 @@ def build(scene: Scene, plan: Plan) -> Built:
     basis = make_basis(scene)
     system = rigid_system(scene, plan, basis)
     probe(scene, basis, system)
+    system = by_address(system)
     return Built(basis, system, place_ring(scene, basis, system))
 
 

@@ -14,7 +14,7 @@ from raceway.core.periodic.from_rest import MOST, Trail, at_whole_force, trail
 from raceway.core.periodic.neighbour import Neighbour, Recorded, neighbour_of
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.refinement import Refined, refine
-from raceway.core.periodic.sampling import states
+from raceway.core.periodic.sampling import displacements
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.errors import ConvergenceError
 
@@ -201,5 +201,5 @@ def taken(found: list[Found]) -> list[Found]:
 
 def _alike(one: Refined, two: Refined) -> bool:
     """Whether two motions of one problem are the same."""
-    pair = [states(found.solved, _COMPARED)[0] / found.solved.problem.weight for found in (one, two)]
+    pair = [displacements(found.solved, _COMPARED) / found.solved.problem.weight for found in (one, two)]
     return bool(np.abs(pair[0] - pair[1]).max() <= _SAME * max(one.solved.size, two.solved.size))

@@ -47,7 +47,7 @@ def _type_of(address: Address, _context: Any) -> Any:
 
 @lru_cache(maxsize=64)
 def _address(kernel: Any, pointer: Any) -> Address:
-    return Address(kernel, pointer)
+    return kernel if isinstance(kernel, Address) else Address(kernel, pointer)
 
 
 def by_address(system: System) -> System:
