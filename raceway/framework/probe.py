@@ -124,8 +124,14 @@ def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: st
 
 
 def _mark(kernel: Any, *given: Any) -> tuple[Any, ...]:
-    """A kernel and what it is tried with, arrays by content."""
-    return id(kernel), kernel, *((x.dtype.str, x.shape, x.flags.c_contiguous, x.tobytes()) if isinstance(x, np.ndarray) else x for x in given)
+    """A kernel, which stays alive in it, and what it is tried with, arrays by content."""
+    return kernel, *(_content(one) for one in given)
+
+
+def _content(given: Any) -> Any:
+    if not isinstance(given, np.ndarray):
+        return repr(given)
+    return given.dtype.str, given.shape, given.flags.c_contiguous, given.tobytes()
 
 
 def _remember(mark: tuple[Any, ...]) -> None:

@@ -156,7 +156,9 @@ def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force:
     d, depth, edge = model.geometry.ball_diameter, shoulder_height(model.scene), groove_edge(model)
     found = []
     overs = ellipse_ends(model, inner, outer, force)
-    for race, ellipse, angle, over in zip(("inner", "outer"), (model.inner, model.outer), (inner, outer), overs, strict=True):
+    for race, ellipse, angle, over in zip(
+        ("inner", "outer"), (model.inner, model.outer), (inner, outer), overs, strict=True
+    ):
         reach = np.nanmax(over, initial=0.0)
         if reach > edge:
             begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))

@@ -66,14 +66,14 @@ class Work:
                 return Refused(_worker(), fault)
             registry = registry_of(self.plugins)
             before: Result | None = None
-            rows = []
+            rows, parts = [], dict[Any, Any]()
             for number, point in points:
-                row, before = self._row(number, point, registry, before)
+                row, before = self._row(number, point, registry, before, parts)
                 rows.append(row)
             return rows
 
     def _row(
-        self, number: int, point: dict[str, Any], registry: Registry, before: Result | None
+        self, number: int, point: dict[str, Any], registry: Registry, before: Result | None, parts: dict[Any, Any]
     ) -> tuple[dict[str, Any], Result | None]:
         from raceway.pipeline.run import run
 
@@ -81,7 +81,7 @@ class Work:
         row = unfinished_row(number, "")
         result = None
         try:
-            scene = scene_from_dict(tables_at(self.tables, point, registry), registry)
+            scene = scene_from_dict(tables_at(self.tables, point, registry), registry, parts)
             row["key"] = row_key(scene, registry, None, self.wanted["program"])
             result = run(scene, registry, near=before)
             row["values"] = values_of(result)
