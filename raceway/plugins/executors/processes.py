@@ -98,7 +98,9 @@ class _Worker:
         except (EOFError, OSError):
             self.process.join()
             if not self.ready:
-                raise PluginError(f"processes do not start here: the first ended at once (exit code {self.process.exitcode})") from None
+                raise PluginError(
+                    f"processes do not start here: the first ended at once (exit code {self.process.exitcode})"
+                ) from None
             self.died = True
             return Lost(f"its process died (exit code {self.process.exitcode})")
         if said is None:  # the program is imported: the time of its batch begins here

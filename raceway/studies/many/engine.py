@@ -5,6 +5,7 @@ A study says what one item is and what is done with it; what is finished outlive
 
 from __future__ import annotations
 
+import resource
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from pathlib import Path
@@ -109,3 +110,9 @@ def local(registry: Registry, processes: int, **options: Any) -> Any:
     if processes == 0:
         return registry.find("executor", "serial").plugin()
     return registry.find("executor", "processes").plugin(workers=processes, **options)
+
+
+def processor_time() -> float:
+    """Of this process and of those that it has ended [s]."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
