@@ -232,6 +232,21 @@ class Executor(Protocol):
     def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]: ...
 
 
+class Study(Protocol):
+    """Many runs made into one answer: the command ``raceway study NAME``.
+
+    1. ``help``: what it is about, one line.
+    2. ``command()``: a ``click.Command`` whose name is ``name``, with ``--json``; it is imported here, and numba, scipy or
+       matplotlib not before it runs.  It returns its exit code: 0, or 1 where numbers failed.
+    3. Mistakes are ``RacewayError``; Ctrl-C passes through.  ``raceway.studies.many.engine`` keeps what is finished.
+    """
+
+    name: ClassVar[str]
+    help: ClassVar[str]
+
+    def command(self) -> Any: ...
+
+
 #: kind -> (registration hook, what a class of that kind must have)
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "contact_law": (
@@ -248,7 +263,14 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "format": ("raceway_formats", ("suffixes", "read", "write")),
     "report": ("raceway_reports", ("write",)),
     "executor": ("raceway_executors", ("compute",)),
+    "study": ("raceway_studies", ("help", "command")),
 }
+
+
+def plural(kind: str) -> str:
+    """A kind of plug-ins in words: "contact laws"."""
+    words = kind.replace("_", " ")
+    return f"{words.removesuffix('y')}ies" if words.endswith("y") else f"{words}s"
 
 
 def broken_duties(kind: str, plugin: Any) -> list[str]:

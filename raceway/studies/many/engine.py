@@ -9,16 +9,18 @@ import resource
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import Lost, Refused
 from raceway.framework.registry import Registry
-from raceway.pipeline.simulate import OnProgress
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.many.work import Work
+
+if TYPE_CHECKING:
+    from raceway.pipeline.simulate import OnProgress
 
 
 @attrs.frozen
