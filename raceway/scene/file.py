@@ -177,14 +177,16 @@ def parse_value(text: str) -> Any:
 
 
 def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """A copy of the tables with one value set at a dotted key."""
-    result = copy.deepcopy(dict(tables))
+    """A copy of the tables with one value set at a dotted key; tables beside the key's are shared with the original."""
+    result = dict(tables)
     *parents, last = key.split(".")
     table: Any = result
     for name in parents:
-        table = table.setdefault(name, {})
-        if not isinstance(table, dict):
+        inner = table.get(name, {})
+        if not isinstance(inner, dict):
             raise SceneError.at(key, value, f"`{name}` is not a table")
+        table[name] = dict(inner)
+        table = table[name]
     table[last] = value
     return result
 

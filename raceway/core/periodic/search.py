@@ -46,6 +46,13 @@ class Found:
     fate: Floquet
     fold: float | None = None
     others: tuple[Found, ...] = ()
+    _lent: list[Neighbour] = attrs.field(factory=list, init=False, repr=False)
+
+    def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
+        """What the motion lends to others, about the problem's equilibrium q (5,) with its tangent (5, 5); made once."""
+        if not self._lent:
+            self._lent.append(neighbour_of(self.refined.solved, q, tangent))
+        return self._lent[0]
 
     @property
     def all(self) -> tuple[Found, ...]:
@@ -123,7 +130,7 @@ def _followed(
 
 def may_have_others(found: Found, q: np.ndarray, tangent: np.ndarray) -> bool:
     """Whether a motion is unstable or so far from its linear response about q (5,) that other ones may exist beside it."""
-    return found.fate.verdict == "unstable" or not neighbour_of(found.refined.solved, q, tangent).near_linear
+    return found.fate.verdict == "unstable" or not found.neighbour(q, tangent).near_linear
 
 
 def can_follow(problem: Problem, q: np.ndarray, tangent: np.ndarray) -> bool:
