@@ -193,7 +193,7 @@ class Report(Protocol):
     def write(self, result: Any, folder: Any) -> list[Any]: ...
 
 
-#: A batch of a sweep: its number, and the points in it as plain values.
+#: A batch of a study: its number, and what is computed in it as plain values.
 Batch = tuple[int, list[Any]]
 
 
@@ -213,14 +213,14 @@ class Lost:
 
 
 class Executor(Protocol):
-    """Where the points of a sweep are computed: in this process, in others, on other machines.
+    """Where the runs of a study are computed: in this process, in others, on other machines.
 
     1. ``compute(work, batches)`` yields ``(number, answer)`` for every ``(number, points)`` of ``batches``, each as soon as
        it is there, in any order; ``answer`` is what ``work(points)`` returned.
     2. ``work`` can be pickled and called anywhere; it answers for numerical failures itself, and what else it raises passes
        through.  ``work.fault()`` says in words why the process that it is called in is not fit for it, or None; such a
        process answers ``Refused``, which an executor with other workers may give to those and else passes on.
-    3. ``batches`` is an iterable that is taken from as workers get free, a few for each of them: sweeps are long.
+    3. ``batches`` is an iterable that is taken from as workers get free, a few for each of them: studies are long.
     4. A batch whose worker died is computed again; one that is given up is answered with ``Lost``.
     5. Closing the iterator (Ctrl-C, an error) stops what is in flight and leaves no process behind.
     6. Options ``workers`` and ``scheduler``, if there are any, are what ``raceway sweep --workers --scheduler`` give.
