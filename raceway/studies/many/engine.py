@@ -53,7 +53,7 @@ def work_through(
     Parameters
     ----------
     function : called as ``function(item.given, registry)``, here or in another process: a row, plain values
-    executor : follows ``raceway.framework.contracts.Executor``
+    store : of finished rows, read and added to;  executor : follows ``raceway.framework.contracts.Executor``
     plugins : one-off plug-in files, which each process loads
     on_progress : called as ``on_progress(name, done, total)`` after each item; an exception stops the study
     lost : row of an item that took its process down, which is not kept, from the item and the reason
@@ -70,9 +70,11 @@ def work_through(
     with closing(answers(executor, work, batches)) as finished:
         for place, answer in finished:
             item = items[place]
-            if not isinstance(answer, Lost):
+            if isinstance(answer, Lost):
+                found[place] = _lost(item, answer, lost)
+            else:
+                found[place] = answer[0]
                 store.put(item.key, answer[0])
-            found[place] = _lost(item, answer, lost) if isinstance(answer, Lost) else answer[0]
             if on_progress is not None:
                 on_progress(item.name, len(found), len(items))
     return [found[place] for place in range(len(items))], reused
