@@ -182,7 +182,7 @@ def test_the_key_of_a_row_follows_the_scene_and_the_files_it_names(tmp_path):
     ],
 )
 def test_mistakes_are_found_before_anything_runs(words, code, said, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "measured", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr(module, "measured_once", lambda *_: pytest.fail("it ran"))
     found = invoke("precision", ARTICLE, *words, "--out", tmp_path)
     assert found.exit_code == code and said in found.output
 

@@ -13,7 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from raceway.studies.sweep import Store, Sweep, grid, prepare, work
+from raceway.studies.many import work
+from raceway.studies.sweep import Store, Sweep, grid, prepare
 from validation.command_line import install
 from validation.tables import b7206c
 

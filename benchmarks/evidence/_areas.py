@@ -39,7 +39,9 @@ AREAS = {
     "ross": "studies/ross",
     "shaft": "studies/shaft",
     "stability": "studies/stability",
-    "sweep": "framework/orphans plugins/executors studies/many/points studies/many/processes studies/many/row_store studies/sweep",
+    "sweep": """
+        framework/orphans plugins/executors studies/many/engine studies/many/identity studies/many/points studies/many/row_store
+        studies/many/work studies/sweep""",
     "verify": "data/cases studies/many/reference studies/verify",
     "pages": """
         data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis
-from raceway.bodies.grooves import beyond_the_groove, contact_angles, refuse_impossible_ellipses
+from raceway.bodies.grooves import beyond_the_groove, contact_angles, ellipse_ends, groove_edge, refuse_impossible_ellipses
 from raceway.bodies.pressure import contact_ellipse
 from raceway.core.ring.friction import friction_energy
 from raceway.core.ring.orbit import Orbit
@@ -94,9 +94,12 @@ class Bearing(ABC):
         return balls != "weightless"
 
     def contact_angles(
-        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Inner and outer contact angles (Z,) [rad] under contact forces (2 Z,); nan where a contact carries nothing."""
+        """Inner and outer contact angles (Z,) [rad] under contact forces (2 Z,); nan where a contact carries nothing.
+
+        Of several states (n, 5), (n, Z, k), (n, 2 Z) at times (n,): (n, Z).
+        """
         return contact_angles(model, q, ball, force, t)
 
     def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -116,6 +119,11 @@ class Bearing(ABC):
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
         """A sentence for each race whose contacts run over its edge; angles (Z,), forces (2 Z,)."""
         return beyond_the_groove(model, inner, outer, force)
+
+    def over_edges(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """(n,) whether any contact of a state may run over its edge; angles (n, Z), forces (n, 2 Z)."""
+        ends = ellipse_ends(model, inner, outer, force)
+        return np.asarray(np.logical_or(*(end > groove_edge(model) for end in ends)).any(axis=-1))
 
     @property
     def largest_motion(self) -> float:

@@ -30,7 +30,7 @@ from raceway.framework.sources import chosen_entry_points, foreign_words, import
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins")
+BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins", "raceway.studies")
 
 
 @attrs.frozen

@@ -13,6 +13,7 @@ from raceway.plugins.excitations.run_up import RunUp
 from raceway.plugins.excitations.unidirectional import Unidirectional
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.joblib import Joblib
+from raceway.plugins.executors.processes import Processes
 from raceway.plugins.executors.serial import Serial
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.formats.msh import Msh
@@ -55,4 +56,4 @@ def raceway_reports() -> list[type]:
 
 @hookimpl
 def raceway_executors() -> list[type]:
-    return [Serial, Joblib, Dask]
+    return [Serial, Processes, Joblib, Dask]

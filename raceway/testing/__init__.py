@@ -1,7 +1,7 @@
 """Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
 
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
-contact_law, excitation, integrator, identifier, mesher, format, report, executor   one suite a file
+contact_law, excitation, integrator, identifier, mesher, format, report, executor, study   one suite a file
 steady         duties of integrators that solve for the steady motion
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
 scenes         a small scene and its result
@@ -39,6 +39,7 @@ SUITES: dict[str, tuple[str, str]] = {
     "format": ("raceway.testing.format", "FormatSuite"),
     "report": ("raceway.testing.report", "ReportSuite"),
     "executor": ("raceway.testing.executor", "ExecutorSuite"),
+    "study": ("raceway.testing.study", "StudySuite"),
 }
 _PUBLIC = {
     **{name: module for module, name in SUITES.values()},
@@ -60,6 +61,7 @@ __all__ = [
     "MesherSuite",
     "ReportSuite",
     "Row",
+    "StudySuite",
     "Suite",
     "check",
     "check_named",

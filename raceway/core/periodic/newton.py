@@ -4,8 +4,8 @@ import numpy as np
 from numba import float64, int64
 
 from raceway.core.jit import jit
-from raceway.core.ring.dense import copy_cube
 from raceway.core.periodic.sweep import INDICES, MODEL, condense, differentiate, eliminate, spread
+from raceway.core.ring.dense import copy_cube
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 #: A displacement's rounding over the displacement itself, below which no correction can come.

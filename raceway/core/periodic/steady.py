@@ -9,7 +9,6 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.direct import problem_of
-from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.sampling import record
 from raceway.core.periodic.search import Found, find
 from raceway.core.periodic.stop import passed_on, stopping
@@ -72,7 +71,7 @@ def steady(
         "orbits": told,
         "warnings": warnings(found, told, tolerance),
     }
-    out = attrs.evolve(record(refined.solved, schedule, counts), solution=neighbour_of(refined.solved, q, tangent))
+    out = attrs.evolve(record(refined.solved, schedule, counts), solution=found.neighbour(q, tangent))
     if on_chunk is not None:
         on_chunk(schedule.steps, schedule.steps)
     return out

@@ -224,14 +224,20 @@ class Ring(ABC):
         table[:, CENTRIFUGAL] = 0.0
         return attrs.evolve(self, scalars=scalars, table=table)
 
-    def centre_vectors(self, q: np.ndarray, t: float = 0.0, ball: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def centre_vectors(
+        self, q: np.ndarray, t: np.ndarray | float = 0.0, ball: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """(Z, 2) vector (axial, radial) from the outer to the inner groove centre of every ball, and its azimuth's
-        direction (Z, 2) as cosine and sine; ``ball`` (Z, k): with what elastic rings add there."""
-        work = np.zeros((3, 2 * self.ball_count))
-        place(float(t), np.ascontiguousarray(q, dtype=float), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
-        direction, centre, _ = work.reshape(3, 2, -1)
+        direction (Z, 2) as cosine and sine; ``ball`` (Z, k): with what elastic rings add there.  Of several states q (n, 5)
+        at times t (n,) everything has a first axis n."""
+        states, still = np.ascontiguousarray(q, dtype=float).reshape(-1, 5), np.zeros(5)
+        times = np.broadcast_to(np.asarray(t, dtype=float), len(states))
+        work = np.zeros((3 * len(states), 2 * self.ball_count))
+        for k, state in enumerate(states):
+            place(float(times[k]), state, still, self.scalars, self.table, work, 3 * k, 3 * k + 1, 3 * k + 2)
+        parts = work.reshape(*np.shape(q)[:-1], 3, 2, -1).swapaxes(-1, -2)
         moved = 0.0 if ball is None else self.groove_displacement(ball)
-        return centre.T + moved, direction.T.copy()
+        return parts[..., 1, :, :] + moved, parts[..., 0, :, :].copy()
 
     def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
         """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
