@@ -9,12 +9,16 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-PACKAGES = {"third_party_law": "raceway-hunt-crossley", "third_party_excitation": "raceway-two-frequency"}
+PACKAGES = {
+    "third_party_law": "raceway-hunt-crossley",
+    "third_party_excitation": "raceway-two-frequency",
+    "cylindrical_rollers": "raceway-cylindrical-rollers",
+}
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
-    """A folder with both packages, installed without a network: their build backend is one of the dev extra."""
+    """A folder with the packages, installed without a network: their build backend is one of the dev extra."""
     target = tmp_path_factory.mktemp("site")
     pip = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation", "--target", str(target)]
     subprocess.run([*pip, *(str(EXAMPLES / name) for name in PACKAGES)], check=True, capture_output=True, text=True)
@@ -44,6 +48,7 @@ scenes = {
     "restitution": {**law, "contact": {"kind": "hunt_crossley", "restitution": 0.8}},
     "excitation": force,
     "both": {**force, "contact": {"kind": "hunt_crossley"}},
+    "rollers": read_toml("cylindrical_rollers/scene.toml"),
 }
 answers = {}
 for name, tables in scenes.items():
@@ -69,13 +74,16 @@ def test_both_scenes_run_and_say_whose_plugins_they_used(installed):
     # The 2x force moves the 1x line through the contacts' curvature only.
     assert answers["excitation"]["k"] == pytest.approx(answers["hertz"]["k"], rel=0.05)
     assert answers["both"]["c"] > 0.0
+    owners = {p["kind"]: p["distribution"] for p in answers["rollers"]["plugins"]}
+    assert owners["bodies"] == owners["contact_law"] == "raceway-cylindrical-rollers"
+    assert answers["rollers"]["k"] > 0.0
 
 
 def test_installed_plugins_conform(installed):
     code = """
 import json
 from raceway.testing import check_named
-found = [check_named(name).as_dict() for name in ("hunt_crossley", "excitation:two_frequency")]
+found = [check_named(name).as_dict() for name in ("hunt_crossley", "excitation:two_frequency", "bodies:cylindrical_rollers")]
 print(json.dumps(found))
 """
     for conformity in python(installed, code):

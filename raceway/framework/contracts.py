@@ -56,6 +56,7 @@ class ContactPairs:
     hertz_factor : K of Q = K delta^1.5 [N/m^1.5]
     reference_load : load of a ball under the axial load alone [N]
     area : area of a surface point [m2], None for resultants; each row then stands for the points of a contact
+    length : of a line contact [m], which has A = 0 and no Hertz factor (nan); None where contacts are ellipses
     """
 
     curvature_a: np.ndarray
@@ -64,6 +65,7 @@ class ContactPairs:
     hertz_factor: np.ndarray
     reference_load: np.ndarray
     area: np.ndarray | None = None
+    length: np.ndarray | None = None
 
 
 class Excitation(Protocol):
@@ -285,6 +287,8 @@ class BodiesKind(Protocol):
     6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
     7. ``build(scene, plan)``: a ``raceway.bodies.bearing.Bearing``: arrays and kernels, nothing settled yet.
     8. The fields of the class are the keys of the table [bodies] beside ``kind``.
+    9. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
+       for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
     """
 
     name: ClassVar[str]
@@ -337,6 +341,8 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
 def plural(kind: str) -> str:
     """A kind of plug-ins in words: "contact laws"."""
     words = kind.replace("_", " ")
+    if words.endswith("s"):
+        return words
     return f"{words.removesuffix('y')}ies" if words.endswith("y") else f"{words}s"
 
 

@@ -276,6 +276,7 @@ def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
         ("contact_law", scene.contact.kind),
         ("integrator", scene.integrator.kind),
         ("identifier", scene.identifier.kind),
+        ("bodies", scene.bodies.name),
     ]
     if scene.excitation is not None:
         used.append(("excitation", scene.excitation.name))

@@ -8,7 +8,6 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake
-from raceway.planning.closed_form import highest_frequency
 from raceway.planning.recording import turns_of
 from raceway.scene.tables import Scene
 
@@ -59,7 +58,8 @@ def foreseen(scene: Scene) -> list[Mistake]:
     steps = scene.integrator.steps_per_turn
     if not scene.integrator.method.implicit and isinstance(steps, int) and not scene.bodies.traits(scene).every_node:
         period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-        least = int(0.5 * period * highest_frequency(scene))
+        stable = scene.bodies.stable_step(scene)
+        least = 0 if stable is None else int(period / stable)
         if steps * _ROUGH < least:
             why = f"is far above the stable step of an explicit method: some {least} steps a turn are needed, 'auto' takes enough"
             found.append(Mistake("integrator.steps_per_turn", steps, why))

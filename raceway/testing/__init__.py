@@ -1,10 +1,11 @@
 """Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
 
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
-contact_law, excitation, integrator, identifier, mesher, format, report, executor, study   one suite a file
+contact_law, excitation, integrator, identifier, bodies, mesher, format, report, executor, study   one suite a file
 steady         duties of integrators that solve for the steady motion
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
-scenes         a small scene and its result
+scenes         a small scene and its result;  bearings: scenes and bearings that kinds of bodies are tried on
+drivers        one driver of a scheme by itself
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
 child          duties in child processes with limits of time and memory
 units          units of options
@@ -37,6 +38,7 @@ SUITES: dict[str, tuple[str, str]] = {
     "identifier": ("raceway.testing.identifier", "IdentifierSuite"),
     "mesher": ("raceway.testing.mesher", "MesherSuite"),
     "format": ("raceway.testing.format", "FormatSuite"),
+    "bodies": ("raceway.testing.bodies", "BodiesSuite"),
     "report": ("raceway.testing.report", "ReportSuite"),
     "executor": ("raceway.testing.executor", "ExecutorSuite"),
     "study": ("raceway.testing.study", "StudySuite"),
@@ -51,6 +53,7 @@ _PUBLIC = {
 }
 __all__ = [
     "SUITES",
+    "BodiesSuite",
     "Conformity",
     "ContactLawSuite",
     "ExcitationSuite",

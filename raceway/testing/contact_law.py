@@ -293,7 +293,7 @@ class ContactLawSuite(Suite):
         except ValueError as why:
             return f"not checked: the options' own rules refuse other units ({why})"
         pairs = example_pairs(64, nodal=discretisation_of(law) == "nodal")
-        units = dict(zip(_PAIR_FIELDS, ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2"), strict=True))
+        units = dict(zip(_PAIR_FIELDS, ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2", "m"), strict=True))
         scaled = ContactPairs(
             **{name: getattr(pairs, name) * scale_of(units[name], length, force, time) for name in _given(pairs)}
         )

@@ -11,6 +11,7 @@ from raceway.core.ring.system import System
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError, StabilityError
+from raceway.testing.drivers import FromPython, has_both
 from raceway.testing.steady import contact_motion, forgets_the_start, linear_motion, own_error, refuses_memory
 from raceway.testing.suite import Suite, check_class, duty, require
 from raceway.testing.systems import (
@@ -227,6 +228,21 @@ class IntegratorSuite(Suite):
         )
         require(not system.law_state.any(), "the system's own memory was changed")
         return ""
+
+    @duty("compiled and stepped drivers, where a scheme has both, take the same steps")
+    def test_drivers(self, method: Any) -> str:
+        if not has_both(method):
+            return "one driver"
+        worst = 0.0
+        for system in (linear_system(), contact_system()):
+            start, schedule = _start(system) if method.inertial else _static_start(system), Schedule(PERIOD / 60, 60, 2)
+            one, other = (integrate(each, system, start, schedule) for each in (method, FromPython(method)))
+            for word in ("displacement", "velocity") if method.inertial else ("displacement",):
+                a, b = getattr(one, word), getattr(other, word)
+                worst = max(worst, float(np.abs(a - b).max() / max(np.abs(a).max(), 1e-300)))
+        # Iterations that end at 1e-9 of the forces may leave as much in each of 120 steps, resonance or not.
+        require(worst < 1e-6, f"the drivers differ by {worst:.2g} of the motion")
+        return f"they differ by {worst:.1e} of the motion"
 
     @duty("on_chunk(done, total) is called up to the end, and what it raises passes through")
     def test_progress(self, method: Any) -> None:

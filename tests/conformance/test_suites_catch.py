@@ -16,10 +16,11 @@ from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.identifiers.sine_fit import SineFit
-from raceway.testing import ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, child, suite_of
+from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, child, suite_of
 from raceway.testing.suite import EXPECTED_FAILURES
 from raceway.testing.units import exponents
 from tests import broken_laws
+from tests.broken_bodies import BROKEN
 
 
 def failed(suite, plugin):
@@ -173,6 +174,16 @@ class Late(Newmark):
         return Drivers(compiled=late)
 
 
+class TwoMinds(Newmark):
+    """Another method step by step than compiled."""
+
+    name = "two_minds"
+
+    @property
+    def scheme(self):
+        return Drivers(compiled=super().scheme.compiled, stepped=GeneralizedAlpha(rho_infinity=0.5).scheme.stepped)
+
+
 class Boasting(Periodic):
     """Another amplitude than it says."""
 
@@ -192,10 +203,22 @@ class Boasting(Periodic):
         (Conservative(rho_infinity=0.2), {"energy"}),
         (Silent(), {"progress"}),
         (Late(), {"record"}),
+        (TwoMinds(), {"drivers"}),
     ],
 )
 def test_integrators(plugin, checks):
     assert checks <= set(failed(IntegratorSuite, plugin))
+
+
+@pytest.mark.parametrize(("plugin", "check", "found"), BROKEN, ids=lambda v: v if isinstance(v, str) else None)
+def test_bodies(plugin, check, found):
+    row = type("Run", (BodiesSuite,), {"plugin": plugin})().row(check)
+    assert not row.good, "it passes"
+    assert re.search(found, row.message), row.message
+
+
+def test_every_duty_of_bodies_can_fail():
+    assert {check for _, check, _ in BROKEN} == set(BodiesSuite.checks())
 
 
 class Halved(SineFit):

@@ -13,12 +13,11 @@ import attrs
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
-from raceway.planning.combinations import BODIES
 from raceway.scene.file import scene_from_dict
 
 DISCRETISATIONS = ("resultant", "nodal")
 TILTS: tuple[str | float, ...] = ("locked", "free", 3e4)
-KINDS = ("excitation", "contact_law", "integrator", "identifier")
+KINDS = ("excitation", "contact_law", "integrator", "identifier", "bodies")
 
 
 @attrs.frozen
@@ -39,8 +38,8 @@ class Combination:
 
 def combinations() -> Iterator[Combination]:
     """Every registered excitation x law x discretisation x integrator x identifier x tilt boundary x bodies kind."""
-    excitations, laws, integrators, identifiers = (default_registry().names(kind) for kind in KINDS)
-    for cell in product(excitations, laws, DISCRETISATIONS, integrators, identifiers, TILTS, BODIES):
+    excitations, laws, integrators, identifiers, bodies = (default_registry().names(kind) for kind in KINDS)
+    for cell in product(excitations, laws, DISCRETISATIONS, integrators, identifiers, TILTS, bodies):
         yield Combination(*cell)
 
 

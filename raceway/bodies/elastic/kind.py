@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
@@ -39,6 +39,17 @@ class Elastic:
         "of at most 0.6 of the contact's radius",
         rule=positive(),
     )
+
+    @classmethod
+    def example_scene(cls) -> dict[str, Any]:
+        """Three balls on some hundred elements each, with a force that is small against the loads: seconds."""
+        return {
+            "bearing": {"preset": "B7206C", "ball_count": 3},
+            "mesh": {"kind": "structured", "element_size": 3.2e-3, "azimuth_cells": 12, "nodes_per_semi_axis": 0},
+            "load": {"axial": 240.0, "radial": [20.0, 0.0]},
+            "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3e-5},
+            "integrator": {"kind": "newmark", "turns": 1, "steps_per_turn": 32, "tolerance": 1e-5},
+        }
 
     def unused_options(self) -> dict[str, str]:
         """Options that change nothing, with the reason."""

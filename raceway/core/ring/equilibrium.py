@@ -87,6 +87,8 @@ def settle(
     ball_new = ball.copy()
     energy_rows = np.empty(work.shape[1])
     radius = 0.05 * (abs(scalars[0]) + abs(scalars[1]))
+    if radius == 0.0:  # bearings without grooves or clearance
+        radius = 1e-3 * arm
     status = system(t, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C)
     if status != 0:
         return BALLS_FAILED

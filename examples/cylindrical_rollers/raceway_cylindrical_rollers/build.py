@@ -1,0 +1,161 @@
+"""From a scene to the arrays of a ring on its rollers, and what a result tells of line contacts."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts, made_by, make_basis
+from raceway.bodies.bearing import Bearing, Told
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.system import System
+from raceway.core.signatures import LAW
+from raceway.errors import ConvergenceError
+from raceway.framework.contracts import ContactPairs
+from raceway.framework.plugin_kernel import plugin_kernel
+from raceway.framework.probe import probe_excitation, probe_law
+from raceway_cylindrical_rollers.compiled import rollers
+from raceway_cylindrical_rollers.kind import STRIBECK
+
+if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
+    from raceway.planning.plan import Plan
+    from raceway.scene.tables import Scene
+
+
+@attrs.frozen(eq=False)
+class RollerBearing(Bearing):
+    """Rigid rings on cylindrical rollers.
+
+    Attributes
+    ----------
+    length : of the line contacts [m];  radii : reduced radii R of the inner and outer contact [m]
+    clearance : radial, on the diameter [m]
+    """
+
+    length: float
+    radii: tuple[float, float]
+    clearance: float
+
+    def contact_angles(
+        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Zero where a contact is loaded."""
+        angle = np.where(force > 0.0, 0.0, np.nan)
+        inner, outer = np.split(angle, 2)
+        return inner, outer
+
+    def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Hertz's line contact: p0 = 2 Q / (pi b L), semi-axes L / 2 and b = sqrt(4 Q R / (pi L E*)).
+
+        References
+        ----------
+        Johnson, Contact Mechanics (1985), section 4.2(c), with E* of both bodies.
+        """
+        load = np.asarray(load, dtype=float)
+        half = np.sqrt(4.0 * load * self.radii[race] / (pi * self.length * self.basis.modulus))
+        pressure = 2.0 * load / (pi * np.maximum(half, 1e-300) * self.length)
+        return pressure, np.where(load > 0.0, 0.5 * self.length, 0.0), half
+
+    def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
+        """A contact wider than half a roller."""
+        z, diameter = model.system.ball_count, self.basis.geometry.ball_diameter
+        for race, load in enumerate((force[:z], force[z:])):
+            if 2.0 * self.contact_ellipse(model, race, load)[2].max() >= 0.5 * diameter:
+                raise ConvergenceError(
+                    f"{load.max():.3g} N a roller make a contact wider than half a roller: check the units", state
+                )
+
+    def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+        """None: the length is the effective one, inside the edges."""
+        return []
+
+    @property
+    def largest_motion(self) -> float:
+        """A hundredth of the roller's diameter beyond the clearance [m]: contacts are no lines there."""
+        return self.clearance + 0.01 * self.basis.geometry.ball_diameter
+
+    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """None."""
+        return None, "rigid bodies have no mesh"
+
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Not known."""
+        return None, f"law '{model.scene.contact.kind}' was found by experiment: what it is off by is not estimated"
+
+
+def build(scene: Scene, plan: Plan, length: float, ring_mass: float) -> RollerBearing:
+    """The bearing of a scene.
+
+    Parameters
+    ----------
+    length : of the line contacts [m];  ring_mass : of the inner ring [kg]
+    """
+    b, found = scene.bearing, make_basis(scene)
+    # Clearance makes no contact angle here.
+    basis = attrs.evolve(found, geometry=attrs.evolve(found.geometry, contact_angle=0.0))
+    inner, outer = 0.5 * (b.pitch_diameter - b.ball_diameter), 0.5 * (b.pitch_diameter + b.ball_diameter)
+    radii = 1.0 / (2.0 / b.ball_diameter + 1.0 / inner), 1.0 / (2.0 / b.ball_diameter - 1.0 / outer)
+    clearance, force = b.radial_clearance or 0.0, np.array(scene.load.radial)
+    most = max(STRIBECK * float(np.hypot(*force)) / b.ball_count, 1.0)
+    params = _law_params(scene, basis, length, radii, most)
+    state = np.zeros((2 * b.ball_count, scene.contact.law.state_size))
+    linear = linear_parts(scene, plan)
+    linear["mass"][:3, :3] = (scene.rotor.mass + ring_mass) * np.eye(3)
+    system = System(
+        kernel=rollers,
+        base_kernel=rollers,
+        law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
+        law_params=params,
+        law_state=state,
+        scalars=_scalars(scene, basis, clearance),
+        table=_table(scene, plan, basis, length),
+        **linear,
+        **excitation(scene),
+        spin=changing_speed(scene),
+    )
+    probe_law(scene.contact.law, system.law, params, state)
+    if scene.excitation is not None:
+        probe_excitation(scene.excitation, system.force, system.force_params)
+    guess = np.zeros(5)
+    guess[1:3] = (0.5 * clearance + 1e-3 * b.ball_diameter) * force / max(float(np.hypot(*force)), 1e-300)
+    return RollerBearing(basis, system, guess, length, radii, clearance)
+
+
+def _law_params(scene: Scene, basis: Basis, length: float, radii: tuple[float, float], load: float) -> np.ndarray:
+    """(2 Z, k): a line contact has no curvature along the roller, and no Hertz factor of an ellipse."""
+    z = scene.bearing.ball_count
+    both = np.repeat(radii, z)
+    pairs = ContactPairs(
+        curvature_a=np.zeros(2 * z),
+        curvature_b=0.5 / both,
+        contact_modulus=np.full(2 * z, basis.modulus),
+        hertz_factor=np.full(2 * z, np.nan),
+        reference_load=np.full(2 * z, load),
+        length=np.full(2 * z, length),
+    )
+    return made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
+
+
+def _scalars(scene: Scene, basis: Basis, clearance: float) -> np.ndarray:
+    out = np.zeros(ring.SCALARS)
+    out[ring.REST_RADIAL] = scene.kinematics.radial_expansion - 0.5 * clearance
+    out[ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
+    out[ring.DAMPING] = scene.contact.damping
+    if scene.kinematics.orbiting:
+        out[ring.CAGE] = basis.geometry.cage_speed(scene.spin_speed)
+    return out
+
+
+def _table(scene: Scene, plan: Plan, basis: Basis, length: float) -> np.ndarray:
+    geometry, azimuth = basis.geometry, basis.azimuth
+    table = np.zeros((len(azimuth), ring.COLUMNS))
+    table[:, ring.COSINE], table[:, ring.SINE], table[:, ring.SIDE] = np.cos(azimuth), np.sin(azimuth), 1.0
+    if plan.centrifugal:
+        mass = scene.bearing.balls.density * 0.25 * pi * geometry.ball_diameter**2 * length
+        table[:, ring.CENTRIFUGAL] = mass * 0.5 * geometry.pitch_diameter * geometry.cage_speed(scene.spin_speed) ** 2
+    return table

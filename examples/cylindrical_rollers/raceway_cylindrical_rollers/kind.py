@@ -1,0 +1,133 @@
+"""The kind of bodies: what it takes, what it refuses, what a run will cost."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway import option
+from raceway.errors import Mistake
+from raceway.framework.contracts import Cost, Traits
+from raceway.framework.options import positive
+from raceway.planning.wall_time import START_S, Times, compiled_motion
+
+if TYPE_CHECKING:
+    from raceway.bodies.bearing import Bearing
+    from raceway.planning.decisions import Balls, Motion
+    from raceway.planning.parts import Decisions
+    from raceway.planning.plan import Plan
+    from raceway.scene.tables import Scene
+
+#: Seconds of a step with 12 rollers, of a sample, and of a search over that of rigid balls.
+_TIMES = Times({"weightless": 3.0e-6, "inertial": 4.0e-6}, sample=8.0e-6, search=1.0)
+#: Load of the most loaded roller over F / Z with a usual clearance.
+STRIBECK = 5.0
+
+
+@attrs.frozen
+class CylindricalRollers:
+    """Rigid rings on Z cylindrical rollers in line contact: radial loads, no axial and no tilt stiffness."""
+
+    name: ClassVar[str] = "cylindrical_rollers"
+
+    roller_length: float = option(unit="m", help="effective length L of the line contacts", rule=positive())
+
+    @classmethod
+    def examples(cls) -> list[CylindricalRollers]:
+        """For the conformance suite."""
+        return [cls(roller_length=9e-3)]
+
+    @classmethod
+    def example_scene(cls) -> dict[str, Any]:
+        """Sizes of an NU 206, for the conformance suite."""
+        return {
+            "bearing": {
+                "ball_count": 13, "ball_diameter": 9e-3, "pitch_diameter": 46.5e-3, "radial_clearance": 10e-6,
+                "bore": 30e-3, "width": 16e-3, "conformity_inner": 0.52, "conformity_outer": 0.52,
+            },
+            "supports": {"axial": "displacement"},
+            "load": {"radial": [4000.0, 300.0]},
+            "contact": {"kind": "palmgren"},
+            "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 2e-4},
+            "integrator": {"kind": "newmark", "turns": 2, "steps_per_turn": 90},
+            "kinematics": {"ball_inertia": False},
+        }  # fmt: skip
+
+    def faults(self, scene: Scene) -> list[Mistake]:
+        """Loads and motions that rollers do not carry, contacts that are no lines, forces that are not computed."""
+        found: list[Mistake] = []
+
+        def refuse(bad: bool, path: str, value: Any, why: str) -> None:
+            if bad:
+                found.append(Mistake(path, value, why))
+
+        b, supports, contact, moving = scene.bearing, scene.supports, scene.contact, scene.kinematics
+        nothing = "cylindrical rollers carry no axial load: something else holds the ring, supports.axial = 'displacement'"
+        refuse(supports.axial != "displacement", "supports.axial", supports.axial, nothing)
+        refuse(
+            scene.load.axial != 0.0, "load.axial", scene.load.axial, "cylindrical rollers carry no axial load: leave it out"
+        )
+        why = "the rollers' stiffness against tilts is not computed: use 'locked'"
+        refuse(supports.tilt != "locked", "supports.tilt", supports.tilt, why)
+        why = "is no law of line contacts: use 'palmgren'"
+        refuse(not getattr(contact.law, "line_contact", False), "contact.kind", contact.kind, why)
+        refuse(
+            contact.discretisation != "resultant",
+            "contact.discretisation",
+            contact.discretisation,
+            "line contacts are resultants: use 'resultant'",
+        )
+        refuse(contact.friction > 0.0, "contact.friction", contact.friction, "is not computed for rollers: set it to 0")
+        gyroscopic = "rollers that stay parallel to the axis have no gyroscopic moment: use 'none'"
+        refuse(moving.gyroscopic != "none", "kinematics.gyroscopic", moving.gyroscopic, gyroscopic)
+        why = "takes the ring of a ball bearing: give the growth itself by kinematics.radial_expansion"
+        refuse(moving.ring_growth, "kinematics.ring_growth", True, why)
+        refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, "rollers come in one row: use 'single'")
+        why = "a line contact has none: give bearing.radial_clearance alone"
+        refuse(bool(b.contact_angle_deg), "bearing.contact_angle_deg", b.contact_angle_deg, why)
+        refuse(scene.mesh is not None, "mesh", None, "rings and rollers are rigid and have no mesh: leave the table out")
+        for key, seat in (("outer_seat", supports.outer_seat), ("inner_seat", supports.inner_seat)):
+            refuse(seat != "rigid", f"supports.{key}", seat, "rigid rings have rigid seats: use 'rigid'")
+        return found
+
+    def traits(self, scene: Scene) -> Traits:
+        """Compiled contact resultants."""
+        return Traits()
+
+    def stable_step(self, scene: Scene) -> float:
+        """Of the ring on half its rollers under Stribeck's load [s]."""
+        from raceway_cylindrical_rollers.law import STEEL
+
+        count, length = scene.bearing.ball_count, self.roller_length
+        load = float(abs(complex(*scene.load.radial))) + (0.0 if scene.excitation is None else scene.excitation.amplitude_n)
+        approach = 2.0 * STEEL * (STRIBECK * load / count) ** 0.9 / length**0.8
+        stiffness = 0.5 * count * 10.0 / 9.0 * (STRIBECK * load / count) / approach if load > 0.0 else 1.0
+        return 2.0 / sqrt(stiffness / max(scene.rotor.mass + self.ring_mass(scene), 1e-9))
+
+    def ring_mass(self, scene: Scene) -> float:
+        """Of the inner ring, a hollow cylinder [kg]; 0 where bore or width are not known."""
+        b = scene.bearing
+        if b.bore is None or b.width is None:
+            return 0.0
+        return 0.25 * pi * ((b.pitch_diameter - b.ball_diameter) ** 2 - b.bore**2) * b.width * b.rings.density
+
+    def decide(self, scene: Scene, parts: Decisions) -> None:
+        """No part of a body that deforms."""
+        parts.leave_out("elastic rings and rollers", "bodies.kind is cylindrical_rollers: only line contacts deform")
+
+    def unused(self, scene: Scene) -> list[tuple[str, str]]:
+        """Keys of grooves."""
+        keys = ("bearing.shoulder_height", "bearing.tilt_arm", "load.moment")
+        return [(key, "cylindrical rollers have no grooves, and the ring does not tilt") for key in keys]
+
+    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+        """The motion's."""
+        return Cost(START_S + compiled_motion(scene, balls, motion, _TIMES))
+
+    def build(self, scene: Scene, plan: Plan) -> Bearing:
+        """See ``raceway_cylindrical_rollers.build``."""
+        from raceway_cylindrical_rollers.build import build
+
+        return build(scene, plan, self.roller_length, self.ring_mass(scene))

@@ -1,0 +1,135 @@
+"""Kinds of bodies that break one duty each; all are rigid ones otherwise."""
+
+from itertools import count
+
+import attrs
+import numpy as np
+
+from raceway.bodies.rigid.build import RigidBearing
+from raceway.bodies.rigid.kind import Rigid
+from raceway.core.ring.system import System
+from raceway.errors import ConvergenceError, Mistake
+from raceway.framework.contracts import Cost, Traits
+
+TIMES = count(1)
+
+
+class Broken(Rigid):
+    """Builds ``bearing`` on a ``system``, where those are given."""
+
+    name = "broken"
+    bearing, system = RigidBearing, System
+
+    def build(self, scene, plan):
+        found = super().build(scene, plan)
+        parts = {field.name: getattr(found.system, field.name) for field in attrs.fields(System)}
+        return self.bearing(found.basis, self.system(**parts), found.guess)
+
+
+def made(name, **parts):
+    """A kind with other methods, or another bearing or system."""
+    return type(name, (Broken,), {"name": name.lower(), **parts})()
+
+
+def of_bearing(name, **methods):
+    return made(name, bearing=type(name, (RigidBearing,), methods))
+
+
+def of_system(name, **methods):
+    return made(name, system=type(name, (System,), methods))
+
+
+@attrs.frozen
+class Undeclared(Rigid):
+    """An option without a unit, a help and a rule."""
+
+    name = "undeclared"
+    scale: float = 1.0
+
+
+def twice(_self, _scene, parts):
+    for _ in range(2):
+        parts.leave_out("elastic rings and balls", "only contacts deform")
+
+
+def adrift(self, near=None):
+    q, ball, iterations = self.system.settle(self.guess)
+    return q + 1e-8, ball, iterations
+
+
+def stiff(factor, skew=0.0):
+    """A tangent that is ``factor`` times the true one, and not symmetric."""
+
+    def stiffness_at(_self, _q, now):
+        found = factor * now.stiffness
+        found[0, 1] += skew * now.stiffness[0, 0]
+        return found
+
+    return stiffness_at
+
+
+def pulling(self, *args, **keys):
+    now = System.evaluate(self, *args, **keys)
+    return attrs.evolve(now, contact_force=now.contact_force - 1e4)
+
+
+def another(self, *args, **keys):
+    now = System.evaluate(self, *args, **keys)
+    return attrs.evolve(now, force=1.01 * now.force)
+
+
+def crooked(self, *args, **keys):
+    return tuple(angle + 0.2 for angle in RigidBearing.contact_angles(self, *args, **keys))
+
+
+def drifting(self, scene, plan):
+    bearing = Rigid.build(self, scene, plan)
+    bearing.system.law_params[:] *= 1.0 + 1e-9 * next(TIMES)
+    return bearing
+
+
+def deaf(self, scene, plan):
+    return Rigid.build(self, attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, radial_expansion=0.0)), plan)
+
+
+def single(self, scene, plan):
+    if scene.bearing.arrangement != "single":
+        raise ConvergenceError("one row only")
+    return Rigid.build(self, scene, plan)
+
+
+def builds(self, scene):
+    from raceway.planning.plan import make_plan
+
+    Rigid.build(self, scene, make_plan(attrs.evolve(scene, bodies=Rigid())))
+    return []
+
+
+#: Kind, the check that it fails, and what that says.
+BROKEN = [
+    (Undeclared(), "declaration", "scale are not declared"),
+    (made("Words", faults=lambda _self, _scene: ["no"]), "faults", "which is no Mistake"),
+    (made("Unknown", faults=lambda *_: [Mistake("bearing.rollers", 1, "take another number of them")]), "faults", "no key"),
+    (made("Short", faults=lambda *_: [Mistake("bearing.ball_count", 1, "wrong")]), "faults", "names no reason"),
+    (made("Picky", faults=lambda *_: [Mistake("load.axial", 1.0, "leave the axial load out")]), "faults", "example is refused"),
+    (made("Eager", faults=builds), "faults", "builds a RigidBearing"),
+    (made("Number", traits=lambda *_: Traits(compiled=1)), "plan", "more than True and False"),
+    (made("Negative", stable_step=lambda *_: -1.0), "plan", "neither None nor a time"),
+    (made("Stutter", decide=twice), "plan", "is decided twice"),
+    (made("Strange", unused=lambda *_: [("bearing.rollers", "there are none")]), "plan", "which is no key"),
+    (made("Endless", cost=lambda *_: Cost(float("nan"))), "plan", "is no time"),
+    (made("Nothing", build=lambda *_: None), "build", "returns NoneType"),
+    (of_bearing("Adrift", settle=adrift), "equilibrium", "of the loads is left"),
+    (of_system("Stiff", stiffness_at=stiff(1.01)), "tangent", "K dq differs by 0.01"),
+    (of_system("Skewed", stiffness_at=stiff(1.0, 1e-4)), "tangent", "K - K\\^T is"),
+    (of_system("Pulling", evaluate=pulling), "contacts", "a contact pulls with -"),
+    (of_bearing("Crooked", contact_angles=crooked), "contacts", "of them unbalanced"),
+    (of_bearing("Flat", contact_ellipse=lambda *_: (np.ones(7),) * 3), "told", "begins at 0 without a load"),
+    (of_bearing("Mute", mesh_error=lambda *_: 0.1), "told", "mesh_error\\(\\) returns 0.1"),
+    (of_bearing("Wide", ball_columns=lambda *_: {"width_m": np.ones(3)}), "told", "not \\(Z,\\)"),
+    (of_system("Divided", evaluate=another), "steps", "newmark: drivers differ by"),
+    (made("Drifting", build=drifting), "repeats", "`displacement` differs"),
+    (made("Deaf", build=deaf), "refused_or_computed", "an expanded inner ring: changes nothing"),
+    (made("Single", build=single), "refused_or_computed", "a pair of rows: neither refused by faults\\(\\) nor computed"),
+    (of_bearing("Obscure", report=lambda *_: {"what": object()}), "run", "TypeError"),
+]  # fmt: skip

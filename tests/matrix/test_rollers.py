@@ -1,0 +1,71 @@
+"""A foreign kind of bodies with every integrator and excitation: examples/cylindrical_rollers, which knows nothing of them.
+
+Tolerances on Z against Newmark under the same force: 0.5 % for methods with inertia, as in ``test_matrix``.  A series of
+equilibria has K of the load F0, not of F0 + m w^2 r: 3 %.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from raceway.errors import SceneError
+from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
+from tests.matrix.combinations import options
+
+PACKAGE = Path(__file__).parents[2] / "examples" / "cylindrical_rollers"
+
+
+@cache
+def rollers():
+    """The package and a registry with it."""
+    sys.path.insert(0, str(PACKAGE))
+    try:
+        import raceway_cylindrical_rollers as package
+    finally:
+        sys.path.remove(str(PACKAGE))
+    registry = Registry(third_party=False)
+    registry.add(package)
+    return package, registry
+
+
+@cache
+def outcome(excitation, integrator):
+    """The run's result, or its refusal."""
+    package, registry = rollers()
+    identifier = "order_tracking" if excitation == "run_up" else "fft_1x"
+    method = registry.find("integrator", integrator).plugin
+    tables = package.CylindricalRollers.example_scene() | {
+        # A small negative clearance: all rollers stay loaded, as K of small motions is compared.
+        "kinematics": {"ball_inertia": True, "radial_expansion": 12e-6},
+        "bodies": {"kind": "cylindrical_rollers", "roller_length": 9e-3},
+        "rotor": {"mass": 2.0},
+        "excitation": {"kind": excitation, **options("excitation", excitation)},
+        "integrator": {"kind": integrator, "turns": 6, "steps_per_turn": 120 if method.implicit else "auto"},
+        "identifier": {"kind": identifier, **options("identifier", identifier)},
+    }
+    try:
+        return run(scene_from_dict(tables, registry), registry)
+    except SceneError as refused:
+        return refused
+
+
+@pytest.mark.parametrize("integrator", default_registry().names("integrator"))
+@pytest.mark.parametrize("excitation", default_registry().names("excitation"))
+def test_rollers_run_with_every_integrator_and_excitation(excitation, integrator):
+    found = outcome(excitation, integrator)
+    if isinstance(found, SceneError):
+        # What no bodies run: a steady motion of a force that does not repeat.
+        assert default_registry().find("integrator", integrator).plugin.steady and excitation == "run_up", str(found)
+        return
+    assert "NaN" not in json.dumps(found.as_dict(), allow_nan=False)
+    inertial = default_registry().find("integrator", integrator).plugin.inertial
+    now, usual = found.identification, outcome(excitation, "newmark").identification
+    assert now.equivalent_stiffness > 0.0
+    assert now.equivalent_stiffness == pytest.approx(usual.equivalent_stiffness, rel=0.005 if inertial else 0.03)
