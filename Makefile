@@ -61,7 +61,7 @@ system-libraries: $(VENV)/.all
 	@$(BIN)/python -c 'import gmsh, pyvista; pyvista.Plotter(off_screen=True).show(auto_close=True)' >/dev/null 2>$(VENV)/.libraries.log \
 	  && echo "gmsh and pyvista: system libraries present" \
 	  || { cat $(VENV)/.libraries.log; echo "gmsh or pyvista lacks system libraries: run the line above"; exit 1; }
-	@$(BIN)/python -c 'from tests.browser.chromium import Browser; Browser().close()' 2>$(VENV)/.browser.log \
+	@$(BIN)/python -c 'from validation.browser.chromium import Browser; Browser().close()' 2>$(VENV)/.browser.log \
 	  && echo "chromium and chromedriver: present" \
 	  || { tail -n 1 $(VENV)/.browser.log; echo "no browser for the tests of pages: run the line above"; exit 1; }
 	@command -v ccx >/dev/null && echo "ccx (CalculiX): present" \

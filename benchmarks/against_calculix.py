@@ -1,6 +1,6 @@
 """One problem, two programs: ``python -m benchmarks.against_calculix [--load N] [--nodes N] [--json] [--deck FILE] [--scene FILE]``.
 
-The groove case of ``benchmarks.groove``, about 10 000 elements: Raceway under the load, CalculiX on the same mesh and the same
+The groove case of ``validation.groove``, about 10 000 elements: Raceway under the load, CalculiX on the same mesh and the same
 penalty, its middle plane pressed by the approach that Raceway found.  CalculiX knows facets only; Raceway takes the gap from
 the exact sphere and groove.  CPU time is that of all threads, memory that of the whole process.
 
@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import calculix
-from benchmarks.groove import HERTZ, MODULUS, POISSON, YOUNG, meshes, solve
 from raceway.core.elastic.contacts.penalty import penalty_stiffness
 from raceway.errors import RacewayError, SceneError
+from validation.groove import HERTZ, MODULUS, POISSON, YOUNG, meshes, solve
 
 #: Meshes of about 10 000 elements at 4 elements per semi-axis and 300 N.
 MESH = {"growth": 1.35, "coarse": 0.8e-3}

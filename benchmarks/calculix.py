@@ -112,7 +112,7 @@ class Deck:
 def groove_deck(
     ball: HexMesh, block: HexMesh, young: float, poisson: float, penalty: float, approach: float, element: str = "C3D8"
 ) -> str:
-    """The groove case of ``benchmarks.groove`` with the approach prescribed [m]."""
+    """The groove case of ``validation.groove`` with the approach prescribed [m]."""
     deck = Deck({"ball": ball, "race": block}, young, poisson, element)
     middle = deck.nodes("ball", ball.nodes("middle"))
     deck.node_set("MIDDLE", middle)

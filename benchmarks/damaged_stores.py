@@ -19,7 +19,7 @@ from benchmarks.sweeps import SCENE, rows_of
 from raceway.errors import RacewayError
 from raceway.studies.sweep import open_store
 from raceway.studies.sweep.store import POINTS, SCHEMA
-from tests import harm
+from validation import harm
 
 #: What is acceptable: rows as undisturbed, or one message.
 EQUAL, TOLD = "the same rows", "one message"

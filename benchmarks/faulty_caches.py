@@ -22,7 +22,7 @@ import scipy.optimize  # noqa: F401  # what a run imports, for all children at o
 
 from benchmarks.children import in_child
 from raceway.core import jit
-from tests import harm
+from validation import harm
 
 SAME, TOLD = "the same numbers", "the same numbers and a message of one line a file"
 _SCENE = {

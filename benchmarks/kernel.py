@@ -20,7 +20,7 @@ import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import HexMesh
-from tests.reference import hexahedron as reference
+from validation.reference import hexahedron as reference
 
 STEEL = (2.12e11, 0.29, 7810.0)
 SIZES = (100_000, 1_000_000)

@@ -299,7 +299,7 @@ def stresses() -> Rule:
     scene = load_scene(SCENE, changes)
     model = build_model(scene, make_plan(scene))
     bodies = model.system.bodies
-    place, places, _ = model.system.companion.settle(model.guess)
+    place, places, _ = model.system.surrogate.settle(model.guess)
     system, y = bodies.system, bodies.guess(place, places)
     y += 1e-8 * np.random.default_rng(1).standard_normal(len(y))  # the guess moves rigid bodies: nothing to recover
     operators = [body.operator for body in system.assembly.bodies]
@@ -351,8 +351,8 @@ for entry in registry.all():
             (plugin.examples()[0] if hasattr(plugin, "examples") else plugin()).kernel()
         except TypeError:
             pass  # needs options
-from raceway.core.ring.kernels import condensed_inertial, condensed_tangential, condensed_weightless
-from raceway.core.schemes.compiled import central_difference, implicit, quasi_static
+from raceway.core.ring.kernels import condensed, rigid_inertial, rigid_tangential, rigid_weightless
+import raceway.core.schemes.explicit.compiled, raceway.core.schemes.one_step.compiled, raceway.core.schemes.static.compiled
 from raceway.core.periodic import steady
 from raceway.core.hexahedron import operator
 import gmsh, matplotlib.figure, meshio, pyvista

@@ -20,7 +20,7 @@ from typing import Any
 import attrs
 
 from benchmarks.sweeps import SCENE, rows_of
-from tests.sessions import left
+from validation.sessions import left
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 _PATIENCE_S = 5.0

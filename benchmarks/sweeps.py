@@ -24,7 +24,7 @@ from raceway.scene.file import load_scene, read_toml, scene_from_dict, with_valu
 from raceway.studies.many.points import tables_at
 from raceway.studies.sweep import grid, open_store, prepare
 from raceway.studies.sweep import sweep as study
-from tests.sessions import left
+from validation.sessions import left
 
 SCENE = Path(__file__).parents[1] / "examples" / "b7206.toml"
 #: A machine whose processors are busier than this with other programs is not quiet.

@@ -1,14 +1,23 @@
 """Dynamic stiffness of rolling bearings under axial load and rotor unbalance, with the error and cost of every number.
 
-scene, scene_file, structure   what the user said: TOML to a frozen tree of attrs objects, checked
-options, errors    how keys are declared; how things are refused
-catalogue          bearing presets with the source of every number
-contracts, hookspecs, registry   what plug-ins must do, the hooks, and how they are found
-plan, model, run, result         scene -> plan -> model -> settle -> advance -> identify -> result
-studies            many runs: compare, verify
-core               numerics only
-contact_laws, integrators, plugins   the built-in plug-ins, which come in through the same door as third parties'
-cli                the commands; the only place that prints
+cli            the command line: ``raceway``
+commands       what all commands share: options, progress, screens, how a command ends
+studies        many runs made into one answer, a folder a study, each with its command
+testing        conformance suites for plug-ins; the scaffold of a new one
+pipeline       one run: equilibrium, motion, identification, error, result
+bodies         rings and balls: rigid, condensed or elastic; from scene and plan to a model
+planning       what a scene needs, what is left out, what it will cost
+contact_laws, integrators   built-in plug-ins of these kinds
+plugins        built-in excitations, identifiers, meshers, formats, reports and executors
+scene          the scene file: tables, catalogue of bearings, schema
+framework      kinds of plug-ins: contracts, hooks, options, registry
+core           numerics: arrays in, arrays out
+storage        files and caches on disk
+errors         exceptions, one class by who must act
+data           bearings, reference cases, meshes, templates of plug-ins
+
+Imports run one way, from the top of this list to its bottom; contact_laws, integrators, plugins and scene do not know each other.
+Plug-ins, built in or foreign, are found by the registry alone.
 
 Names below are imported when they are first used, so that ``import raceway`` stays light.
 """

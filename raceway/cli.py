@@ -29,6 +29,7 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults, writable
 from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
+from raceway.commands.reports import chosen_reports, write_reports
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.studies.command import study
 from raceway.studies.compare.command import compare
@@ -71,7 +72,8 @@ def main() -> None:
 @main.command(short_help="Compute one scene.")
 @on_scene
 @out_folder
-@click.option("--pictures", is_flag=True, help="Also write orbit, spectrum and ball loads as PNG.")
+@click.option("--report", "reports", multiple=True, metavar="NAME", help="Also write this report; repeat for more.")
+@click.option("--pictures", is_flag=True, help="The report 'pictures': orbit, spectrum and ball loads as PNG.")
 @click.option(
     "--patience", type=click.FloatRange(min=0.0), default=20.0, show_default=True, metavar="FACTOR",
     help="Stop a run that takes this many times its planned time; inf: never.",
@@ -83,6 +85,7 @@ def run(
     scene: Path,
     changes: tuple[str, ...],
     out: Path | None,
+    reports: tuple[str, ...],
     pictures: bool,
     patience: float,
     plugins: tuple[Path, ...],
@@ -90,7 +93,8 @@ def run(
 ) -> int:
     """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
 
-    Writes DIR/result.json, or DIR/failure.json and DIR/last-good-state.npz when the numbers fail (exit code 1).
+    Writes DIR/result.json, or DIR/failure.json and DIR/last-good-state.npz when the numbers fail (exit code 1).  Reports are
+    plug-ins (raceway plugins lists them); one that fails is told after the result is saved.
 
     \b
     Example:
@@ -99,7 +103,8 @@ def run(
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
     folder = writable(out or RESULTS / slug(loaded.title))
-    if pictures:
+    chosen = chosen_reports((*reports, "pictures") if pictures else reports, registry)
+    if any(entry.name == "pictures" for entry, _ in chosen):
         require_matplotlib("leave out --pictures")
     tell_faults(registry)
     with show_progress() as progress:
@@ -117,9 +122,7 @@ def run(
         from raceway.commands.failure import forget_failure
 
         forget_failure(folder)
-    if pictures and failed is None:
-        report = registry.find("report", "pictures").plugin()
-        failed = attempt(lambda: report.write(result, folder), files)
+        failed = write_reports(chosen, result, folder, files)
     from raceway.commands.screen.result import run_screen
 
     show(content, as_json, failed, lambda: run_screen(content, files))

@@ -1,1 +1,1 @@
-"""Tests of Raceway; ``tests.reference`` holds independent implementations to test against."""
+"""Tests of Raceway; ``validation.reference`` holds independent implementations to test against."""

@@ -14,14 +14,7 @@ from matplotlib.figure import Figure
 from raceway import build_model, make_plan, scene_from_dict
 from raceway.bodies.model import Model
 from tests.figures import outside
-
-
-def b7206c(**tables: Any) -> dict[str, Any]:
-    """The tables of a B7206C under 1000 N; each keyword replaces or extends one table."""
-    scene: dict[str, Any] = {"title": "test", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-    for name, table in tables.items():
-        scene[name] = {**scene.get(name, {}), **table} if isinstance(table, dict) else table
-    return scene
+from validation.tables import b7206c
 
 
 @pytest.fixture

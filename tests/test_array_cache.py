@@ -12,7 +12,7 @@ import pytest
 
 from raceway.storage import array_cache
 from raceway.storage.array_cache import kept
-from tests.command_line import invoke, python
+from validation.command_line import invoke, python
 
 INPUTS = {"points": np.arange(6.0).reshape(3, 2), "count": 3, "seat": "clamped", "ratio": 0.29, "offsets": None}
 

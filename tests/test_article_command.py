@@ -20,8 +20,8 @@ from raceway.studies.article.design import ARTICLE, FRICTIONS, Setting, article_
 from raceway.studies.article.figures import pictures
 from raceway.studies.article.panel import Picture
 from raceway.studies.article.report import page
-from tests.article_study import curves, row, study
-from tests.command_line import EXAMPLES, invoke
+from validation.article_study import curves, row, study
+from validation.command_line import EXAMPLES, invoke
 
 #: Far from resonances, so that a run takes milliseconds.
 SMALL = (

@@ -10,7 +10,7 @@ from raceway.studies.article.claims import verdicts
 from raceway.studies.article.power_law import exponent
 from raceway.studies.article.regions import Finding, where
 from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED, judge
-from tests.article_study import curves, static
+from validation.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)
 SMALL = np.full(9, 1e-9)

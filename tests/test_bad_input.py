@@ -9,7 +9,7 @@ import pytest
 
 from raceway.errors import SceneError
 from raceway.scene.file import read_toml
-from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, raceway
+from validation.command_line import ARTICLE, MINIMAL, install, invoke, law, raceway
 
 #: What is set; the path that is named; words of the message.
 SCENES = {

@@ -8,15 +8,15 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks.evidence._several import article
 from raceway import load_scene, scene_from_dict
 from raceway.cli import main
 from raceway.errors import BeyondPlanError
 from raceway.pipeline.allowance import PATIENCE, Allowance
 from raceway.pipeline.run import run
-from tests.command_line import ARTICLE, invoke
 from tests.test_elastic_scene import QUICK
 from tests.test_elastic_scene import scene as elastic_scene
+from validation.command_line import ARTICLE, invoke
+from validation.several import article
 
 LONG = ("--set", "integrator.turns=120")  # 43 200 steps: more than one chunk
 

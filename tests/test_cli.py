@@ -19,7 +19,7 @@ import pytest
 
 from raceway.cli import main
 from raceway.commands.inputs import slug
-from tests.command_line import ARTICLE, MINIMAL, install, invoke, law, python, raceway
+from validation.command_line import ARTICLE, MINIMAL, install, invoke, law, python, raceway
 
 COMMANDS = sorted(main.commands)
 GROUPS = {

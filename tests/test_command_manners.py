@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from tests.command_line import LAW, MINIMAL, invoke, python, raceway
+from validation.command_line import LAW, MINIMAL, invoke, python, raceway
 
 #: A signal while the commands are imported.
 LOADING = """

@@ -323,3 +323,24 @@ def test_the_error_of_k_is_that_of_z_over_its_own_size():
     z, k = row.value("dynamic_stiffness"), row.value("equivalent_stiffness")
     assert row.error_of("dynamic_stiffness") == 1e-6
     assert row.error_of("equivalent_stiffness") == pytest.approx(1e-6 * z / k)
+
+
+def test_finished_runs_are_kept_and_used_again(tmp_path, monkeypatch):
+    vary, store = ["excitation.speed_rpm=12000:13000:3"], tmp_path / "compare-rows.jsonl"
+    whole = compare(SCENE, vary)
+
+    def stop(_what, done, _total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        compare(SCENE, vary, on_progress=stop, store=store)
+    real, ran = study.run, []
+    monkeypatch.setattr(study, "run", lambda scene, registry: ran.append(1) or real(scene, registry))
+    found = compare(SCENE, vary, store=store)
+    assert len(ran) == 1
+
+    def numbers(comparison):
+        return [row.result["identification"] for row in comparison.rows]
+
+    assert numbers(found) == numbers(whole) and found.words == whole.words

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from raceway.framework import hookspecs
-from raceway.framework.contracts import KINDS
+from raceway.framework.contracts import KINDS, plural
 from raceway.testing import SUITES, suite_of
 
 ROOT = Path(__file__).parents[1]
@@ -38,7 +38,7 @@ def test_every_kind_has_suite_tests_page_and_template(kind):
     suite = suite_of(kind)
     assert suite.kind == kind
     assert suite.__name__ in TESTS, f"no test uses {suite.__name__}"
-    heading = kind.replace("_", " ").capitalize().removesuffix("s") + "s"
+    heading = plural(kind).capitalize()
     section = re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", PAGE, re.MULTILINE | re.DOTALL)
     assert section, f"docs/plugins.md has no section '{heading}'"
     assert suite.__name__ in section.group(1) and KINDS[kind][0] in section.group(1)

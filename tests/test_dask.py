@@ -12,8 +12,8 @@ from raceway.errors import PluginError
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.serial import Serial
 from raceway.studies.sweep import sweep
-from tests.cluster import POINTS, START_S, Cluster, installed, prepared, rows
-from tests.command_line import invoke
+from validation.cluster import POINTS, START_S, Cluster, installed, prepared, rows
+from validation.command_line import invoke
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.evidence._scenes import model_of, rotating
 from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.energy import cumulative, energy_balance
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
+from validation.scenes import model_of, rotating
 
 
 def drift(integrator: str, steps: int, damping: float = 0.0, inertia: bool = False, law: str = "hertz") -> float:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.evidence._scenes import imbalance, model_of, settled, static
-from benchmarks.evidence.equilibria import EXTREME_RESIDUAL, families, loose, random_scenes, solve
 from raceway.bodies.model import Model
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, SINE
 from raceway.errors import ConvergenceError
 from raceway.pipeline.settle import settle
-from tests.reference.ring import Ring
-from tests.reference.statics import equilibrium
+from validation.equilibria import EXTREME_RESIDUAL, families, loose, random_scenes, solve
+from validation.reference.ring import Ring
+from validation.reference.statics import equilibrium
+from validation.scenes import imbalance, model_of, settled, static
 
 
 def twin(model: Model) -> Ring:

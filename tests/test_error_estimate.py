@@ -7,10 +7,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmarks.evidence import error_estimate as single
-from benchmarks.evidence import error_starts as evidence
-from benchmarks.evidence._scenes import rotating
-from benchmarks.evidence.error_estimate import right
 from raceway import scene_from_dict
 from raceway.commands.screen.text import number_within
 from raceway.pipeline.error import estimate as error_estimate
@@ -18,17 +14,20 @@ from raceway.pipeline.error.finer_series import more_equilibria
 from raceway.pipeline.error.steady_motion import settles_elsewhere
 from raceway.pipeline.run import run
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
+from validation.error_estimate import CASES, judge, right
+from validation.scenes import rotating
+from validation.series_errors import SERIES, series, series_errors
 
 
 # 45 and 90 samples of a motion with a mirror axis hold the same harmonics: half the samples tell nothing of them.
 @pytest.mark.parametrize("steps", [8, 13, 24, 45, 90, 360])
 def test_series_of_equilibria_states_what_harmonics_beyond_its_samples_add(steps):
-    estimate, true = evidence.series_errors(0, steps)
+    estimate, true = series_errors(0, steps)
     assert true > 1e-7 and right(estimate, true), (estimate, true)
 
 
 def test_a_series_that_cannot_be_told_from_a_finer_one_states_its_residual():
-    error = run(scene_from_dict(evidence.series(*evidence.SERIES[2], 360))).error
+    error = run(scene_from_dict(series(*SERIES[2], 360))).error
     assert error["total"] == pytest.approx(1e-11, rel=0.1) and "residual" in error["how"]["time_step"]
 
 
@@ -37,7 +36,7 @@ def test_a_finer_series_has_other_harmonics():
 
 
 def test_of_equilibria_every_step_is_recorded_up_to_the_limit_of_long_runs():
-    found = run(scene_from_dict(evidence.series(*evidence.SERIES[2], 2880)))
+    found = run(scene_from_dict(series(*SERIES[2], 2880)))
     assert len(found.simulation.record.time) == 2880
     assert recorded_per_turn(2880, 12) == 360 and recorded_per_turn(2880, 12, inertial=False) == 2880
     assert samples_per_turn(1000, inertial=False) == samples_per_turn(1000) == 72
@@ -57,11 +56,6 @@ def test_a_start_near_resonance_states_at_least_a_third_of_its_error(start, turn
     wanted = run(scene_from_dict({**tables, "integrator": {"kind": "periodic"}})).identification.dynamic_stiffness
     true = abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
     assert true > 0.01 and right(found.error["total"], true), (found.error["total"], true)
-
-
-def test_the_drawn_starts_hold():
-    rows = evidence.start_rows(12, evidence.SEED)
-    assert all(row.ok for row in rows), [(row.quantity, row.value) for row in rows]
 
 
 def _turns(*lines):
@@ -161,7 +155,7 @@ def test_without_a_steady_motion_a_free_vibration_that_a_window_sees_states_no_m
 
 def test_a_second_run_that_vibrates_by_more_than_its_steps_change_is_made_with_closer_steps():
     """Lift-off under 100 N: 180 steps a turn leave the orbit and differ by 150 times what 240 steps do."""
-    (case,) = (one for one in single.CASES if one.name == "lift-off, 100 N, tilt free")
-    estimate, true, _ = single.judge(case)
+    (case,) = (one for one in CASES if one.name == "lift-off, 100 N, tilt free")
+    estimate, true, _ = judge(case)
     assert right(estimate, true), (estimate, true)
     assert "240 instead of 360 steps" in run(scene_from_dict(case.tables)).error["how"]["time_step"]

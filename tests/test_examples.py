@@ -12,7 +12,7 @@ from raceway import load_scene
 from raceway.errors import SceneError
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
-from tests.command_line import invoke
+from validation.command_line import invoke
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 #: Scenes for `raceway mesh`: too large to run here.

@@ -15,8 +15,8 @@ from raceway.errors import MeshError
 from raceway.plugins.meshers import _geo
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.storage import trust
-from tests.command_line import EXAMPLES, invoke, python, raceway
 from tests.mesh.solids import RING_SCRIPT, write
+from validation.command_line import EXAMPLES, invoke, python, raceway
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 SCENE = """

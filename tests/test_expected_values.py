@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.evidence.expected_values import SPEEDS, TABLE, TRENDS, axial_row, secant
+from raceway.studies.article.expected import SPEEDS, TRENDS
+from validation.expected_values import TABLE, axial_row, secant
 
 
 @pytest.mark.parametrize("axial", TABLE)
@@ -24,9 +25,9 @@ def test_secant_stiffness_over_speed(case, expected):
 
 def test_same_numbers_through_run():
     """The public path: a scene with an excitation and integrator quasi_static gives the mean of the static ones."""
-    from benchmarks.evidence._scenes import rotating
     from raceway import scene_from_dict
     from raceway.pipeline.run import run
+    from validation.scenes import rotating
 
     result = run(scene_from_dict(rotating(1000.0, "locked", 12000.0, False, "quasi_static"))).as_dict()
     found = result["identification"]["equivalent_stiffness"]

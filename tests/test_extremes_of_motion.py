@@ -10,7 +10,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 from raceway.scene.file import scene_from_dict
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 #: A force that lifts balls off and presses others with many times the preload.
 HEAVY = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 1500.0}

@@ -32,11 +32,12 @@ from raceway.studies.sweep.selection import select
 from raceway.studies.view import contacts
 from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.states import at_rest
-from tests import article_study, test_compare, test_map
-from tests.conftest import b7206c
+from tests import test_compare, test_map
 from tests.figures import outside
 from tests.rig.test_orders import made as a_record
 from tests.stores import SPEEDS, as_list, made
+from validation import article_study
+from validation.tables import b7206c
 
 LOADS = np.linspace(200.0, 2000.0, 5)
 

@@ -9,7 +9,7 @@ import pytest
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
-from tests.reference.ring import Ring
+from validation.reference.ring import Ring
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)
 B7206C = BallBearing(9.525e-3, 46e-3, 12, radians(15.0), 0.522, 0.522)

@@ -7,7 +7,7 @@ import pytest
 
 from raceway.core.contact.hertz import contact_modulus, ellipse, ellipticity
 from raceway.errors import RacewayError
-from tests.reference.hertz import contact
+from validation.reference.hertz import contact
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.evidence._scenes import model_of, rotating
-from benchmarks.evidence.identified_stiffness import INTEGRATORS, LIMIT, reference
 from raceway import scene_from_dict
 from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
+from validation.identified_stiffness import INTEGRATORS, LIMIT, reference
+from validation.scenes import model_of, rotating
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi
 FREQUENCY = SPEED / (2.0 * np.pi)

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from tests.command_line import ARTICLE, python
+from validation.command_line import ARTICLE, python
 
 HEAVY = ("numba", "scipy", "meshio", "gmsh", "pyvista", "matplotlib")
 

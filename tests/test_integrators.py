@@ -6,8 +6,6 @@ import attrs
 import numpy as np
 import pytest
 
-from benchmarks.evidence import orders
-from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
 from raceway.core.ring.address import by_address
 from raceway.core.ring.start import at_rest
@@ -17,6 +15,8 @@ from raceway.core.stepping.record import Schedule
 from raceway.errors import StabilityError
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
+from validation import orders
+from validation.scenes import model_of, rotating
 
 INTEGRATORS = orders.INTEGRATORS
 

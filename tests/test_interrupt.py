@@ -18,8 +18,8 @@ from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.executors.joblib import Joblib
 from raceway.studies.sweep import open_store
-from tests.command_line import ARTICLE, raceway
-from tests.sessions import left, members
+from validation.command_line import ARTICLE, EXAMPLES, raceway
+from validation.sessions import left, members
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
@@ -143,6 +143,29 @@ def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_p
     found = raceway(*words, "--resume", "--json")
     whole = raceway(*words[:-1], tmp_path / "whole", "--json")
     assert json.loads(found.stdout)["rows"] == json.loads(whole.stdout)["rows"]
+
+
+STUDIES = {
+    "compare": ("compare", ARTICLE, "--set", "integrator.turns=40", "--vary", "excitation.speed_rpm=11000:15000:60"),
+    "map": ("study", "map", "--processes", "2"),  # in processes of their own
+    "rig": ("study", "rig", EXAMPLES / "test_rig.toml"),
+}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_study_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_and_leaves_no_process(name, tmp_path):
+    words = [*STUDIES[name], "--out", tmp_path, "--no-pictures", "--json"]
+    command = [sys.executable, "-m", "raceway", *map(str, words)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
+    rows, end = tmp_path / f"{name}-rows.jsonl", time.monotonic() + 100.0
+    while not rows.is_file() and time.monotonic() < end:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes of the command
+    error = process.communicate(timeout=60.0)[1].decode()
+    assert process.returncode == 130, error
+    assert f"are kept in {rows}; the same command goes on from there" in error and "Traceback" not in error
+    assert not members(process.pid)
+    assert all(json.loads(line)["row"] for line in rows.read_text(encoding="utf-8").splitlines() if line)
 
 
 WORKER = """

@@ -6,6 +6,8 @@ import json
 import os
 import shutil
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numba
@@ -13,24 +15,27 @@ import numpy as np
 import pytest
 
 import raceway
-from raceway.core.jit import jit
+from raceway.core.jit import clock, jit
 from raceway.core.signatures import LAW
 from raceway.errors import PluginError
 from raceway.storage.cache_folder import current_folder, make, refusal
-from tests.command_line import python
+from validation.command_line import python
 
-#: The smallest kernels, three in a file, one used once; what was compiled and read, what was warned of, numba's own settings.
+#: The smallest kernels, three in a file, each used once; what was compiled and read, what was warned of, numba's own settings.
 USE = """
 import json, sys, warnings
 import numba, numpy as np
 before = numba.config.CACHE_DIR
 with warnings.catch_warnings(record=True) as caught:
     warnings.simplefilter("always")
-    from raceway.core.contact_laws.power import three_halves
+    from raceway.core.contact_laws.power import linear, square, three_halves
     from raceway.core.jit import clock
-force, slope, rate = np.empty(1), np.empty(1), np.empty(1)
-none = np.zeros((1, 0))
-three_halves(np.array([-4e-6]), np.zeros(1), np.array([[1e9]]), none, none, 0.0, force, slope, rate)
+    at_import = clock["compiled"] + clock["loaded"]
+    force, slope, rate = np.empty(1), np.empty(1), np.empty(1)
+    none = np.zeros((1, 0))
+    for law in (linear, square, three_halves):
+        law(np.array([-4e-6]), np.zeros(1), np.array([[1e9]]), none, none, 0.0, force, slope, rate)
+assert at_import == 0, at_import
 kept = before == numba.config.CACHE_DIR
 print(json.dumps([force[0], clock["compiled"], clock["loaded"], [str(w.message) for w in caught], kept]))
 """
@@ -236,12 +241,13 @@ def test_division_by_zero_is_not_an_exception():
 
 
 def test_a_kernel_that_creates_arrays_is_refused_by_name():
-    with pytest.raises(PluginError, match="greedy.*creates arrays"):
+    @jit(LAW)
+    def greedy(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+        copy = np.maximum(-gap, 0.0)
+        force[:] = copy
 
-        @jit(LAW)
-        def greedy(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-            copy = np.maximum(-gap, 0.0)
-            force[:] = copy
+    with pytest.raises(PluginError, match="greedy.*creates arrays"):
+        greedy.compile()
 
 
 def test_a_time_loop_may_create_arrays():
@@ -252,9 +258,89 @@ def test_a_time_loop_may_create_arrays():
     assert total(3) == 3.0
 
 
-def test_a_kernel_that_numba_cannot_type_is_refused_by_name():
-    with pytest.raises(PluginError, match="untyped"):
+def untyped_kernel():
+    @jit(numba.float64(numba.float64))
+    def untyped(x):
+        return sys.getsizeof(x)
 
-        @jit(numba.float64(numba.float64))
-        def untyped(x):
-            return sys.getsizeof(x)
+    return untyped
+
+
+#: Every first use of a kernel.
+USES = {
+    "called": lambda kernel: kernel(1.0),
+    "its address": lambda kernel: kernel.get_compile_result(numba.float64(numba.float64)),
+    "its signatures": lambda kernel: kernel.nopython_signatures,
+    "called by a kernel": lambda kernel: jit(numba.float64(numba.float64))(lambda x: kernel(x)).compile(),
+}
+
+
+@pytest.mark.parametrize("use_it", USES.values(), ids=USES)
+def test_a_kernel_that_numba_cannot_type_is_refused_by_name_at_each_first_use(use_it):
+    kernel = untyped_kernel()
+    for _ in range(2):
+        with pytest.raises(PluginError, match="kernel `untyped_kernel.<locals>.untyped`"):
+            use_it(kernel)
+
+
+@pytest.mark.parametrize("use_it", USES.values(), ids=USES)
+def test_a_kernel_is_compiled_at_its_first_use_and_once(use_it):
+    @jit(numba.float64(numba.float64))
+    def half(x):
+        return 0.5 * x
+
+    before = clock["compiled"] + clock["loaded"]
+    assert half.signatures == []
+    use_it(half)
+    once = clock["compiled"] + clock["loaded"]
+    assert once > before and half.signatures == [(numba.float64,)]
+    assert half(3) == 1.5  # for its one signature, whatever it is given
+    assert (clock["compiled"] + clock["loaded"], len(half.signatures)) == (once, 1)
+
+
+def test_arrays_that_a_kernel_is_not_made_for_are_refused_at_the_first_call():
+    @jit(numba.float64(numba.float64[::1]))
+    def first(x):
+        return x[0]
+
+    with pytest.raises(TypeError, match="No matching definition"):
+        first(np.zeros((2, 2)))
+    with pytest.raises(TypeError, match="No matching definition"):
+        first(np.zeros(4)[::2])
+    assert first(np.ones(2)) == 1.0
+
+
+def test_seconds_of_kernels_that_are_called_are_counted_once():
+    @jit(numba.float64(numba.float64))
+    def inner(x):
+        return x + 1.0
+
+    @jit(numba.float64(numba.float64))
+    def outer(x):
+        return 2.0 * inner(x)
+
+    kinds = ("compile_s", "load_s")
+    before, begun = sum(clock[kind] for kind in kinds), time.perf_counter()
+    assert outer(1.0) == 4.0
+    assert 0.0 < sum(clock[kind] for kind in kinds) - before <= time.perf_counter() - begun
+
+
+def test_threads_that_use_a_kernel_first_at_the_same_time_compile_it_once():
+    @jit(numba.float64(numba.float64), releases=True)
+    def third(x):
+        return x / 3.0
+
+    before = clock["compiled"] + clock["loaded"]
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(third, [3.0] * 8)) == [1.0] * 8
+    assert clock["compiled"] + clock["loaded"] == before + 1
+
+
+def test_a_kernel_is_handed_to_another_process_uncompiled():
+    import pickle
+
+    from raceway.core.contact_laws.power import square
+
+    assert pickle.loads(pickle.dumps(square)) is square
+    done = python("-c", f"import pickle; print(pickle.loads({pickle.dumps(square)!r}).signature.args[0])")
+    assert done.stdout.strip() == "array(float64, 1d, C)", done.stderr

@@ -12,12 +12,11 @@ from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
 from raceway.scene.file import read_toml
 from raceway.studies.map import study as study_module
-from raceway.studies.map import workers as map_workers
 from raceway.studies.map.curves import SATURATED, curves, trend, words
 from raceway.studies.map.design import ANGLE, AXIAL, METHODS, SPEED, TILT, design
 from raceway.studies.map.point import small_signal
 from raceway.studies.map.study import study_map
-from tests.command_line import EXAMPLES, invoke, raceway
+from validation.command_line import EXAMPLES, invoke, raceway
 
 REGISTRY = default_registry()
 TABLES = read_toml(EXAMPLES.parent / "raceway" / "data" / "map.toml")
@@ -127,7 +126,7 @@ def test_contact_loss_and_the_grooves_edge_are_found():
 
 def test_finished_points_are_kept_and_used_again(tmp_path, monkeypatch):
     planned, kept = design(TABLES, TINY, "quasi_static", REGISTRY), tmp_path / "rows.jsonl"
-    real, count = map_workers.point_row, 0
+    real, count = study_module.point_row, 0
 
     def stop_after_three(scene, registry):
         nonlocal count
@@ -136,12 +135,12 @@ def test_finished_points_are_kept_and_used_again(tmp_path, monkeypatch):
             raise KeyboardInterrupt
         return real(scene, registry)
 
-    monkeypatch.setattr(map_workers, "point_row", stop_after_three)
+    monkeypatch.setattr(study_module, "point_row", stop_after_three)
     with pytest.raises(KeyboardInterrupt):
         study_map(planned, kept=kept, registry=REGISTRY)
     assert len(kept.read_text().split()) > 0
     monkeypatch.setattr(
-        map_workers, "point_row", lambda scene, registry: (lambda row: {**row, "new": True})(real(scene, registry))
+        study_module, "point_row", lambda scene, registry: (lambda row: {**row, "new": True})(real(scene, registry))
     )
     found = study_map(planned, kept=kept, registry=REGISTRY)
     assert [row.get("new", False) for row in found.rows] == [False] * 3 + [True] * 5

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from tests.command_line import EXAMPLES, MINIMAL, invoke, raceway
+from validation.command_line import EXAMPLES, MINIMAL, invoke, raceway
 
 COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "--set", "mesh.nodes_per_semi_axis=1")
 

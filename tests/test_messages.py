@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
+from validation.command_line import ARTICLE, MINIMAL, invoke, raceway
 
 HEAD = '[bearing]\npreset = "B7206C"\n[load]\n'
 FILES = {

@@ -19,9 +19,9 @@ from raceway.planning.recording import fits, record_bytes, recorded_per_turn
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.studies.measured.recording import read_recording
-from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
-from tests.conftest import b7206c
-from tests.mesh.cubes import block
+from validation.command_line import ARTICLE, MINIMAL, invoke, raceway
+from validation.cubes import block
+from validation.tables import b7206c
 
 HOOK = """
 from raceway import hookimpl

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.evidence._scenes import model_of, rig_force, rotating
 from raceway.core.ring.orbit import at_time, differentiation, steady_orbit
 from raceway.core.ring.start import from_orbit
 from raceway.pipeline.settle import settle
 from raceway.pipeline.starting import chosen_start
-from tests.conftest import b7206c
-from tests.reference.ring import Ring
-from tests.reference.shooting import periodic, swinging
+from validation.reference.ring import Ring
+from validation.reference.shooting import periodic, swinging
+from validation.scenes import model_of, rig_force, rotating
+from validation.tables import b7206c
 
 
 def test_differentiation_is_exact_for_harmonics():

@@ -11,8 +11,6 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from benchmarks.evidence._scenes import model_of, rotating
-from benchmarks.evidence._several import heavy
 from raceway import scene_from_dict
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import Problem, solve
@@ -36,7 +34,9 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
-from tests.command_line import ARTICLE, invoke
+from validation.command_line import ARTICLE, invoke
+from validation.scenes import model_of, rotating
+from validation.several import heavy
 
 
 def scene(kind="periodic", axial=1000.0, tilt="locked", inertia=False, **tables):

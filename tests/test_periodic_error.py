@@ -7,7 +7,7 @@ import pytest
 
 from raceway.pipeline.run import run
 from raceway.scene.file import scene_from_dict
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 
 def motion(tolerance: float, axial: float):

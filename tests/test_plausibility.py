@@ -5,22 +5,35 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from raceway.errors import ConvergenceError
 from raceway.framework.options import nearest
 from raceway.pipeline.run import run
+from raceway.pipeline.settle import contact_angles
 from raceway.pipeline.simulate import _stride
 from raceway.planning.recording import samples_per_turn
 from raceway.scene.file import scene_from_dict
-from tests.command_line import EXAMPLES
-from tests.conftest import b7206c
+from validation.command_line import EXAMPLES
+from validation.tables import b7206c
 
 EXCITED = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
 
 
 def computed(**tables):
     return run(scene_from_dict(b7206c(**{"excitation": EXCITED, **tables})))
+
+
+def test_angles_of_many_states_at_once_are_those_of_each():
+    found = computed(kinematics={"orbiting": True, "ball_inertia": True}, supports={"tilt": "free"}, integrator={"turns": 3})
+    record, some = found.simulation.record, slice(0, 40)
+    parts = [part[some] for part in (record.displacement, record.ball, record.contact_force, record.time)]
+    inner, outer = contact_angles(found.model, *parts)
+    for k, state in enumerate(zip(*parts, strict=True)):
+        one = contact_angles(found.model, *state)
+        assert np.array_equal(one[0], inner[k], equal_nan=True) and np.array_equal(one[1], outer[k], equal_nan=True)
+    assert np.ptp(inner) > 0.0
 
 
 @pytest.mark.parametrize("turns", [1, 12, 200, 201, 1000, 1800, 3000, 20000])

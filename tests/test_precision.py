@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.evidence import error_estimate as evidence
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.error.free_vibration import hann_line
@@ -21,7 +20,8 @@ from raceway.studies.precision import study as module
 from raceway.studies.precision.design import make_design
 from raceway.studies.precision.result import THRESHOLDS
 from raceway.studies.precision.study import precision
-from tests.command_line import ARTICLE, invoke
+from validation import error_estimate as evidence
+from validation.command_line import ARTICLE, invoke
 
 TABLES = read_toml(ARTICLE)
 FEW = {**TABLES, "integrator": {"kind": "newmark", "turns": 4}}
@@ -182,7 +182,7 @@ def test_the_key_of_a_row_follows_the_scene_and_the_files_it_names(tmp_path):
     ],
 )
 def test_mistakes_are_found_before_anything_runs(words, code, said, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "measured", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr(module, "measured_once", lambda *_: pytest.fail("it ran"))
     found = invoke("precision", ARTICLE, *words, "--out", tmp_path)
     assert found.exit_code == code and said in found.output
 

@@ -15,7 +15,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 
 @numba.njit(LAW)

@@ -11,7 +11,7 @@ import pytest
 from raceway.framework.registry import default_registry
 from raceway.studies.precision.design import make_design
 from raceway.studies.precision.reference import find_reference
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 EXACT = 2.3e8
 MOVING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 100.0}

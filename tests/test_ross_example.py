@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import sys
 
-from tests.command_line import EXAMPLES
+from validation.command_line import EXAMPLES
 
 
 def test_the_example_says_what_is_missing(monkeypatch, capsys):

@@ -18,8 +18,8 @@ from raceway.studies.ross.file import NAMES, ross_file
 from raceway.studies.ross.reading import smoothed, through_points
 from raceway.studies.sweep import grid, prepare, sweep
 from raceway.studies.sweep.selection import select
-from tests.conftest import b7206c
 from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
+from validation.tables import b7206c
 
 SPEED, SPIN, DIRECTION = "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.direction_deg"
 RADIANS = np.pi / 30.0

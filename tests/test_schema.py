@@ -10,8 +10,8 @@ from jsonschema import Draft202012Validator
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.file import load_scene
 from raceway.scene.schema import scene_schema
-from tests.command_line import EXAMPLES
-from tests.conftest import b7206c
+from validation.command_line import EXAMPLES
+from validation.tables import b7206c
 
 SCHEMA = scene_schema(default_registry())
 CHECK = Draft202012Validator(SCHEMA)
@@ -38,7 +38,7 @@ def test_every_installed_plug_in_has_a_branch_with_its_options():
 
 
 def test_a_third_party_plug_in_appears(tmp_path, monkeypatch):
-    from tests.command_line import install, law
+    from validation.command_line import install, law
 
     install(tmp_path, "elsewhere", law("elsewhere_law"))
     monkeypatch.syspath_prepend(tmp_path)

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from io import StringIO
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from rich.console import Console
 
-from benchmarks.evidence._crossed import Pair, _told, crossed
-from benchmarks.evidence._several import article, by_integration, heavy
-from benchmarks.evidence.several_motions import crossed_rows
 from raceway import scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.core.periodic import beginning, direct
 from raceway.core.ring.orbit import differentiation
 from raceway.errors import ConvergenceError
 from raceway.pipeline.run import run
-from raceway.pipeline.starting import _STICKS
+from validation.several import article, by_integration, heavy
 
 
 def solved(tables):
@@ -144,35 +140,6 @@ def test_with_friction_orbits_are_no_motions_of_the_scene():
     result = solved(tables)
     assert result.simulation.orbits == []
     assert any(text.startswith("without friction: 2 steady motions") for text in result.warnings)
-
-
-def _pair(apart, friction=0.0, told=False):
-    return Pair(1, friction, "newmark against newmark", apart, told)
-
-
-def test_the_cross_counts_what_is_apart_and_not_told():
-    """99 % without friction, 95 % with it; no error at all is none that holds."""
-
-    def holds(*pairs):
-        return [row.ok for row in crossed_rows(list(pairs)) if row.limit.startswith("at least")]
-
-    near, far = [_pair(1.0)] * 99, [_pair(1.0, 0.1)] * 95
-    assert holds(*near, _pair(4.0), *far, *[_pair(4.0, 0.1)] * 5) == [True, True]
-    assert holds(*near[:98], *[_pair(4.0)] * 2, *far[:94], *[_pair(4.0, 0.1)] * 6) == [False, False]
-    assert holds(*near, *[_pair(4.0, told=True)] * 2, *far, *[_pair(4.0, 0.1, told=True)] * 6) == [True, True]
-    assert holds(_pair(None), _pair(None, 0.3)) == [False, False]
-
-
-def test_with_friction_both_runs_of_a_crossed_scene_begin_differently():
-    rubbing = [pair for pair in map(crossed, range(60)) if pair[0]["contact"]["friction"] > 0.0]
-    assert {pair[0]["contact"]["friction"] for pair in rubbing} == {0.03, 0.1, 0.3}
-    assert all(pair[0]["integrator"]["start"] != pair[1]["integrator"]["start"] for pair in rubbing)
-
-
-def test_only_the_words_for_several_motions_tell_of_several():
-    one = "without friction: 2 steady motions that are not unstable exist"
-    assert _told(SimpleNamespace(warnings=("an orbit that is unstable",)), SimpleNamespace(warnings=(one,)))
-    assert not _told(SimpleNamespace(warnings=(_STICKS, "an orbit that is unstable")))
 
 
 def test_an_error_estimate_lets_no_force_grow_on_a_mesh_of_thousands_of_intervals(monkeypatch):

@@ -24,8 +24,8 @@ from raceway.studies.stability.own_force import axial_displacement
 from raceway.studies.stability.stored import axial_force
 from raceway.studies.stability.study import stability
 from raceway.studies.stability.systems import BASE, pair_laws, scene_at, transient
-from raceway.studies.stability.workers import in_parallel, rows_of
-from tests.command_line import ARTICLE, invoke
+from raceway.studies.stability.workers import measure, rows_of
+from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
 CUBIC = Path(__file__).with_name("cubic_law.py")
@@ -168,7 +168,8 @@ def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
     (row,) = rows_of(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
     cases = [case("hang"), case("die"), case("answer", value=1.05), case("answer", value=2.0)]
-    found = {(one.name, one.arguments.get("value")): rows for one, rows in in_parallel(cases, 2, (), patience=6.0)}
+    done, _ = measure(cases, 2, REGISTRY, patience=6.0)
+    found = {(one.name, one.arguments.get("value")): rows for one, rows in zip(cases, done, strict=True)}
     notes = {key: rows[0].note for key, rows in found.items()}
     assert "it hangs" in notes["hang", None] and "exit code 7" in notes["die", None]
     assert found["answer", 1.05][0].verdict == AS_EXPECTED and found["answer", 2.0][0].verdict == FAILED

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from raceway.studies.ross import file as ross_file
-from tests.command_line import invoke
+from validation.command_line import invoke
 
 SCENE = """
 title = "a small sweep"

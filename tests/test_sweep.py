@@ -27,13 +27,14 @@ from raceway.plugins.executors.serial import Serial
 from raceway.scene.file import scene_from_dict
 from raceway.studies.many.axes import parse_axes, points
 from raceway.studies.many.points import tables_at
+from raceway.studies.many.work import Work
 from raceway.studies.sweep import Design, design_file, grid, open_store, point_list, prepare
 from raceway.studies.sweep import sweep as study
 from raceway.studies.sweep.store import facts_digest, written
 from raceway.studies.sweep.variables import values_of
-from raceway.studies.sweep.work import Work
-from tests.command_line import ARTICLE, invoke
+from raceway.studies.sweep.work import Chain
 from tests.deadly_work import Deadly
+from validation.command_line import ARTICLE, invoke
 
 SCENE: dict[str, Any] = {
     "title": "test",
@@ -463,7 +464,7 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
         ({"numpy": "1.0", "program": "x"}, "instead of 1.0"),
         ({"program": "y"}, "under the same version"),
     ):  # fmt: skip
-        answer = Work(SCENE, {**wanted, **changed})([(0, {"load.axial": 500.0})])
+        answer = Work(Chain(SCENE, ""), (), {**wanted, **changed})([[(0, {"load.axial": 500.0})]])
         assert isinstance(answer, Refused) and words in answer.reason
 
     class Elsewhere(Serial):

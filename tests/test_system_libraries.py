@@ -5,7 +5,7 @@ import re
 import pytest
 
 from raceway.plugins.system_libraries import DEBIAN
-from tests.command_line import EXAMPLES, raceway
+from validation.command_line import EXAMPLES, raceway
 
 ROOT = EXAMPLES.parent
 #: What dlopen finds first, and cannot load: a file without content.

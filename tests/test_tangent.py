@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.evidence._scenes import settled
-from benchmarks.evidence.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 from raceway.core.ring.kernels.layout import DAMPING
+from validation.scenes import settled
+from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 
 CASES = cases()
 

@@ -15,9 +15,9 @@ from raceway.studies.many.page import Page
 from raceway.studies.many.row_store import row_key
 from raceway.studies.sweep.selection import select
 from raceway.studies.sweep.store_command import head
-from tests.command_line import EXAMPLES, invoke
-from tests.conftest import b7206c
 from tests.stores import SPEEDS, made
+from validation.command_line import EXAMPLES, invoke
+from validation.tables import b7206c
 
 SCENE = EXAMPLES / "b7206.toml"
 FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"

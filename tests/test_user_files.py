@@ -28,8 +28,8 @@ from raceway.storage.user_files import memory_for, told
 from raceway.studies.measured.recording import read_recording
 from raceway.studies.sweep import design
 from raceway.studies.sweep.design import point_list
-from tests.conftest import b7206c
-from tests.mesh.cubes import block
+from validation.cubes import block
+from validation.tables import b7206c
 
 BEARING = scene_from_dict(b7206c()).bearing
 

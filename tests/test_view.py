@@ -15,8 +15,8 @@ from raceway.plugins.reports.pictures import ball_loads
 from raceway.studies.view import surfaces
 from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.states import at_peak, at_rest, last_turn
-from tests.command_line import ARTICLE, MINIMAL, invoke, raceway
-from tests.conftest import b7206c
+from validation.command_line import ARTICLE, MINIMAL, invoke, raceway
+from validation.tables import b7206c
 
 STATIC = ("--set", "load.radial=[600.0, 0.0]")
 

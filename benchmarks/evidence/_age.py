@@ -1,9 +1,9 @@
 """Which reports are older than the code that they measure.
 
-A report carries a digest of the areas that it measures, of its own module, and of what that imports from ``benchmarks`` and
-``tests``.  What counts are definitions and statements, wherever they stand in those areas: comments, docstrings, line breaks,
-imports and the names of modules are no part of it.  A report whose digest is not that of the code is out of date: it is made again
-or, where that costs too much for now, stands with date and reason in ``docs/reports/older.toml``.
+A report carries a digest of the areas that it measures, of its own module, and of what that imports from ``benchmarks``,
+``validation`` and ``tests``.  What counts are definitions and statements, wherever they stand in those areas: comments,
+docstrings, line breaks, imports and the names of modules are no part of it.  A report whose digest is not that of the code is out
+of date: it is made again or, where that costs too much for now, stands with date and reason in ``docs/reports/older.toml``.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from benchmarks.evidence._areas import AREAS, MEASURES
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "raceway"
 LISTED = ROOT / "docs" / "reports" / "older.toml"
+#: Folders beside the package whose modules a report may be made with.
+FOLDERS = ("benchmarks", "validation", "tests")
 #: What every report is made with: no part of what a report measures.
 _RUNNER = {Path(__file__).with_name(name) for name in ("__init__.py", "_files.py", "_kept.py")}
 #: A module of the package in a text, as Python or a path names it.
@@ -120,7 +122,7 @@ class _Bare(ast.NodeTransformer):
 
 @cache
 def _imported(path: Path) -> frozenset[Path]:
-    """A module of ``benchmarks`` or ``tests`` with all of those folders that it imports, directly or not."""
+    """A module with all that it imports of ``FOLDERS``, directly or not."""
     found: set[Path] = set()
     waiting = [path]
     while waiting:
@@ -129,7 +131,7 @@ def _imported(path: Path) -> frozenset[Path]:
             continue
         found.add(path)
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] in ("benchmarks", "tests"):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] in FOLDERS:
                 base = ROOT.joinpath(*node.module.split("."))
                 candidates = [
                     base.with_suffix(".py"),

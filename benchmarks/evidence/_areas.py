@@ -20,8 +20,7 @@ AREAS = {
     "errors": "pipeline/error pipeline/plausibility",
     "condensed": """
         bodies/condensed bodies/patches core/condensed core/contact/half_space core/contact/sphere core/patches core/revolution/grooves
-        core/ring/kernels/between core/ring/kernels/condensed_inertial core/ring/kernels/condensed_tangential
-        core/ring/kernels/condensed_weightless core/ring/kernels/structural core/ring/kernels/structural_rows""",
+        core/ring/kernels/between core/ring/kernels/condensed core/ring/kernels/structural core/ring/kernels/structural_rows""",
     "revolution": "core/revolution storage/array_cache",
     "elastic": "bodies/elastic core/elastic core/ring/stepped core/stepping",
     "solids": "core/hexahedron core/linear core/ring/address",
@@ -40,7 +39,9 @@ AREAS = {
     "ross": "studies/ross",
     "shaft": "studies/shaft",
     "stability": "studies/stability",
-    "sweep": "framework/orphans plugins/executors studies/many/points studies/many/processes studies/many/row_store studies/sweep",
+    "sweep": """
+        framework/orphans plugins/executors studies/many/engine studies/many/identity studies/many/points studies/many/row_store
+        studies/many/work studies/sweep""",
     "verify": "data/cases studies/many/reference studies/verify",
     "pages": """
         data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture

@@ -45,7 +45,7 @@ def commit() -> str:
     """Short name of the commit, with "+ changes" where tracked sources differ from it."""
     try:
         name = _git("rev-parse", "--short", "HEAD")
-        changed = _git("status", "--porcelain", "--untracked-files=no", "--", "raceway", "tests", "benchmarks")
+        changed = _git("status", "--porcelain", "--untracked-files=no", "--", "raceway", "tests", "benchmarks", "validation")
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return f"{name} + changes" if changed else name

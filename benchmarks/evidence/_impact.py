@@ -23,7 +23,7 @@ from raceway.core.linear.statics import solve_static
 from raceway.core.mesh.ball_mesh import ball_mesh
 from raceway.core.mesh.hex_mesh import FACES
 from raceway.core.mesh.quarter import half_line
-from tests.reference.elastic import grid
+from validation.reference.elastic import grid
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 RADIUS, HEIGHT, HALF_WIDTH = 4.7625e-3, 8e-3, 8e-3

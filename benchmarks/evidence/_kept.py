@@ -45,7 +45,7 @@ def kept(report: str, parts: Iterable[Callable[..., list[Row]] | tuple[Any, ...]
 @cache
 def _sources() -> str:
     digest = hashlib.sha256()
-    for folder in ("raceway", "benchmarks", "tests"):
+    for folder in ("raceway", "benchmarks", "tests", "validation"):
         for path in sorted((ROOT / folder).rglob("*.py")):
             digest.update(path.relative_to(ROOT).as_posix().encode())
             digest.update(path.read_bytes())

@@ -11,7 +11,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-from benchmarks.evidence._scenes import model_of, rotating
 from raceway import scene_from_dict
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
@@ -28,6 +27,7 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
+from validation.scenes import model_of, rotating
 
 Tables = dict[str, Any]
 

@@ -45,7 +45,7 @@ def _small(inner: bool) -> Profile:
 
 def _full() -> list[Row]:
     """Against meshes swept into three dimensions, assembled by HexOperator.stiffness and factorised as they are."""
-    from tests.reference.swept import Swept
+    from validation.reference.swept import Swept
 
     typed, out = "pytest tests/revolution/test_compliance.py", []
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from benchmarks.evidence import Row, below, near
 from benchmarks.evidence._files import ROOT
-from benchmarks.evidence._scenes import model_of, rotating, settled
 from benchmarks.evidence.condensed_patches import NAMES, held_poles, solved_points
+from validation.scenes import model_of, rotating, settled
 
 TITLE = "Condensed bodies: the calibrated law"
 COMMAND = "python -m benchmarks.evidence condensed_calibrated"
@@ -214,7 +214,7 @@ from pathlib import Path
 from raceway.core.schemes.drivers import integrate
 from raceway.storage import array_cache
 array_cache.folder = lambda: Path(sys.argv[1])
-from benchmarks.evidence._scenes import settled
+from validation.scenes import settled
 from benchmarks.evidence.condensed_calibrated import peak_bytes, tables
 
 from raceway.bodies import compliances

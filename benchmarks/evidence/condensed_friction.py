@@ -24,8 +24,8 @@ def rows() -> list[Row]:
 def _mindlin() -> list[Row]:
     """One contact of 8 points along a semi-axis, pressed by 300 N and pulled along the groove."""
     from raceway.core.patches.friction import Friction
-    from tests.patches.single import single
-    from tests.reference.mindlin import Mindlin
+    from validation.reference.mindlin import Mindlin
+    from validation.single import single
 
     case = single(8, LOAD, shear=True)
     answer = case.at_load(LOAD)[1]

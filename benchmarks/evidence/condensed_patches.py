@@ -35,7 +35,7 @@ def rows() -> list[Row]:
 
 
 def _single() -> list[Row]:
-    from tests.patches.single import single
+    from validation.single import single
 
     out, typed = [], "pytest tests/patches/test_contact.py"
     for load, within in ((100.0, 0.01), (300.0, 0.01), (1000.0, 0.015)):

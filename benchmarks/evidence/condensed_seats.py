@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.evidence import Row, near
-from benchmarks.evidence._scenes import model_of, settled
 from benchmarks.evidence.condensed_calibrated import quantities, tables
 from raceway.core.revolution.body import seat_areas
+from validation.scenes import model_of, settled
 
 TITLE = "Condensed bodies: elastic seats"
 COMMAND = "python -m benchmarks.evidence condensed_seats"

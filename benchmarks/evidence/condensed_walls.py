@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from benchmarks.evidence import Row
-from benchmarks.evidence._scenes import settled
 from benchmarks.evidence.condensed_calibrated import quantities, tables
 from benchmarks.evidence.condensed_seats import NODAL
 from raceway.pipeline.error.contact import contact_error
+from validation.scenes import settled
 
 TITLE = "Condensed bodies: the calibration of contact resultants"
 COMMAND = "python -m benchmarks.evidence condensed_walls"

@@ -16,8 +16,8 @@ from raceway.errors import PluginError
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.serial import Serial
 from raceway.studies.sweep import sweep
-from tests.cluster import POINTS, START_S, Cluster, installed, prepared
-from tests.cluster import rows as rows_of
+from validation.cluster import POINTS, START_S, Cluster, installed, prepared
+from validation.cluster import rows as rows_of
 
 TITLE = "Sweeps on a dask scheduler: killed, unfit and silent partners"
 COMMAND = "python -m benchmarks.evidence dask"

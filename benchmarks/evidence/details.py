@@ -11,7 +11,7 @@ from raceway.bodies.meshing import mesh_scene
 from raceway.pipeline.run import run
 from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import radial_growth, ring_inertia
-from tests.reference.rotating_ring import growth_by_elements
+from validation.reference.rotating_ring import growth_by_elements
 
 TITLE = "Single numbers: pressure of a penalty, sticking, the inner ring as a solid, the elastic example"
 COMMAND = "python -m benchmarks.evidence details"

@@ -13,7 +13,7 @@ from benchmarks import calculix
 from benchmarks.evidence import Row, below, near
 from benchmarks.evidence._files import ROOT
 from benchmarks.evidence._kept import kept
-from benchmarks.groove import HERTZ, pressed, solve
+from validation.groove import HERTZ, pressed, solve
 
 TITLE = "Elastic bodies: statics"
 COMMAND = "python -m benchmarks.evidence elastic"

@@ -27,7 +27,7 @@ from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
-from tests.stepping.block import Block
+from validation.block import Block
 
 TITLE = "Elastic bodies in motion"
 COMMAND = "python -m benchmarks.evidence elastic_dynamics"
@@ -213,7 +213,7 @@ def _restart(ring: Any, start: Any, dt: float) -> list[Row]:
 def _rubbing(ring: Any) -> list[Row]:
     """Iterations to the static state with mu = 0.03 from the place of rigid bodies, against those without."""
     system = ring.bodies.system
-    place, places, _ = ring.companion.settle(ring.equilibrium[:5])
+    place, places, _ = ring.surrogate.settle(ring.equilibrium[:5])
     guess = ring.bodies.guess(place, places if places[:, 1].any() else ring._on_the_line(place, places))
     _, without = ring.settled(guess, ring.load)
     contact = system.contact

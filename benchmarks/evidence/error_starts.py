@@ -15,8 +15,6 @@ import attrs
 import numpy as np
 
 from benchmarks.evidence import Row
-from benchmarks.evidence._scenes import model_of, rotating
-from benchmarks.evidence.error_estimate import FACTOR, SMALL, right
 from raceway import scene_from_dict
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.signals.identification import stiffness
@@ -24,43 +22,15 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
+from validation.error_estimate import FACTOR, SMALL, right
+from validation.scenes import model_of, rotating
+from validation.series_errors import SERIES, series_errors
 
 TITLE = "Estimated against true error: series of equilibria, sudden and ramped starts"
 COMMAND = "python -m benchmarks.evidence error_starts"
 STARTS, SEED, SHARE = 390, 1, 0.99
 STEPS = (8, 9, 10, 11, 12, 13, 15, 16, 20, 24, 30, 36, 45, 48, 60, 61, 72, 90, 120, 127, 180, 240, 300, 359, 360)
-_TRUE_STEPS = 4999
 _CONFIRMED = 1e-3
-
-#: Axial load [N], amplitude of the force [N], its kind, tilt, radial load [N].
-SERIES: tuple[tuple[float, float, str, str, tuple[float, float]], ...] = (
-    (100.0, 2000.0, "unidirectional", "locked", (0.0, 0.0)),
-    (100.0, 2000.0, "unidirectional", "free", (0.0, 0.0)),
-    (400.0, 700.0, "bidirectional", "locked", (0.0, 0.0)),
-    (200.0, 1500.0, "bidirectional", "free", (0.0, 0.0)),
-    (1000.0, 1000.0, "unidirectional", "free", (0.0, 0.0)),
-    (50.0, 800.0, "bidirectional", "locked", (0.0, 0.0)),
-    (100.0, 1000.0, "unidirectional", "locked", (50.0, 80.0)),
-    (150.0, 900.0, "bidirectional", "free", (100.0, 30.0)),
-)
-
-
-def series(axial: float, force: float, kind: str, tilt: str, radial: tuple[float, float], steps: int) -> dict[str, Any]:
-    """A constant force in a series of equilibria."""
-    tables = rotating(axial, tilt, 12000.0, True, "quasi_static")
-    return {
-        **tables,
-        "load": {"axial": axial, "radial": list(radial)},
-        "excitation": {"kind": kind, "speed_rpm": 12000.0, "amplitude": "constant", "force": force},
-        "integrator": {"kind": "quasi_static", "steps_per_turn": steps},
-    }
-
-
-def series_errors(place: int, steps: int) -> tuple[float, float]:
-    """Estimated and true relative error of a series of ``SERIES``."""
-    found, true = (run(scene_from_dict(series(*SERIES[place], count))) for count in (steps, _TRUE_STEPS))
-    wanted = true.identification.dynamic_stiffness
-    return found.error["total"], abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
 
 
 @attrs.frozen

@@ -171,7 +171,7 @@ def _calculix() -> list[Row]:
     import tempfile
     from pathlib import Path
 
-    from tests.mesh.squeezed import squeezed
+    from validation.squeezed import squeezed
 
     out = []
     for formulation in ("one_point", "full", "incompatible"):

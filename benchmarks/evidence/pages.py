@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 from benchmarks.evidence import Row, below
 from raceway.cli import main
-from tests.browser.chromium import WIDTHS, Browser
-from tests.browser.pages import PAGES as CHEAP
+from validation.browser.chromium import WIDTHS, Browser
+from validation.browser.pages import PAGES as CHEAP
 
 TITLE = "Pages in headless chromium: whole, readable, without a network"
 PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "view"

@@ -9,17 +9,17 @@ from scipy.linalg import expm
 
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._orbits import ONE_WAY, Tables, apart, by_turns, methods, resonance, scene, solve_ms, solved
-from benchmarks.evidence._scenes import model_of, rig_force
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.integrators.periodic import Periodic
 from raceway.pipeline.settle import settle
 from raceway.scene.inner_ring import ring_inertia
 from raceway.testing.systems import SPEED, linear_system, motion
-from tests.reference.ring import Ring
-from tests.reference.shooting import periodic as shooting
-from tests.reference.shooting import rotating as turning
-from tests.reference.shooting import swinging
+from validation.reference.ring import Ring
+from validation.reference.shooting import periodic as shooting
+from validation.reference.shooting import rotating as turning
+from validation.reference.shooting import swinging
+from validation.scenes import model_of, rig_force
 
 TITLE = "The steady orbit solved for directly"
 COMMAND = "python -m benchmarks.evidence periodic"

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.evidence import Row, below
 from raceway.pipeline.run import run
 from raceway.scene.file import load_scene, scene_from_dict
-from tests.reference.mounted import FORCE, approach, axial, row, secant
+from validation.reference.mounted import FORCE, approach, axial, row, secant
 
 TITLE = "What the running speed changes: preload, held displacements, run-ups, fits over whirl speeds"
 MOUNTED = "python -m pytest tests/depth/test_mounting.py"

@@ -10,10 +10,10 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._crossed import Pair, compared
-from benchmarks.evidence._several import Tables, article, by_integration, heavy
 from raceway import scene_from_dict
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
+from validation.several import Tables, article, by_integration, heavy
 
 TITLE = "Several steady motions"
 COMMAND = "python -m benchmarks.evidence several_motions"

@@ -11,7 +11,7 @@ from benchmarks.evidence import Row, below
 from raceway.commands.frame import registry_with
 from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.study import stability
-from raceway.studies.stability.workers import in_parallel
+from raceway.studies.stability.workers import measure
 
 TITLE = "Stability: stiff and extreme cases"
 COMMAND = "raceway stability"
@@ -56,8 +56,9 @@ def _missed(rows: list[dict[str, Any]]) -> str:
 
 def _foreign() -> Row:
     """A conforming law that is unlike Hertz', through every case of contact laws."""
-    cases = [one for one in catalogue(registry_with([FOREIGN])) if one.arguments.get("shown", {}).get("law") == "cubic"]
-    found = [row for _, rows in in_parallel(cases, 2, [FOREIGN]) for row in rows]
+    registry = registry_with([FOREIGN])
+    cases = [one for one in catalogue(registry) if one.arguments.get("shown", {}).get("law") == "cubic"]
+    found = [row for rows in measure(cases, 2, registry, [FOREIGN])[0] for row in rows]
     failed = sum(row.verdict == "failed" for row in found)
     words = "rows that are not as expected of a foreign law, 2e17 N/m3 times the cube of the approach"
     return below(words, float(failed), 0.0, f"{COMMAND} --plugin tests/cubic_law.py", f"of {len(found)}, {len(cases)} cases")

@@ -13,7 +13,7 @@ from raceway.core.linear.natural_modes import natural_modes
 from raceway.core.linear.statics import solve_static
 from raceway.core.mesh.quality import quality
 from raceway.plugins.meshers.structured import Structured
-from tests.reference import annulus, elastic
+from validation.reference import annulus, elastic
 
 TITLE = "Static solver and natural frequencies"
 COMMAND = "python -m benchmarks.evidence statics"

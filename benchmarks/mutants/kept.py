@@ -52,7 +52,9 @@ def _key(fault: Fault) -> str:
 def _shared() -> str:
     """Of the package, and of what is no test in ``tests`` and ``benchmarks``, less what only makes the trials."""
     digest = hashlib.sha256()
-    for path in [path for name in ("raceway", "tests", "benchmarks") for path in sorted((ROOT / name).rglob("*.py"))]:
+    for path in [
+        path for name in ("raceway", "tests", "benchmarks", "validation") for path in sorted((ROOT / name).rglob("*.py"))
+    ]:
         if not path.name.startswith("test_") and path.parent != Path(__file__).parent:
             digest.update(path.relative_to(ROOT).as_posix().encode())
             digest.update(path.read_bytes())

@@ -20,7 +20,18 @@ from benchmarks.mutants.kernels import carry_over
 #: Time for the tests of one fault [s]: none takes a tenth of it without a fault.
 LIMIT_S = 600.0
 #: What the tests need of the sources.
-COPIED = ("raceway", "tests", "benchmarks", "examples", "docs", "README.md", "CHANGELOG.md", "pyproject.toml", "Makefile")
+COPIED = (
+    "raceway",
+    "tests",
+    "benchmarks",
+    "validation",
+    "examples",
+    "docs",
+    "README.md",
+    "CHANGELOG.md",
+    "pyproject.toml",
+    "Makefile",
+)
 _FAILED = 1
 
 

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis
-from raceway.bodies.grooves import beyond_the_groove, contact_angles, refuse_impossible_ellipses
+from raceway.bodies.grooves import beyond_the_groove, contact_angles, ellipse_ends, groove_edge, refuse_impossible_ellipses
 from raceway.bodies.pressure import contact_ellipse
-from raceway.core.ring.system import System
+from raceway.core.ring.friction import friction_energy
+from raceway.core.ring.orbit import Orbit
+from raceway.core.ring.ring import Ring
+from raceway.core.ring.start import at_rest, from_orbit, static_orbit
+from raceway.core.stepping.record import Motion, Record
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -33,15 +38,18 @@ class Bearing(ABC):
     """
 
     basis: Basis
-    system: System
+    system: Ring
     guess: np.ndarray
 
-    def settle(self, near: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, int]:
+    def settle(
+        self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
+    ) -> tuple[np.ndarray, np.ndarray, int]:
         """Displacement (5,), balls (Z, k) and iterations at the equilibrium under the constant loads.
 
         Parameters
         ----------
-        near : (5,) equilibrium of a similar bearing, for bodies whose equilibria take long
+        near : (5,) equilibrium of a similar bearing;  on_residual : called with the residual of each iteration; both for bodies
+            whose equilibria take long
 
         Raises
         ------
@@ -50,8 +58,29 @@ class Bearing(ABC):
         """
         return self.system.settle(self.guess)
 
+    def orbiting(self, system: Ring) -> Ring:
+        """The ring whose steady orbit a motion may start on: without friction, its balls at their azimuths."""
+        return system.at_standstill()
+
+    def on_orbit(self, system: Ring, orbit: Orbit, dt: float) -> Motion:
+        """The start on a steady orbit, moving with it."""
+        return from_orbit(system, orbit, dt)
+
+    def at_rest(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+        """The start at rest in an equilibrium; without a ramp the excitation acts at once."""
+        return at_rest(system, q, ball, ramped)
+
+    def at_equilibrium(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+        """The start of a series of equilibria, without a ramp under the excitation's force at time zero."""
+        return static_orbit(system, q, ball, ramped)
+
+    def friction_lost(self, system: Ring, record: Record) -> float:
+        """Energy that friction has taken at the end of a record [J]."""
+        compiled = system.compiled
+        return 0.0 if compiled is None else float(friction_energy(compiled, record).lost[-1])
+
     @property
-    def foreseen(self) -> System | None:
+    def foreseen(self) -> Ring | None:
         """A system that shows in milliseconds what nothing holds; None where the own equilibrium does."""
         return None
 
@@ -65,9 +94,12 @@ class Bearing(ABC):
         return balls != "weightless"
 
     def contact_angles(
-        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Inner and outer contact angles (Z,) [rad] under contact forces (2 Z,); nan where a contact carries nothing."""
+        """Inner and outer contact angles (Z,) [rad] under contact forces (2 Z,); nan where a contact carries nothing.
+
+        Of several states (n, 5), (n, Z, k), (n, 2 Z) at times (n,): (n, Z).
+        """
         return contact_angles(model, q, ball, force, t)
 
     def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -87,6 +119,11 @@ class Bearing(ABC):
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
         """A sentence for each race whose contacts run over its edge; angles (Z,), forces (2 Z,)."""
         return beyond_the_groove(model, inner, outer, force)
+
+    def over_edges(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """(n,) whether any contact of a state may run over its edge; angles (n, Z), forces (n, 2 Z)."""
+        ends = ellipse_ends(model, inner, outer, force)
+        return np.asarray(np.logical_or(*(end > groove_edge(model) for end in ends)).any(axis=-1))
 
     @property
     def largest_motion(self) -> float:

@@ -14,31 +14,28 @@ if TYPE_CHECKING:
 
 
 def contact_angles(
-    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing."""
+    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing.  Of several states: (n, Z)."""
     z = model.system.ball_count
-    axial, radial = model.system.centre_vectors(q, t, ball)[0].T
+    centre = model.system.centre_vectors(q, t, ball)[0]
+    axial, radial = centre[..., 0], centre[..., 1]
     if not model.bearing.has_places(model.plan.balls):
         inner = outer = np.arctan2(axial, radial)
     else:
-        inner = np.arctan2(axial - ball[:, 0], radial - ball[:, 1])
-        outer = np.arctan2(ball[:, 0], ball[:, 1])
-    return np.where(force[:z] > 0, inner, np.nan), np.where(force[z:] > 0, outer, np.nan)
+        inner = np.arctan2(axial - ball[..., 0], radial - ball[..., 1])
+        outer = np.arctan2(ball[..., 0], ball[..., 1])
+    return np.where(force[..., :z] > 0, inner, np.nan), np.where(force[..., z:] > 0, outer, np.nan)
 
 
 def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
     """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
-    z, d = model.system.ball_count, model.geometry.ball_diameter
+    d, depth, edge = model.geometry.ball_diameter, shoulder_height(model.scene), groove_edge(model)
     found = []
-    depth = shoulder_height(model.scene)
-    edge = np.arccos(1.0 - depth / (0.5 * d))
-    for race, ellipse, angle, load in (
-        ("inner", model.inner, inner, force[:z]),
-        ("outer", model.outer, outer, force[z:]),
+    overs = ellipse_ends(model, inner, outer, force)
+    for race, ellipse, angle, over in zip(
+        ("inner", "outer"), (model.inner, model.outer), (inner, outer), overs, strict=True
     ):
-        half = ellipse.semi_axes(load)[0] / (0.5 * d)
-        over = np.abs(angle) + half
         reach = np.nanmax(over, initial=0.0)
         if reach > edge:
             begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
@@ -49,6 +46,20 @@ def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force:
                 f"contact angle from {begins:.3g} N a ball"
             )
     return found
+
+
+def groove_edge(model: Model) -> float:
+    """Angle from the groove's bottom to its edge, seen from the ball's centre [rad]."""
+    return float(np.arccos(1.0 - shoulder_height(model.scene) / (0.5 * model.geometry.ball_diameter)))
+
+
+def ellipse_ends(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Angle (..., Z) of the far end of each contact ellipse, inner and outer; angles (..., Z), forces (..., 2 Z)."""
+    z, radius = model.system.ball_count, 0.5 * model.geometry.ball_diameter
+    return (
+        np.abs(inner) + model.inner.semi_axes(force[..., :z])[0] / radius,
+        np.abs(outer) + model.outer.semi_axes(force[..., z:])[0] / radius,
+    )
 
 
 def refuse_impossible_ellipses(model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:

@@ -1,4 +1,4 @@
-"""What a scene's mesh will be: its size predicted, and what is wrong with it.  Nothing is meshed."""
+"""Predicted size of a scene's mesh, and its mistakes.  Nothing is meshed."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
 
 
 def _prediction(scene: Scene) -> Prediction | None:
-    """What the mesher's ``predict`` says, if it has one; refused where it would not fit."""
+    """Prediction by the mesher's ``predict``, if it has one; refused where it would not fit."""
     mesher = scene_mesher(scene)
     if not hasattr(mesher, "predict"):
         return None

@@ -11,7 +11,7 @@ from raceway.bodies.basis import Basis
 from raceway.bodies.bearing import Bearing
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.ring.system import System
+from raceway.core.ring.ring import Ring
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.planning.plan import Plan
@@ -30,7 +30,7 @@ class Model:
     scene: Scene
     plan: Plan
     bearing: Bearing
-    system: System
+    system: Ring
 
     @property
     def basis(self) -> Basis:

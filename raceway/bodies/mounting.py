@@ -5,7 +5,7 @@ Both are set at standstill, before anything has grown; speed and temperature the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
 import numpy as np
@@ -13,7 +13,7 @@ import numpy as np
 from raceway.bodies.basis import Basis, first_guess
 from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.system import System
+from raceway.core.ring.ring import Ring, Spin
 from raceway.errors import ConvergenceError
 from raceway.planning.recording import turns_of
 from raceway.scene.inner_ring import radial_growth
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
 
+R = TypeVar("R", bound=Ring)
 #: The force of a spring is met to this part of the preload.
 _TOLERANCE = 1e-9
 #: First step of the search for a sprung ring's place, over the distance of the groove centres; steps of that search.
@@ -31,7 +32,7 @@ _STEP, _LIMIT = 0.01, 60
 _SAMPLES, _SPEEDS = 1001, 17
 
 
-def place_ring(scene: Scene, basis: Basis, system: System) -> np.ndarray:
+def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a pair into the system, finds a held axial displacement."""
     guess = first_guess(scene, basis)
     growth, geometry = radial_growth(scene), basis.geometry
@@ -53,28 +54,26 @@ def place_ring(scene: Scene, basis: Basis, system: System) -> np.ndarray:
     return guess
 
 
-def _under(system: System, axial: float) -> System:
+def _under(system: R, axial: float) -> R:
     """The system under an axial load alone, the other coordinates held."""
     one = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
     return attrs.evolve(system, load=axial * one, free=one)
 
 
-def _row(system: System, index: int, balls: int, facing: bool = False) -> System:
+def _row(system: R, index: int, balls: int, facing: bool = False) -> R:
     """One row of a system; ``facing``: as a single bearing in its own plane, not preloaded, which positive axial motions seat."""
     chosen = slice(index * balls, (index + 1) * balls)
-    z = system.ball_count
     table = system.table[chosen].copy()
     if facing:
         table[:, [ring.SIDE, ring.LEVER, ring.SHIFT]] = 1.0, 0.0, 0.0
-    both = np.r_[index * balls : (index + 1) * balls, z + index * balls : z + (index + 1) * balls]
-    params = np.ascontiguousarray(system.law_params[both])
-    return attrs.evolve(system, table=table, law_params=params, law_state=system.law_state[both].copy())
+    return system.of_balls(chosen, table)
 
 
-def _follow_speed(scene: Scene, basis: Basis, system: System, spin: ChangingSpeed, guess: np.ndarray) -> ChangingSpeed:
+def _follow_speed(scene: Scene, basis: Basis, system: Ring, spin: Spin, guess: np.ndarray) -> Spin:
     """The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds."""
     from scipy.interpolate import CubicSpline
 
+    assert isinstance(spin, ChangingSpeed)
     spin = attrs.evolve(spin, shift=None)
     duration = turns_of(scene) / scene.excitation.frequency_hz
     met = spin.speed(np.linspace(0.0, duration, _SAMPLES))
@@ -87,7 +86,7 @@ def _follow_speed(scene: Scene, basis: Basis, system: System, spin: ChangingSpee
     return attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
 
 
-def _follow_spring(scene: Scene, basis: Basis, system: System, guess: np.ndarray) -> np.ndarray:
+def _follow_spring(scene: Scene, basis: Basis, system: Ring, guess: np.ndarray) -> np.ndarray:
     """(5,) equilibrium at which the second row carries the spring's force; builds that row's place into the system.
 
     Notes

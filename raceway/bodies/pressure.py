@@ -22,7 +22,7 @@ def law_of_pair(model: Model, race: int, approach: np.ndarray) -> tuple[np.ndarr
     ----------
     approach : (n,) [m]
     """
-    system, n = model.system, len(approach)
+    system, n = model.system.surrogate, len(approach)
     row = race * system.ball_count
     params, state = (np.repeat(each[row : row + 1], n, axis=0) for each in (system.law_params, system.law_state))
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)

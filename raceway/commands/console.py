@@ -1,4 +1,4 @@
-"""How the command line ends: one message for each thing that can go wrong, and the exit code.
+"""Messages and exit codes: one message for each thing that can go wrong.
 
 0 success, 1 a numerical failure, 2 the user's mistake; 130, 143, 129 stopped by Ctrl-C, SIGTERM, SIGHUP.  Part of ``raceway.cli``, which alone
 may print and exit.

@@ -1,4 +1,4 @@
-"""What a run that failed leaves: the reason, the scene and the last good arrays."""
+"""Files of a run that failed: the reason, the scene and the last good arrays."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
-"""What commands share: options, progress, writing and showing results.  Part of ``raceway.cli``."""
+"""Options, progress, writing and showing of results, shared by all commands.  Part of ``raceway.cli``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -119,7 +120,12 @@ def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Calla
         raise failed
 
 
-def tell_kept(what: str, file: Path) -> None:
-    """Where a study that was stopped goes on, if anything was finished."""
-    if file.is_file():
-        warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")
+@contextmanager
+def keeping(what: str, file: Path) -> Iterator[None]:
+    """Say where a study goes on that is stopped meanwhile, if anything was finished."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if file.is_file():
+            warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")
+        raise

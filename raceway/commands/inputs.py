@@ -1,4 +1,4 @@
-"""What commands start from: scenes, result folders, plug-ins.  Part of ``raceway.cli``."""
+"""Inputs of commands: scenes, result folders, plug-ins.  Part of ``raceway.cli``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a person sees of plug-ins: what is installed, whether it conforms, what was written.  Prints nothing by itself."""
+"""Tables of plug-ins: what is installed, whether it conforms, what was written.  Prints nothing by itself."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
+
+from raceway.framework.contracts import plural
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Entry
@@ -44,7 +46,7 @@ def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:
 def plugins_screen(rows: Sequence[Mapping[str, Any]]) -> RenderableType:
     parts: list[RenderableType] = []
     for kind in dict.fromkeys(row["kind"] for row in rows):
-        parts.append(Text(kind.replace("_", " ") + "s", style="bold"))
+        parts.append(Text(plural(kind), style="bold"))
         for row in (r for r in rows if r["kind"] == kind):
             table = Table.grid(padding=(0, 2))
             table.add_column(min_width=20, no_wrap=True)

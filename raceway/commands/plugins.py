@@ -85,7 +85,7 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
 def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
     """Write an installable package with a plug-in of a KIND that runs and passes its own tests at once.
 
-    KIND: contact_law, excitation, integrator, identifier, mesher, format, report or executor.
+    KIND: contact_law, excitation, integrator, identifier, mesher, format, report, executor or study.
 
     \b
     Example:

@@ -1,4 +1,10 @@
-"""Built-in contact laws, one a file."""
+"""Built-in contact laws, one a file.
+
+hertz        exact elliptic Hertz contact
+penalty      pressure in proportion to penetration, at surface points or integrated over the overlap ellipse
+unilateral   no penetration: an active set at surface points
+stiffness    penalty stiffness from a share of Hertz's approach
+"""
 
 from __future__ import annotations
 

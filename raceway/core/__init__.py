@@ -1,15 +1,19 @@
 """Numerics only: arrays in, arrays out.
 
-jit           the one decorator for compiled kernels, and their cache on disk
-signatures    the types of every kernel that is passed as a function pointer
-hertz         exact elliptic Hertz contact
-half_space    a half-space under normal forces;  sphere: an elastic ball beyond Hertz
-geometry      groove curvatures, groove centres, cage speed
-contact       what the core adds to every law: damping, the energy stored in a contact
-dense         5x5 linear algebra without allocation
-bodies        the rigid bearing as a compiled system, and a one-contact impact
-system        the arrays and kernels of one model, ready for an integrator
-equilibrium   the static state by a trust region on the total potential
-orbit         the periodic orbit by Fourier collocation, used to start transients
-contact_laws, excitations, integrators   the compiled parts of the plug-ins, file by file under their names
+jit            the one decorator for compiled kernels
+signatures     types of the kernels that are passed as function pointers
+kernel         linear algebra inside kernels; inspection of foreign kernels
+contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping
+contact_laws, excitations   compiled kernels of the built-in plug-ins
+ring           the compiled bearing: five coordinates of the inner ring, balls condensed out; time loops
+stepping       time integration of systems that are stepped from Python; records
+periodic       steady motions by collocation and continuation, with their Floquet multipliers
+signals        dynamic stiffness from the spectral lines of a motion
+mesh           hexahedral meshes of rings and balls
+hexahedron     the eight-node hexahedron
+linear         static and free linear elasticity: multigrid, natural frequencies
+revolution     compliances of bodies of revolution, harmonic by harmonic
+condensed      structural compliances behind contact resultants
+patches        pressures at surface points on condensed bodies
+elastic        bodies whose every node is a degree of freedom, in contact
 """

@@ -10,15 +10,21 @@ as they were found.
 
 from __future__ import annotations
 
+import gc
+import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core.caching import NullCache
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import CPUDispatcher
 
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.cache_folder import current_folder
@@ -74,6 +80,18 @@ def _warn_incomplete(place: Path, why: str) -> None:
 
 
 @contextmanager
+def _collector_off() -> Iterator[None]:
+    """Python's search for cycles among the millions of small objects that numba makes takes a tenth of its time."""
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if before:
+            gc.enable()
+
+
+@contextmanager
 def _numba_cache_in(folder: Path) -> Iterator[None]:
     config: Any = numba.config
     before = config.CACHE_DIR
@@ -84,10 +102,137 @@ def _numba_cache_in(folder: Path) -> Iterator[None]:
         config.CACHE_DIR = before
 
 
+_Dispatcher: Any = CPUDispatcher  # numba types a part of it only
+
+
+class Kernel(_Dispatcher):
+    """A function that is compiled for its one signature, or read from the cache, at its first use.
+
+    That is a call from Python, its address being taken, or the compiling of a kernel that calls it.
+
+    Attributes
+    ----------
+    signature : the numba signature
+    """
+
+    def __init__(self, function: Callable[..., Any], signature: Any, options: dict[str, Any]) -> None:
+        super().__init__(function, targetoptions=options)
+        self.signature = signature
+
+    def compile(self, sig: Any = None) -> Any:
+        """The machine code's entry point, for ``signature`` whatever is asked for; numba's own calls come here, too."""
+        with global_compiler_lock:  # numba's, not one of our own: kernels of others may call this one
+            if self._can_compile:
+                with _collector_off():
+                    self._make()
+        return self.overloads[tuple(self.signature.args)].entry_point
+
+    @property
+    def nopython_signatures(self) -> list[Any]:
+        self.compile()
+        return list(super().nopython_signatures)
+
+    def get_compile_result(self, sig: Any) -> Any:
+        self.compile()
+        return super().get_compile_result(sig)
+
+    def _compile_for_args(self, *_arguments: Any, **_named: Any) -> Any:
+        """What numba calls next with the arguments of a first call: this, which checks their types."""
+        self.compile()
+        return self
+
+    def __reduce__(self) -> Any:
+        """By name, uncompiled, where it has one: a cached kernel made around it is found again by this."""
+        module, name = self.py_func.__module__, self.py_func.__qualname__
+        if getattr(sys.modules.get(module), name, None) is self:
+            return _named, (module, name)
+        return super().__reduce__()
+
+    def _reduce_states(self) -> dict[str, Any]:
+        return {"function": self.py_func, "signature": self.signature, "options": self.targetoptions, "uuid": self._uuid}
+
+    @classmethod
+    def _rebuild(cls, function: Any, signature: Any, options: Any, uuid: str) -> Any:
+        found = cls._memo.get(uuid)
+        if found is None:
+            found = cls(function, signature, options)
+            found._set_uuid(uuid)
+        return found
+
+    def _make(self) -> None:
+        function, billed = self.py_func, clock["compile_s"] + clock["load_s"]
+        start, processor, processor_billed = time.perf_counter(), time.thread_time(), clock["compile_processor_s"]
+        try:
+            self._through_cache()
+        except (numba.core.errors.NumbaError, TypeError) as why:  # TypeError: another number of arguments
+            code = function.__code__
+            raise PluginError(
+                f"kernel `{function.__qualname__}` ({Path(code.co_filename).name}, line {code.co_firstlineno}) does not "
+                f"compile for the signature {signature_words(self.signature)}: {self._reason(why)}"
+            ) from why
+        self.disable_compile()
+        hit = sum(self.stats.cache_hits.values()) > 0
+        # Kernels that this one calls were compiled meanwhile, and have told their own seconds.
+        clock["load_s" if hit else "compile_s"] += (
+            time.perf_counter() - start - (clock["compile_s"] + clock["load_s"] - billed)
+        )
+        if not hit:
+            clock["compile_processor_s"] = processor_billed + time.thread_time() - processor
+        clock["loaded" if hit else "compiled"] += 1
+
+    def _through_cache(self) -> None:
+        folder = kernel_folder()
+        if folder is None:
+            super().compile(self.signature)
+            return
+        for attempt in (1, 2):
+            files: FilesOfKernel | None = None
+            try:
+                with _numba_cache_in(folder.path):
+                    self.enable_caching()
+                    files = FilesOfKernel(self.py_func, Path(self.stats.cache_path))
+                    files.discard_damaged()
+                    super().compile(self.signature)
+                if not self.stats.cache_hits:
+                    files.note_digests()
+                    if folder.unwritable:
+                        _warn_incomplete(current_folder(), folder.unwritable)
+                return
+            except (numba.core.errors.NumbaError, TypeError, RacewayError):
+                raise
+            except Exception as why:  # a full disk, or a damaged file: reading one may raise anything
+                if files is not None:
+                    files.discard()
+                if attempt == 2 or self.overloads:
+                    warnings.warn(
+                        f"the kernel cache in {folder.path} did not serve `{self.py_func.__qualname__}` ({why}); compiled in "
+                        "memory",
+                        RuntimeWarning,
+                        stacklevel=3,
+                    )
+        self._cache = NullCache()
+        super().compile(self.signature)
+
+    def _reason(self, why: Exception) -> str:
+        """The telling line of numba's report: not the name of the compiler pass, not the empty ones."""
+        if "_nrt" in self.targetoptions:
+            try:
+                numba.njit(self.signature, error_model="numpy")(self.py_func)
+                return "it creates arrays, which no kernel may; use the arrays that it is given, or scalars"
+            except (numba.core.errors.NumbaError, TypeError):
+                pass
+        lines = [line.strip() for line in str(why).splitlines() if line.strip()]
+        return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
+
+
+def _named(module: str, name: str) -> Any:
+    return getattr(import_module(module), name)
+
+
 def jit(
     signature: Any, allocates: bool = False, inline: bool = False, releases: bool = False
-) -> Callable[[Callable[..., Any]], Any]:
-    """Compile a kernel for one explicit signature, now, through the cache.
+) -> Callable[[Callable[..., Any]], Kernel]:
+    """Make a function a kernel of one explicit signature, compiled at its first use, through the cache.
 
     Parameters
     ----------
@@ -100,41 +245,22 @@ def jit(
         For the parts of an element's arithmetic: a loop that calls is not vectorised.
     releases : whether the kernel lets other Python threads run meanwhile
 
-    Raises
-    ------
-    PluginError
-        When numba cannot compile the function for that signature; the message names function and file.
-
     Notes
     -----
+    A function that numba cannot compile for the signature raises ``PluginError`` at its first use; the message names
+    function and file.
+
     Division by zero gives an infinity or NaN, as in numpy, and is not an exception: an exception cannot leave a function
     pointer, and its check keeps loops from being vectorised.
     """
-    options: dict[str, Any] = {"error_model": "numpy"}
+    options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
     if not allocates and hasattr(numba.core.registry.cpu_target.options, "_nrt"):  # an option that numba does not promise
         options["_nrt"] = False
     if inline:
         options["forceinline"] = True
     if releases:
         options["nogil"] = True
-
-    def decorate(function: Callable[..., Any]) -> Any:
-        start, processor = time.perf_counter(), time.thread_time()
-        try:
-            kernel = _compile(function, signature, options)
-        except (numba.core.errors.NumbaError, TypeError) as why:  # TypeError: another number of arguments
-            code = function.__code__
-            raise PluginError(
-                f"kernel `{function.__qualname__}` ({Path(code.co_filename).name}, line {code.co_firstlineno}) does "
-                f"not compile for the signature {signature_words(signature)}: {_reason(why, function, signature, options)}"
-            ) from why
-        hit = sum(kernel.stats.cache_hits.values()) > 0
-        clock["load_s" if hit else "compile_s"] += time.perf_counter() - start
-        clock["compile_processor_s"] += 0.0 if hit else time.thread_time() - processor
-        clock["loaded" if hit else "compiled"] += 1
-        return kernel
-
-    return decorate
+    return lambda function: Kernel(function, signature, options)
 
 
 def signature_words(signature: Any) -> str:
@@ -147,54 +273,3 @@ def signature_words(signature: Any) -> str:
         return f"{kind.dtype}[{', '.join([':'] * (kind.ndim - 1) + [last])}]"
 
     return f"{signature.return_type}({', '.join(word(kind) for kind in signature.args)})"
-
-
-def _reason(why: Exception, function: Callable[..., Any], signature: Any, options: dict[str, Any]) -> str:
-    """The telling line of numba's report: not the name of the compiler pass, not the empty ones."""
-    if "_nrt" in options:
-        try:
-            numba.njit(signature, error_model="numpy")(function)
-            return "it creates arrays, which no kernel may; use the arrays that it is given, or scalars"
-        except (numba.core.errors.NumbaError, TypeError):
-            pass
-    lines = [line.strip() for line in str(why).splitlines() if line.strip()]
-    return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
-
-
-def _compile(function: Callable[..., Any], signature: Any, options: dict[str, Any]) -> Any:
-    folder = kernel_folder()
-    if folder is None:
-        return numba.njit(signature, **options)(function)
-    files: FilesOfKernel | None = None
-    for attempt in (1, 2):
-        try:
-            with _numba_cache_in(folder.path):
-                if files is None:
-                    files = FilesOfKernel(function, _place_of(function, options))
-                    files.discard_damaged()
-                kernel = numba.njit(signature, cache=True, **options)(function)
-            if not kernel.stats.cache_hits:
-                files.note_digests()
-                if folder.unwritable:
-                    _warn_incomplete(current_folder(), folder.unwritable)
-            return kernel
-        except (numba.core.errors.NumbaError, TypeError):
-            raise
-        except Exception as why:  # a full disk, or a damaged file: reading one may raise anything
-            if attempt == 1 and files is not None:
-                files.discard()
-                continue
-            warnings.warn(
-                f"the kernel cache in {folder.path} did not serve `{function.__qualname__}` ({why}); compiled in memory",
-                RuntimeWarning,
-                stacklevel=3,
-            )
-            break
-    return numba.njit(signature, **options)(function)
-
-
-def _place_of(function: Callable[..., Any], options: dict[str, Any]) -> Path:
-    """The folder that numba chooses for a function's files; it exists then."""
-    dispatcher = numba.njit(**options)(function)
-    dispatcher.enable_caching()
-    return Path(dispatcher.stats.cache_path)

@@ -1,1 +1,10 @@
-"""TODO."""
+"""Kinds of plug-ins, and how they are found.
+
+contracts   duties of each kind, numbered
+hookspecs   hooks that a plug-in may implement
+options     attrs fields with unit, help and rule
+registry    plug-ins by kind and name
+sources     entry points and one-off files
+probe       trial calls of a plug-in's kernel before a run
+orphans     end of worker processes
+"""

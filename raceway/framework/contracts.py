@@ -1,4 +1,4 @@
-"""What a plug-in of each kind must do, as numbered duties.
+"""Contracts of plug-ins: the duties of each kind, numbered.
 
 A plug-in is a frozen attrs class: its fields are its options (declared with ``raceway.framework.options.option``), its class
 attribute ``name`` is the word that a scene writes as ``kind``.  The class is light; ``kernel()`` imports what is
@@ -47,7 +47,7 @@ class ContactLaw(Protocol):
 
 @attrs.frozen(eq=False)
 class ContactPairs:
-    """What a law may know of its contacts; arrays (n,), inner races first, then outer.
+    """Contacts as a law sees them; arrays (n,), inner races first, then outer.
 
     Attributes
     ----------
@@ -199,7 +199,7 @@ class Report(Protocol):
     def write(self, result: Any, folder: Any) -> list[Any]: ...
 
 
-#: A batch of a sweep: its number, and the points in it as plain values.
+#: A batch of a study: its number, and what is computed in it as plain values.
 Batch = tuple[int, list[Any]]
 
 
@@ -219,14 +219,14 @@ class Lost:
 
 
 class Executor(Protocol):
-    """Where the points of a sweep are computed: in this process, in others, on other machines.
+    """Where the runs of a study are computed: in this process, in others, on other machines.
 
     1. ``compute(work, batches)`` yields ``(number, answer)`` for every ``(number, points)`` of ``batches``, each as soon as
        it is there, in any order; ``answer`` is what ``work(points)`` returned.
     2. ``work`` can be pickled and called anywhere; it answers for numerical failures itself, and what else it raises passes
        through.  ``work.fault()`` says in words why the process that it is called in is not fit for it, or None; such a
        process answers ``Refused``, which an executor with other workers may give to those and else passes on.
-    3. ``batches`` is an iterable that is taken from as workers get free, a few for each of them: sweeps are long.
+    3. ``batches`` is an iterable that is taken from as workers get free, a few for each of them: studies are long.
     4. A batch whose worker died is computed again; one that is given up is answered with ``Lost``.
     5. Closing the iterator (Ctrl-C, an error) stops what is in flight and leaves no process behind.
     6. Options ``workers`` and ``scheduler``, if there are any, are what ``raceway sweep --workers --scheduler`` give.
@@ -302,6 +302,21 @@ class BodiesKind(Protocol):
     def build(self, scene: Any, plan: Any) -> Any: ...
 
 
+class Study(Protocol):
+    """Many runs made into one answer: the command ``raceway study NAME``.
+
+    1. ``help``: what it is about, one line.
+    2. ``command()``: a ``click.Command`` whose name is ``name``, with ``--json``; it is imported here, and numba, scipy or
+       matplotlib not before it runs.  It returns its exit code: 0, or 1 where numbers failed.
+    3. Mistakes are ``RacewayError``; Ctrl-C passes through.  ``raceway.studies.many.engine`` keeps what is finished.
+    """
+
+    name: ClassVar[str]
+    help: ClassVar[str]
+
+    def command(self) -> Any: ...
+
+
 #: kind -> (registration hook, what a class of that kind must have)
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "contact_law": (
@@ -319,11 +334,20 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "bodies": ("raceway_bodies", ("faults", "traits", "stable_step", "decide", "unused", "cost", "build")),
     "report": ("raceway_reports", ("write",)),
     "executor": ("raceway_executors", ("compute",)),
+    "study": ("raceway_studies", ("help", "command")),
 }
 
 
+def plural(kind: str) -> str:
+    """A kind of plug-ins in words: "contact laws"."""
+    words = kind.replace("_", " ")
+    if words.endswith("s"):
+        return words
+    return f"{words.removesuffix('y')}ies" if words.endswith("y") else f"{words}s"
+
+
 def broken_duties(kind: str, plugin: Any) -> list[str]:
-    """What keeps a class from being a plug-in of a kind; empty when nothing does."""
+    """Duties of a kind that a class breaks; empty when it is a plug-in."""
     if not isinstance(plugin, type):
         return [f"{plugin!r} is not a class"]
     faults = []

@@ -57,6 +57,11 @@ def raceway_executors() -> list[type]:  # type: ignore[empty-body]
 
 
 @hookspec
+def raceway_studies() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Study``."""
+
+
+@hookspec
 def raceway_plan_made(plan: Any) -> None:
     """A plan is ready; nothing has been built yet."""
 

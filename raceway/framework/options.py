@@ -1,4 +1,4 @@
-"""How options are declared: attrs fields that carry a unit, a help text and a rule with a remedy.
+"""Declaration of options: attrs fields that carry a unit, a help text and a rule with a remedy.
 
 Scene tables and plug-ins' classes use the same few functions, so that checking, the JSON schema and ``--help`` all read
 one declaration.  A rule raises ``ValueError`` with the whole sentence that the user will see.

@@ -41,10 +41,12 @@ def check_compiled(kernel: Any, label: str, signature: Any, name: str) -> None:
         It is not compiled, or for other arguments.
     """
     remedy = f"decorate it with @jit({name}) of raceway.core.jit and raceway.core.signatures"
-    if not hasattr(kernel, "nopython_signatures"):
+    try:
+        compiled = getattr(kernel, "nopython_signatures", None)
+    except RacewayError as why:  # its first use: it does not compile
+        raise PluginError(f"{label}: {why}") from why
+    if compiled is None:
         raise PluginError(f"{label}: kernel() returns {type(kernel).__name__}, which is not compiled: {remedy}")
-    if not any(
-        has.args == signature.args and has.return_type == signature.return_type for has in kernel.nopython_signatures
-    ):
-        found = " or ".join(signature_words(has) for has in kernel.nopython_signatures) or "no signature"
+    if not any(has.args == signature.args and has.return_type == signature.return_type for has in compiled):
+        found = " or ".join(signature_words(has) for has in compiled) or "no signature"
         raise PluginError(f"{label}: its kernel has {found}, the rule is {signature_words(signature)}: {remedy}")

@@ -30,7 +30,7 @@ from raceway.framework.sources import chosen_entry_points, foreign_words, import
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins")
+BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins", "raceway.studies")
 
 
 @attrs.frozen
@@ -43,6 +43,9 @@ class Entry:
     distribution: str
     version: str
     source: str = ""  # entry point, module or file
+
+    def __str__(self) -> str:
+        return f"{self.kind.replace('_', ' ')} '{self.name}' of {self.distribution}"
 
 
 @attrs.frozen
@@ -201,6 +204,27 @@ class Registry:
         if self.faults:
             message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
         raise PluginError(message)
+
+    def format_of(self, path: str | Path) -> Entry:
+        """The format of a file, by the ending of its name; the longest ending that fits.
+
+        Raises
+        ------
+        PluginError
+            No format has the ending (lists those that there are), or two have it.
+        """
+        name = Path(path).name.lower()
+        endings = [(ending, entry) for entry in self.all() if entry.kind == "format" for ending in entry.plugin.suffixes]  # type: ignore[attr-defined]
+        fitting = [(ending, entry) for ending, entry in endings if name.endswith(ending)]
+        if not fitting:
+            told = ", ".join(sorted({ending for ending, _ in endings}))
+            raise PluginError(f"'{path}': no format has the ending '{Path(path).suffix.lower()}'; there are {told}")
+        longest = max(len(ending) for ending, _ in fitting)
+        ending, found = next(pair for pair in fitting if len(pair[0]) == longest)
+        owners = [str(entry) for other, entry in fitting if other == ending]
+        if len(owners) > 1:
+            raise PluginError(f"'{path}': {' and '.join(owners)} both claim the ending '{ending}'. Remove one.")
+        return found
 
     def names(self, kind: str) -> list[str]:
         return sorted(name for k, name in self.entries if k == kind)

@@ -1,4 +1,4 @@
-"""Where plug-ins come from: entry points of installed distributions, and one-off files."""
+"""Sources of plug-ins: entry points of installed distributions, and one-off files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import Path
 from traceback import extract_tb
 from typing import Any
 
-from raceway.errors import PluginError
+from raceway.errors import PluginError, RacewayError
 from raceway.framework.options import nearest
 from raceway.storage.user_files import size_of
 
@@ -41,7 +41,7 @@ def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
 
 
 def _called(point: EntryPoint) -> set[str]:
-    """What an entry point may be called: its own name and its distribution's."""
+    """Names of an entry point: its own and its distribution's."""
     return {point.name, owner(point)[0]}
 
 
@@ -67,6 +67,26 @@ def foreign_words() -> Iterator[None]:
     """What plug-ins print while they are loaded goes to standard error: standard output may be JSON."""
     with redirect_stdout(sys.stderr):
         yield
+
+
+@contextmanager
+def blamed(who: str, duty: str) -> Iterator[None]:
+    """Put what a plug-in's own code raises to its name.
+
+    Raises
+    ------
+    PluginError
+        Instead of anything but a ``RacewayError``, which passes through.
+    """
+    try:
+        with foreign_words():
+            yield
+    except RacewayError:
+        raise
+    except BaseException as why:
+        if not is_foreign_fault(why):
+            raise
+        raise PluginError(f"{who}: {duty} raises {type(why).__name__}: {why}") from why
 
 
 def import_file(path: Path) -> tuple[Any, str]:

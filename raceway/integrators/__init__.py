@@ -1,4 +1,11 @@
-"""Built-in integrators, one a file."""
+"""Built-in integrators, one a file.
+
+newmark              Newmark's method
+generalized_alpha    generalised-alpha
+central_difference   explicit central differences
+quasi_static         the orbit as a series of equilibria
+periodic             the steady orbit, solved for directly
+"""
 
 from __future__ import annotations
 

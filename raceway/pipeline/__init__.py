@@ -1,1 +1,13 @@
-"""TODO."""
+"""One run: scene, plan, model, equilibrium, motion, identification, result.
+
+run            the order of these steps
+settle         static equilibrium under the constant loads
+starting       initial state of a motion: on its orbit, under a growing force, at rest
+simulate       from model and equilibrium to recorded motion
+allowance      processor time that a run may take beyond its plan
+motion         the table ``motion`` of a result
+pressure       peak pressure and semi-axes of contacts
+plausibility   warnings: balls without load, ellipses over the groove's edge
+error          relative errors of Z
+result         the result: result.json
+"""

@@ -45,19 +45,34 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
     open_balls = int((record.contact_force[chosen, :z] == 0.0).any(axis=0).sum())
     if open_balls:
         found.append(f"{open_balls} of {z} balls lose contact with the inner race during a turn")
-    least = np.inf
+    inner, outer = _angles(model, record, chosen)
+    force = record.contact_force[chosen]
+    over = model.bearing.over_edges(model, inner, outer, force)
     beyond: dict[str, str] = {}
-    for k in chosen:
-        force = record.contact_force[k]
-        now = attrs.evolve(model, system=model.system.at_speed(record.time[k]))
-        inner, outer = model.bearing.contact_angles(now, record.displacement[k], record.ball[k], force, record.time[k])
-        least = min(least, float(np.nanmin(inner, initial=np.inf)))
-        model.bearing.refuse_impossible(now, force)
-        for text in model.bearing.edge_warnings(model, inner, outer, force):
+    for k in np.flatnonzero(over):
+        model.bearing.refuse_impossible(model, force[k])
+        for text in model.bearing.edge_warnings(model, inner[k], outer[k], force[k]):
             beyond.setdefault(text.split(" reaches ")[0], text)
-    if model.geometry.contact_angle > 0.0 and least <= 0.0:
+    if model.geometry.contact_angle > 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
         found.append("the bearing unseats during a turn: the contact angle of a loaded ball is zero or negative")
     return (*found, *(f"during a turn {text}" for text in beyond.values()))
+
+
+def _angles(model: Model, record: Record, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Inner and outer contact angles (n, Z) [rad] of some samples."""
+    if model.system.spin is None:
+        parts = record.displacement, record.ball, record.contact_force, record.time
+        return model.bearing.contact_angles(model, *(part[chosen] for part in parts))
+    found = []
+    for k in chosen:
+        now = attrs.evolve(model, system=model.system.at_speed(record.time[k]))
+        found.append(
+            model.bearing.contact_angles(
+                now, record.displacement[k], record.ball[k], record.contact_force[k], record.time[k]
+            )
+        )
+    inner, outer = zip(*found, strict=True)
+    return np.array(inner), np.array(outer)
 
 
 def _turn(record: Record) -> int:

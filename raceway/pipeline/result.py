@@ -14,7 +14,7 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import held_table, preload_table
-from raceway.core.ring.system import COORDINATES
+from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
 from raceway.pipeline.motion import motion_table
@@ -86,6 +86,7 @@ class Result:
             "frequency_hz": found.frequency_hz,
             "force_amplitude_n": found.force_amplitude,
             "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
+            "dynamic_stiffness_imag_error": None if across is None else across * abs(z),
             "equivalent_stiffness": found.equivalent_stiffness,
             "equivalent_stiffness_error": None if self.error["total"] is None else self.error["total"] * abs(z),
             "equivalent_damping": found.equivalent_damping,
@@ -156,11 +157,29 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
     return {
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),
+        "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
+        "free_contact_angle_deg": math.degrees(model.scene.bearing.contact_angle),
         "balls": [{key: float(column[k]) for key, column in columns.items()} for k in range(z)],
         "preload": preload_table(model, equilibrium),
         "held_axial": held_table(model, equilibrium),
         "iterations": equilibrium.iterations,
     }
+
+
+def tilts_follow(stiffness: np.ndarray, tilt: float | str) -> float | None:
+    """Static condensation of the tilts: kyy - k_yt (k_tt + k_shaft I)^-1 k_ty [N/m].
+
+    Parameters
+    ----------
+    stiffness : (5, 5) tangent stiffness of the equilibrium
+    tilt : the scene's ``supports.tilt``: "locked" (None is returned), "free", or the tilt stiffness of the shaft [N m/rad]
+    """
+    if tilt == "locked":
+        return None
+    tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
+    if not np.linalg.det(tilts):
+        return float(stiffness[1, 1])
+    return float(stiffness[1, 1] - stiffness[1, 3:] @ np.linalg.solve(tilts, stiffness[3:, 1]))
 
 
 def without_nan(value: Any) -> Any:

@@ -248,7 +248,7 @@ def _friction(model: Model, simulation: Simulation) -> float:
     """Energy that friction took from a motion [J]."""
     if simulation.whole.energies:
         return friction_lost(simulation.whole.energies)
-    return float(model.system.friction_lost(simulation.whole))
+    return model.bearing.friction_lost(model.system, simulation.whole)
 
 
 def _drift(model: Model, simulation: Simulation) -> float | None:
@@ -263,7 +263,8 @@ def _drift(model: Model, simulation: Simulation) -> float | None:
     steady = simulation.start.kind != "ramp" and not model.scene.kinematics.orbiting and model.system.spin is None
     if not (potential and steady and model.scene.integrator.method.inertial):
         return None
-    return energy_balance(model.system, simulation.whole).drift
+    compiled = model.system.compiled
+    return None if compiled is None else energy_balance(compiled, simulation.whole).drift
 
 
 def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import lost_preload
 from raceway.core.ring.kernels.layout import CAGE
-from raceway.core.ring.system import COORDINATES
+from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
 
 
@@ -31,10 +31,8 @@ def settle(
     """
     system = model.system
     _refuse_no_load(model)
-    if on_progress is not None:
-        system.follow(_telling(on_progress))
     _foresee_free_motion(model)
-    q, ball, iterations = model.bearing.settle(near)
+    q, ball, iterations = model.bearing.settle(near, None if on_progress is None else _telling(on_progress))
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
     stiffness = still.stiffness_at(q, now)

@@ -12,7 +12,6 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.ring.orbit import Orbit
-from raceway.core.ring.start import at_rest, from_orbit, static_orbit
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import StabilityError
@@ -125,10 +124,10 @@ def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | N
     if model.system.spin is not None and orbit is None:
         q, ball, _ = system.settle(q)
     if not model.scene.integrator.method.inertial:
-        return static_orbit(system, q, ball, start == "ramp")
+        return model.bearing.at_equilibrium(system, q, ball, start == "ramp")
     if orbit is not None:
-        return from_orbit(system, orbit, dt)
-    return at_rest(system, q, ball, start == "ramp")
+        return model.bearing.on_orbit(system, orbit, dt)
+    return model.bearing.at_rest(system, q, ball, start == "ramp")
 
 
 def _ramp_turns(model: Model) -> float:

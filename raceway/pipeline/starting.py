@@ -10,7 +10,7 @@ import attrs
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.orbit import Orbit, steady_orbit
-from raceway.core.ring.system import System
+from raceway.core.ring.ring import Ring
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.planning.steady_orbits import searches_orbits
 
@@ -62,7 +62,7 @@ def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = N
 def _begun(model: Model, equilibrium: Equilibrium, kind: str, watch: Watch | None) -> Start:
     if kind != "orbit" or not model.scene.integrator.method.inertial:
         return Start(kind)
-    excitation, system = model.excitation, model.system.at_speed(0.0).at_standstill()
+    excitation, system = model.excitation, model.bearing.orbiting(model.system.at_speed(0.0))
     if excitation.period_s is None:
         # What changes its speed starts on the orbit of its first moment.
         steady = getattr(excitation, "steady", None)
@@ -74,14 +74,15 @@ def _begun(model: Model, equilibrium: Equilibrium, kind: str, watch: Watch | Non
     return _on_orbit(model, equilibrium, system, excitation.period_s, watch)
 
 
-def _on_orbit(model: Model, equilibrium: Equilibrium, system: System, period: float, watch: Watch | None) -> Start:
+def _on_orbit(model: Model, equilibrium: Equilibrium, system: Ring, period: float, watch: Watch | None) -> Start:
     """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
     q = equilibrium.displacement
     try:
-        if searches_orbits(model.scene) and system.companion is system:
+        compiled = system.compiled
+        if searches_orbits(model.scene) and compiled is not None:
             from raceway.core.periodic.beginning import beginning
 
-            found = beginning(system, period, q, watch)
+            found = beginning(compiled, period, q, watch)
             if found is not None and not found.told:
                 return Start("orbit", found.orbit)
             if found is not None:

@@ -79,7 +79,7 @@ def _refuse_driver(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) 
 
 
 def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
-    """What the identifier needs of the excitation."""
+    """Requirements of the identifier on the excitation."""
     needs, kind = scene.identifier.method.needs, scene.identifier.kind
     name, excitation = scene.excitation.name, scene.excitation
     changing = excitation.period_s is None and getattr(excitation, "first_speed_rpm", None) is not None
@@ -111,7 +111,7 @@ def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], Non
 
 
 def _refuse_steady(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
-    """What has no motion that repeats itself every turn and depends on the force alone."""
+    """Scenes without a motion that repeats itself every turn and depends on the force alone."""
     kind, excitation = scene.integrator.kind, scene.excitation
     other = "use 'newmark'"
     why = f"needs a force that repeats every turn, which excitation '{excitation.name}' does not: {other}"

@@ -1,4 +1,4 @@
-"""Which parts a scene needs, and why: its coordinates, its balls, its bodies, its motion, its output."""
+"""Parts that a scene needs, and why: coordinates, balls, bodies, motion, output."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OTHER_TURNS = "other turns"
 
 @attrs.frozen
 class Balls:
-    """What the balls need.
+    """Requirements of the balls.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Balls:
 
 @attrs.frozen
 class Motion:
-    """What is integrated: nothing, where ``recorded`` is False."""
+    """Motion that is integrated: none, where ``recorded`` is False."""
 
     recorded: bool
     turns: int
@@ -88,7 +88,7 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
 
 
 def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -> Motion:
-    """What moves, and how many turns of it are integrated."""
+    """Coordinates that move, and the turns that are integrated."""
     dynamic, integrator, identifier = scene.excitation is not None, scene.integrator, scene.identifier
     spins = scene.rotor.polar_inertia + ring_inertia(scene)[2] > 0.0 and scene.spin_speed != 0.0
     part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"

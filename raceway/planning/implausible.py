@@ -1,4 +1,4 @@
-"""What a scene says that is possible and unlikely, as a rule in another unit; and what a run of it would fail at."""
+"""Values of a scene that are possible and unlikely, mostly in another unit; failures of a run that can be foreseen."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _numbers(table: Any, path: str) -> Iterator[tuple[str, str, float]]:
 
 
 def foreseen(scene: Scene) -> list[Mistake]:
-    """What a run would fail at after it has begun, as far as closed formulas tell: for ``raceway check``."""
+    """Failures of a run that closed formulas foresee: for ``raceway check``."""
     found = []
     load, free = scene.load, scene.supports.axial != "displacement"
     moment = any(load.moment) and scene.supports.tilt != "locked"

@@ -1,4 +1,4 @@
-"""How fast this machine is: a fixed piece of work, timed once a process."""
+"""Speed of this machine: a fixed piece of work, timed once a process."""
 
 from __future__ import annotations
 

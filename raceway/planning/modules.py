@@ -1,10 +1,14 @@
-"""Which of the program's optional modules a scene needs: what is left out is neither imported nor compiled.
+"""Optional modules that a scene needs: the others are neither imported nor compiled.
 
-A kernel is compiled when its module is imported, so a module that is not imported costs nothing.
+Kernels are compiled at their first use: a module that is imported has compiled nothing yet, one that is not never will.
+The modules that a plug-in imports are read off its code, so that none is named twice, and a third party's is told like ours.
 """
 
 from __future__ import annotations
 
+import dis
+from collections.abc import Iterator
+from types import FunctionType
 from typing import Any
 
 import attrs
@@ -13,28 +17,12 @@ from raceway.planning.steady_orbits import compares_with_steady_motion, has_orbi
 from raceway.scene.tables import Scene
 
 _BODIES = "raceway.core.ring.kernels"
-_LOOPS = "raceway.core.schemes.compiled"
+_LOOPS = "raceway.core.schemes."
 #: Kernels of the bodies by what their balls need.
 _BALLS = {
     "weightless": "balls follow the ring at once",
     "inertial": "balls with centrifugal force",
     "tangential": "friction or gyroscopic moments of the balls",
-}
-#: Built-in integrators and the module that takes their steps.
-_METHODS = {
-    "newmark": "implicit",
-    "generalized_alpha": "implicit",
-    "central_difference": "central_difference",
-    "quasi_static": "quasi_static",
-}
-#: Kernels of the built-in contact laws and the laws that they serve.
-_LAWS = {"hertz": ("hertz",), "penalty": ("penalty", "unilateral")}
-#: Kernels of the built-in excitations; without one, the force that is none.
-_EXCITATIONS = {
-    "unidirectional": "harmonic",
-    "bidirectional": "harmonic",
-    "run_up": "run_up",
-    "measured": "samples",
 }
 #: Libraries and who imports them.
 _MESHING = {
@@ -73,43 +61,25 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
         here = word in (balls, base)
         # Condensed and elastic bodies have a model of rigid rings beside them.
         decide(here, f"{_BODIES}.rigid_{word}", what, f"the balls are {balls}")
-        decide(
-            here and kind == "condensed",
-            f"{_BODIES}.condensed_{word}",
-            what,
-            _not(kind, "condensed", f"the balls are {balls}"),
-        )
     no_potential = "forces on the balls have no potential"
     decide(balls == "tangential", "raceway.core.ring.root", no_potential, f"the balls are {balls}")
-    for law, kinds in _LAWS.items():
-        why = f"contact.kind is {scene.contact.kind}"
-        decide(scene.contact.kind in kinds, f"raceway.core.contact_laws.{law}", why, why)
+    for module in imported_by(scene.contact.law, "kernel"):
+        decide(True, module, f"contact.kind is {scene.contact.kind}", "")
     calibrates = kind == "elastic" and scene.contact.discretisation == "resultant"
     why = "calibrates the contact resultants" if calibrates else "elastic rings and balls, reduced"
     for part in ("condensed", "revolution"):
         decide(kind == "condensed" or calibrates, f"raceway.core.{part}", why, f"bodies.kind is {kind}")
     decide(kind == "elastic", "raceway.core.elastic", "every node moves", f"bodies.kind is {kind}")
     decide(kind != "rigid", "raceway.core.hexahedron", "finite elements of the bodies", "no body is meshed")
-    excitation = "none" if scene.excitation is None else scene.excitation.name
-    if excitation in (*_EXCITATIONS, "none"):
-        for part in dict.fromkeys(_EXCITATIONS.values()):
-            if excitation == "run_up" and part == "harmonic":
-                continue  # it may start on the orbit of its first moment
-            needed = part == _EXCITATIONS.get(excitation, "harmonic")
-            decide(
-                needed,
-                f"raceway.core.excitations.{part}",
-                f"the excitation is {excitation}",
-                f"the excitation is {excitation}",
-            )
+    if scene.excitation is not None:
+        for module in imported_by(scene.excitation, "kernel"):
+            decide(True, module, f"the excitation is {scene.excitation.name}", "")
     method = scene.integrator.kind
     unused = "nothing is integrated" if not integrates else f"the integrator is {method}"
-    if method in _METHODS or method == "periodic" or not integrates:
-        for loop in dict.fromkeys(_METHODS.values()):
-            needed = integrates and _METHODS.get(method) == loop
-            decide(needed, f"{_LOOPS}.{loop}", f"takes the steps of {method}", unused)
-        rubs = integrates and method == "quasi_static" and balls == "tangential"
-        decide(rubs, f"{_LOOPS}.quasi_static_tangential", no_potential, f"{unused}, the balls are {balls}")
+    for module in _loops(scene):
+        rubs = module.endswith(".tangential")
+        needed = integrates and (not rubs or balls == "tangential")
+        decide(needed, module, f"takes the steps of {method}", f"{unused}, the balls are {balls}" if rubs else unused)
     searched = method == "periodic" or searches_orbits(scene) or compares_with_steady_motion(scene)
     searched = searched or (remembers_its_start(scene) and has_orbits(scene))
     unused = unused if not integrates else f"{unused}, no steady orbit is searched for"
@@ -122,8 +92,20 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
     return tuple(found)
 
 
-def _not(kind: str, wanted: str, else_why: str) -> str:
-    return f"bodies.kind is {kind}" if kind != wanted else else_why
+def _loops(scene: Scene) -> list[str]:
+    """Modules of the core that take the steps."""
+    scheme = scene.integrator.method.scheme
+    quick = scene.bodies.traits(scene).compiled and scheme.compiled is not None
+    found = imported_by(scheme, "compiled" if quick else "stepped")
+    return [module for module in found if module.startswith(_LOOPS) and module != f"{_LOOPS}advance"]
+
+
+def imported_by(plugin: Any, method: str) -> Iterator[str]:
+    """Modules that a method of a plug-in imports when it is called, but for numpy."""
+    function = getattr(type(plugin), method, None)
+    if isinstance(function, FunctionType):
+        names = (step.argval for step in dis.get_instructions(function) if step.opname == "IMPORT_NAME")
+        yield from (name for name in dict.fromkeys(names) if name != "numpy")
 
 
 def as_dicts(modules: tuple[Module, ...]) -> list[dict[str, Any]]:

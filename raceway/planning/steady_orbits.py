@@ -1,4 +1,4 @@
-"""Which steady orbits of a scene are searched for, and what for."""
+"""Steady orbits that a run searches for, and their purpose."""
 
 from __future__ import annotations
 

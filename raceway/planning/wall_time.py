@@ -1,4 +1,4 @@
-"""How long a run of compiled rings will take, from measured times of its parts.
+"""Predicted time of a run of compiled rings, from measured times of its parts.
 
 Constants are seconds of processor time of the reference machine of ``raceway.planning.machine``, with all that a run does
 for its error beside its answer: `python -m benchmarks.plan_time` holds whole runs against them.

@@ -1,4 +1,8 @@
-"""Built-in excitations, identifiers, meshers, formats, reports and executors, one a file in a folder for each kind."""
+"""Built-in plug-ins, one a file in a folder for each kind.
+
+excitations, identifiers, meshers, formats, reports, executors
+system_libraries   system libraries that packages for meshes and pictures need
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ from raceway.plugins.excitations.run_up import RunUp
 from raceway.plugins.excitations.unidirectional import Unidirectional
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.joblib import Joblib
+from raceway.plugins.executors.processes import Processes
 from raceway.plugins.executors.serial import Serial
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.formats.msh import Msh
@@ -51,4 +56,4 @@ def raceway_reports() -> list[type]:
 
 @hookimpl
 def raceway_executors() -> list[type]:
-    return [Serial, Joblib, Dask]
+    return [Serial, Processes, Joblib, Dask]

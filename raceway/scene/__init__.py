@@ -1,1 +1,11 @@
-"""TODO."""
+"""The scene: what the user said.
+
+tables      its tables as frozen attrs classes, SI
+file        TOML to scene, with ``--set`` changes
+structure   plain tables to attrs objects, strictly, every mistake with its path
+schema      JSON schema of a scene file
+catalogue   bearing presets
+requires    plug-ins that a scene needs
+rig         a test rig around the bearing
+inner_ring  mass, inertia and growth of the inner ring from its dimensions
+"""

@@ -6,7 +6,8 @@ import copy
 import difflib
 import json
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -179,20 +180,29 @@ def parse_value(text: str) -> Any:
 
 
 def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """A copy of the tables with one value set at a dotted key."""
-    result = copy.deepcopy(dict(tables))
+    """A copy of the tables with one value set at a dotted key; tables beside the key's are shared with the original."""
+    result = dict(tables)
     *parents, last = key.split(".")
     table: Any = result
     for name in parents:
-        table = table.setdefault(name, {})
-        if not isinstance(table, dict):
+        inner = table.get(name, {})
+        if not isinstance(inner, dict):
             raise SceneError.at(key, value, f"`{name}` is not a table")
+        table[name] = dict(inner)
+        table = table[name]
     table[last] = value
     return result
 
 
-def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None) -> Scene:
+def scene_from_dict(
+    tables: Mapping[str, Any], registry: Registry | None = None, known_parts: dict[Any, Any] | None = None
+) -> Scene:
     """A scene from plain tables, as a TOML file would give them.
+
+    Parameters
+    ----------
+    known_parts : of scenes that were read before with the same registry, by the tables they stood in; the parts that this
+        scene shares with them are taken from there, and its own are added
 
     Raises
     ------
@@ -220,14 +230,27 @@ def scene_from_dict(tables: Mapping[str, Any], registry: Registry | None = None)
     else:
         mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
     parts: dict[str, Any] = {}
+    known_parts = {} if known_parts is None else known_parts
+
+    def read(name: str, table: Any, make: Callable[[], Any]) -> Any:
+        mark, before = (name, repr(table)), len(mistakes)  # not the table itself: 1, 1.0 and true are equal, and not alike
+        if mark in known_parts:
+            return known_parts[mark]
+        part = make()
+        if len(mistakes) == before:
+            known_parts[mark] = part
+        return part
+
     for name, cls in TABLES.items():
         if name in PLUGIN_TABLES or (name == "bearing" and name not in plain):
             continue
-        parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
+        table = plain.get(name, {})
+        parts[name] = read(name, table, partial(structure, table, cls, name, mistakes))
     for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
         if name in plain or name not in OPTIONAL_TABLES:
-            parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)
+            table = plain.get(name, {})
+            parts[name] = read(name, table, partial(_plugin_table, name, kind, default, table, registry, mistakes))
     for name, cls in STUDY_TABLES.items():
         if name in plain:
             structure(plain[name], cls, name, mistakes)

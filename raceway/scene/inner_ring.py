@@ -16,7 +16,7 @@ def ring_inertia(scene: Scene) -> tuple[float, float, float]:
     Of ``bearing.inner_profile``, or of a hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h); the groove
     is cut out exactly.
     """
-    moments = _moments(scene)
+    moments = _moments(scene.bearing, shoulder_height(scene))
     places = [place for _, place in scene.bearing.rows]
     if moments is None:
         return 0.0, 0.0, 0.0
@@ -24,9 +24,9 @@ def ring_inertia(scene: Scene) -> tuple[float, float, float]:
     return mass * len(places), sum(transverse + mass * place**2 for place in places), polar * len(places)
 
 
-def _moments(scene: Scene) -> tuple[float, float, float] | None:
+@cache
+def _moments(b: Any, depth: float) -> tuple[float, float, float] | None:
     """Volume [m3] of one inner ring, transverse and polar inertia over density [m5]; None when bore or width are not known."""
-    b = scene.bearing
     if b.inner_profile is not None:
         from raceway.core.mesh.ring_shape import ring_shape
 
@@ -35,7 +35,7 @@ def _moments(scene: Scene) -> tuple[float, float, float] | None:
         return None
     from raceway.core.mesh.ring_section import RingSection
 
-    return RingSection.of(b, shoulder_height(scene)).moments
+    return RingSection.of(b, depth).moments
 
 
 def radial_growth(scene: Scene) -> float:

@@ -74,7 +74,7 @@ def _like(name: str, installed: Iterable[str]) -> str:
 
 
 def _unmet(name: str, specifier: str, wanted: Any, installed: dict[str, tuple[str, str]], registry: Registry) -> str:
-    """What is wrong with one requirement, and the way out; empty when it is met."""
+    """Fault of one requirement, and the way out; empty when it is met."""
     from packaging.utils import canonicalize_name
     from packaging.version import InvalidVersion, Version
 

@@ -19,7 +19,7 @@ def _each(low: float, words: str) -> Rule:
 
 @attrs.frozen
 class Signals:
-    """What the sensors of the simulated rig write down."""
+    """Signals of the simulated rig's sensors."""
 
     sampling_hz: float = option(10_000.0, unit="Hz", help="samples a second", rule=between(100.0, 1e7))
     duration: float = option(1.0, unit="s", help="length of a record", rule=between(0.01, 3600.0))

@@ -37,7 +37,7 @@ _ABANDONED = 3600.0
 
 
 def folder() -> Path:
-    """Where the entries are; it need not exist."""
+    """Folder of the entries; it need not exist."""
     return cache_root() / "arrays"
 
 

@@ -1,4 +1,4 @@
-"""Where compiled kernels are kept, without importing the compiler: for ``raceway.core.jit`` and ``raceway cache``.
+"""Folder of the compiled kernels, without importing the compiler: for ``raceway.core.jit`` and ``raceway cache``.
 
 Compiled kernels are pickles, and reading one can execute anything: a folder that someone else may write is refused.
 """

@@ -1,38 +1,70 @@
-"""``raceway study ...``: studies that end in a page.  A sub-command's module is loaded when it is asked for."""
+"""``raceway study ...``: studies that are plug-ins.  A study's own modules are loaded when it is asked for."""
 
 from __future__ import annotations
 
-from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import click
 
 from raceway.commands.console import Commands
-
-#: Name of a sub-command -> where it is, as "module:object".
-STUDIES = {
-    "article": "raceway.studies.article.command:article",
-    "rig": "raceway.studies.rig.command:rig",
-    "map": "raceway.studies.map.command:study_map",
-}
+from raceway.commands.frame import registry_with
+from raceway.errors import PluginError, RacewayError
+from raceway.framework.registry import default_registry
+from raceway.framework.sources import foreign_words
 
 
 class Studies(Commands):
     """Sub-commands by name, each imported when it is asked for."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(STUDIES)
+        return default_registry().names("study")
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> Any:
-        if cmd_name not in STUDIES:
-            return None
-        module, _, name = STUDIES[cmd_name].partition(":")
-        return getattr(import_module(module), name)
+        return command_of(cmd_name) if cmd_name in self.list_commands(ctx) else None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        registry = default_registry()
+        entries = [entry for entry in registry.all() if entry.kind == "study"]
+        with formatter.section("Commands"):
+            formatter.write_dl([(entry.name, entry.plugin.help) for entry in entries])  # type: ignore[attr-defined]
+        for fault in registry.faults:
+            formatter.write_text(f"not loaded: {fault}")
 
 
-@click.group(cls=Studies, short_help="Whole studies that end in a page.")
+def command_of(name: str) -> click.Command:
+    """The command of a study.
+
+    Raises
+    ------
+    PluginError
+        A name that two plug-ins claim, or a study whose command cannot be had: whose it is, and why.
+    """
+    entry = default_registry().find("study", name)
+    who = f"study '{name}' of {entry.distribution}"
+    try:
+        with foreign_words():
+            command = entry.plugin().command()
+    except RacewayError:
+        raise
+    except Exception as why:  # a third party's own code
+        raise PluginError(f"{who}: command() raises {type(why).__name__}: {why}") from why
+    if not isinstance(command, click.Command):
+        raise PluginError(f"{who}: command() gives {type(command).__name__}, which is no click.Command")
+    return command
+
+
+def _load(_context: click.Context, _option: click.Parameter, files: tuple[Path, ...]) -> None:
+    registry_with(files)
+
+
+@click.group(cls=Studies, short_help="Whole studies that end in a page, and others' studies.")
+@click.option(
+    "--plugin", multiple=True, type=click.Path(path_type=Path), metavar="FILE.py", is_eager=True, expose_value=False,
+    callback=_load, help="A one-off plug-in file with a study; repeat for more.",
+)  # fmt: skip
 def study() -> None:
-    """Whole studies: many runs, figures, and one HTML page that opens without a network.
+    """Whole studies: many runs, figures, and one HTML page that opens without a network; and studies of installed plug-ins.
 
     \b
     Example:

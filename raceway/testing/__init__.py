@@ -1,11 +1,16 @@
 """Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
 
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods
-contact_law, excitation, integrator, identifier, bodies, mesher, format, report, executor   one suite a file
+contact_law, excitation, integrator, identifier, bodies, mesher, format, report, executor, study   one suite a file
+steady         duties of integrators that solve for the steady motion
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
-bearings       scenes and bearings that kinds of bodies are tried on;  asked: what else those may be asked for
+scenes         a small scene and its result;  bearings: scenes and bearings that kinds of bodies are tried on
+asked          what else a scene may ask of bodies, and how a bearing shows it
 drivers        one driver of a scheme by itself
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
+child          duties in child processes with limits of time and memory
+units          units of options
+scaffold       the package of a new plug-in
 
 Subclass a suite in a test file, and pytest collects its checks::
 
@@ -37,6 +42,7 @@ SUITES: dict[str, tuple[str, str]] = {
     "bodies": ("raceway.testing.bodies", "BodiesSuite"),
     "report": ("raceway.testing.report", "ReportSuite"),
     "executor": ("raceway.testing.executor", "ExecutorSuite"),
+    "study": ("raceway.testing.study", "StudySuite"),
 }
 _PUBLIC = {
     **{name: module for module, name in SUITES.values()},
@@ -59,6 +65,7 @@ __all__ = [
     "MesherSuite",
     "ReportSuite",
     "Row",
+    "StudySuite",
     "Suite",
     "check",
     "check_named",

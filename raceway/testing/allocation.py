@@ -1,4 +1,4 @@
-"""How many blocks of memory compiled code allocates."""
+"""Count of memory blocks that compiled code allocates."""
 
 from __future__ import annotations
 

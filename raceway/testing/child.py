@@ -72,9 +72,10 @@ def apart(work: Callable[[], Any]) -> Any:
 
 @cache
 def _import_compiler() -> None:
-    """Once for all children, with the smallest kernels: most duties take less time than that."""
-    for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.pipeline.run", "raceway.core.contact_laws.power"):
+    """Once for all children, with a small kernel, whose first use starts the compiler: most duties take less time than that."""
+    for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.pipeline.run"):
         import_module(name)
+    import_module("raceway.core.contact_laws.power").three_halves.compile()
 
 
 def _serve(work: Callable[[], Any], writer: int) -> None:

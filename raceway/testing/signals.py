@@ -70,7 +70,7 @@ def synthetic_record(
 
 
 def model_of(sense: int = 1, direction: float = 0.0) -> Any:
-    """What an identifier may ask of a model, for the same spring, mass and dashpot."""
+    """A model as identifiers see it, for the same spring, mass and dashpot."""
     from raceway.core.excitations.harmonic import harmonic
     from raceway.testing.systems import linear_system
 

@@ -1,4 +1,4 @@
-"""What the suite of integrators asks of those that solve for the steady motion (``steady = True``)."""
+"""Duties of integrators that solve for the steady motion (``steady = True``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all conformance suites share: checks, their rows, expected failures, and how they become pytest methods.
+"""Common parts of all conformance suites: checks, their rows, expected failures, pytest methods.
 
 A check is a method ``test_<name>(self, plugin)`` marked with ``@duty("what the contract says")``.  It calls ``require`` and
 may return a note.  pytest sees a method without arguments that runs the check on every example of the plug-in.
@@ -243,11 +243,13 @@ def _frozen(plugin: Any) -> bool:
 
 def check_kernel(kernel: Any, signature: Any, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
-    compiled = getattr(kernel, "overloads", None)
+    from raceway.core.jit import signature_words
+
+    compiled = getattr(kernel, "nopython_signatures", None)  # compiles it
     if compiled is None:
         raise ConformityError(f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
     require(
-        tuple(signature.args) in compiled and len(compiled) == 1,
-        f"kernel() is compiled for {[str(s) for s in compiled] or 'nothing'}, not for {word} alone: "
+        [tuple(has.args) for has in compiled] == [tuple(signature.args)],
+        f"kernel() is compiled for {[signature_words(has) for has in compiled] or 'nothing'}, not for {word} alone: "
         f"decorate it with @jit({word})",
     )

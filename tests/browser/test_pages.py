@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.chromium import WIDTHS, Browser
-from tests.browser.pages import PAGES
+from validation.browser.chromium import WIDTHS, Browser
+from validation.browser.pages import PAGES
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
 from raceway.storage import array_cache
-from tests.command_line import EXAMPLES, invoke
+from validation.command_line import EXAMPLES, invoke
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
 

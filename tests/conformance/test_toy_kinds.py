@@ -5,12 +5,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import attrs
+import click
 import numpy as np
 import pytest
 
 from raceway import RacewayError
 from raceway.plugins.executors.serial import Serial
-from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, ReportSuite
+from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, ReportSuite, StudySuite
 
 BOX = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
 
@@ -106,12 +107,29 @@ class Swallowing(Serial):
                 continue
 
 
+@attrs.frozen
+class Loads:
+    """A command that does nothing."""
+
+    name = "loads"
+    help = "Nothing at some loads."
+
+    def command(self):
+        return click.Command("loads", params=[click.Option(["--json"], is_flag=True)], help="Do nothing.")
+
+
+class Misnamed(Loads):
+    name = "misnamed"
+    help = "One line,\nand another."
+
+
 def failed(suite, plugin):
     return {row.name for row in suite.conformity(plugin).rows if not row.good}
 
 
 @pytest.mark.parametrize(
-    ("suite", "plugin"), [(MesherSuite, Box()), (FormatSuite, Json()), (ReportSuite, Text()), (ExecutorSuite, Serial())]
+    ("suite", "plugin"),
+    [(MesherSuite, Box()), (FormatSuite, Json()), (ReportSuite, Text()), (ExecutorSuite, Serial()), (StudySuite, Loads())],
 )
 def test_sound_ones_conform(suite, plugin):
     assert suite.conformity(plugin).conforms
@@ -126,6 +144,7 @@ def test_sound_ones_conform(suite, plugin):
         (ReportSuite, Forgetful(), {"writes"}),
         (ExecutorSuite, Greedy(), {"answers", "ends"}),
         (ExecutorSuite, Swallowing(), {"ends"}),
+        (StudySuite, Misnamed(), {"help", "command"}),
     ],
 )
 def test_broken_ones_do_not(suite, plugin, checks):

@@ -13,7 +13,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 from raceway.scene.file import scene_from_dict
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 
 def rubbing(friction=0.03, turns=3, **tables):

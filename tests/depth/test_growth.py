@@ -11,7 +11,7 @@ from raceway import SceneError, make_plan
 from raceway.core.ring.kernels.layout import REST_RADIAL
 from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import radial_growth, shoulder_height
-from tests.reference.rotating_ring import growth_by_elements
+from validation.reference.rotating_ring import growth_by_elements
 
 
 @pytest.mark.parametrize("change", [{}, {"bore": 33e-3}, {"width": 14e-3}], ids=["B7206C", "thin wall", "narrow"])

@@ -12,7 +12,7 @@ from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
 from raceway.core.ring.system import System
 from raceway.scene.file import scene_from_dict
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 #: Sizes of displacements [m, rad] over which contact forces change by some percent.
 STEP = np.array([1e-6, 1e-6, 1e-6, 3e-5, 3e-5])

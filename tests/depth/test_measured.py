@@ -9,7 +9,7 @@ import pytest
 from raceway import SceneError
 from raceway.pipeline.run import run
 from raceway.scene.file import load_scene, scene_from_dict
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 RPM = 12000.0
 FORCE = 300.0

@@ -18,8 +18,8 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.unused import unused
 from raceway.scene.file import scene_from_dict
-from tests.conftest import b7206c
-from tests.reference.mounted import FORCE, approach, axial, row, secant
+from validation.reference.mounted import FORCE, approach, axial, row, secant
+from validation.tables import b7206c
 
 #: Of K, kxx and kyy: 0.1 % is asked for; what differs is the time step of newmark and the 1x line of the orbit.
 TOLERANCE = 1e-3

@@ -8,7 +8,7 @@ import pytest
 from raceway.pipeline.run import run
 from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import ring_inertia
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 #: Half the rig's disc [kg m2]: polar inertia about twice the transverse one.
 POLAR, TRANSVERSE = 8.05e-3, 4.1e-3

@@ -20,7 +20,7 @@ from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.run_up import RunUp
 from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import ring_inertia
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 
 def steady(rpm=12000.0, **tables):

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from benchmarks.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body
 from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps, plane
 from raceway.core.elastic.contacts.nodal import NodalContact, Pair
 from raceway.core.elastic.system import ElasticSystem
 from raceway.errors import ConvergenceError, MeshError
-from tests.reference.contact import contact_forces, groove_gap
+from validation.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model
+from validation.reference.contact import contact_forces, groove_gap
 
 MIDDLE = np.array([0.0, 0.0, -(RADIUS + ROLLING)])
 #: Few and coarse elements: these tests are about equations, not about Hertz.

@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.groove import HERTZ, pressed, solve
+from validation.groove import HERTZ, pressed, solve
 
 MESH = {"growth": 1.8, "coarse": 1e-3}
 

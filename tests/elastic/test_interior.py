@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.core.elastic.contacts.interior import locate
-from tests.reference import elastic
+from validation.reference import elastic
 
 SIZE = np.array([0.03, 0.02, 0.01])
 

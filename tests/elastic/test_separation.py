@@ -12,7 +12,7 @@ from raceway.core.elastic.contacts.footprint import footprint
 from raceway.core.elastic.contacts.separation import LoadedBody
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.ball_mesh import ball_mesh
-from tests.reference import elastic
+from validation.reference import elastic
 
 STEEL = YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 #: Thickness of a clamped block, four times as wide as thick, and radius of a ball [m].

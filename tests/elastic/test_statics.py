@@ -44,7 +44,7 @@ def test_a_start_from_an_equilibrium_is_told_from_undeformed_bodies() -> None:
     ring = ring_of(2500.0)
     system = ring.bodies.system
     assert not system.undeformed(ring.equilibrium)
-    assert system.undeformed(ring._undeformed(ring.companion, ring.equilibrium[:5]))
+    assert system.undeformed(ring._undeformed(ring.surrogate, ring.equilibrium[:5]))
 
 
 class Stop:

@@ -8,8 +8,8 @@ from scipy.sparse.linalg import spsolve
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
-from tests.hexahedron.blocks import block
-from tests.hexahedron.manufactured import errors
+from validation.hexahedron.blocks import block
+from validation.hexahedron.manufactured import errors
 
 
 @pytest.mark.parametrize("kind", KINDS)

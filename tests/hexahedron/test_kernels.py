@@ -8,8 +8,8 @@ import pytest
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
 from raceway.errors import MeshError
-from tests.hexahedron.blocks import block, distorted
-from tests.reference import hexahedron as reference
+from validation.hexahedron.blocks import block, distorted
+from validation.reference import hexahedron as reference
 
 STEEL = (2.1e11, 0.29, 7810.0)
 #: Rounding of a sum of some hundred products.

@@ -16,10 +16,10 @@ from raceway.plugins.formats.msh import Msh
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.plugins.meshers.gmsh import Gmsh
-from tests.command_line import EXAMPLES
-from tests.mesh.cubes import block
 from tests.mesh.solids import write
-from tests.mesh.squeezed import squeezed
+from validation.command_line import EXAMPLES
+from validation.cubes import block
+from validation.squeezed import squeezed
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 FORMATS = [Vtu(), Abaqus(), Msh()]

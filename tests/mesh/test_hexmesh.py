@@ -8,7 +8,7 @@ from raceway.core.mesh.hex_mesh import HexMesh, merged
 from raceway.core.mesh.quality import quality, refuse_bad_cells
 from raceway.core.mesh.summary import summary
 from raceway.errors import MeshError
-from tests.mesh.cubes import block
+from validation.cubes import block
 
 #: Sums of a few hundred terms in double precision.
 ROUNDING = 1e-12

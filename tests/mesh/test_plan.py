@@ -17,8 +17,8 @@ from raceway.planning.plan import make_plan
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.plugins.meshers.structured import Structured
-from tests.command_line import EXAMPLES, MINIMAL, invoke
 from tests.mesh import solids
+from validation.command_line import EXAMPLES, MINIMAL, invoke
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 

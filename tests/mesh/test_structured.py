@@ -19,7 +19,7 @@ from raceway.core.mesh.spacing import graded, growing, halved
 from raceway.core.mesh.summary import summary
 from raceway.errors import MeshError, SceneError
 from raceway.plugins.meshers.structured import Structured
-from tests.command_line import EXAMPLES
+from validation.command_line import EXAMPLES
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 COARSE = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)

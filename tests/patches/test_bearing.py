@@ -16,7 +16,7 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
-from tests.conftest import b7206c
+from validation.tables import b7206c
 
 NODAL = {
     "bodies": {"kind": "condensed"},

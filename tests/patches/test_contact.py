@@ -15,7 +15,7 @@ from raceway.core.patches.nodal_law import PointLaw
 from raceway.core.patches.patch import Spacing
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError, MeshError
-from tests.patches.single import Single, single
+from validation.single import Single, single
 
 
 @pytest.fixture(scope="module")

@@ -18,9 +18,9 @@ from raceway.core.patches.history import History
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.unused import unused
-from tests.patches.single import single
 from tests.patches.test_bearing import model, scene
-from tests.reference.mindlin import Mindlin
+from validation.reference.mindlin import Mindlin
+from validation.single import single
 
 MU, LOAD = 0.1, 300.0
 

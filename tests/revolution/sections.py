@@ -9,7 +9,7 @@ from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.revolution.ball_profile import ball_profile
 from raceway.core.revolution.profile import Profile
 from raceway.core.revolution.ring_profile import graded_profile
-from tests.command_line import EXAMPLES
+from validation.command_line import EXAMPLES
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 STEEL = (212e9, 0.29, 7810.0)

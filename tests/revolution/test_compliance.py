@@ -9,8 +9,8 @@ from raceway.core.revolution.body import Revolution, seat_areas
 from raceway.core.revolution.harmonics import solved_harmonics
 from raceway.core.revolution.profile import dofs
 from raceway.errors import MeshError
-from tests.reference.swept import Swept
 from tests.revolution.sections import STEEL, ball, ring
+from validation.reference.swept import Swept
 
 DIVISIONS = 16
 ALL = (0, 1, 2)

@@ -8,8 +8,8 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
 from raceway.core.revolution.body import Revolution
-from tests.reference.swept import Swept
 from tests.revolution.sections import STEEL, ball, ring
+from validation.reference.swept import Swept
 
 DIVISIONS = 12
 

@@ -12,7 +12,7 @@ from raceway.scene.rig import Rig
 from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor
-from tests.command_line import EXAMPLES
+from validation.command_line import EXAMPLES
 
 SPEED = 13000.0 * pi / 30.0
 

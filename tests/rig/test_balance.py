@@ -14,8 +14,8 @@ from raceway.studies.shaft.balance import find_root
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor, shaft
 from raceway.studies.shaft.shaft_load import shaft_load
-from tests.command_line import EXAMPLES
 from tests.rig.conftest import SPEED
+from validation.command_line import EXAMPLES
 
 
 def test_a_root_that_is_not_analytic():

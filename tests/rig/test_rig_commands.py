@@ -20,8 +20,8 @@ from raceway.studies.rig.sensors import record, response
 from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor
-from tests.command_line import EXAMPLES, invoke
 from tests.rig.conftest import SPEED
+from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "test_rig.toml"
 SHORT = ["--set", "rig.speeds_rpm=[13000.0]", "--set", "rig.axial_loads=[2000.0]", "--set", "rig.signals.duration=0.25"]
@@ -246,6 +246,28 @@ def test_a_point_without_a_motion_is_shown_as_failed(tmp_path, monkeypatch):
     assert found.exit_code == 1
     assert "failed: 15000 r/min, 2000 N: no motion, for the test" in found.stdout.replace("\n", " ")
     assert "no motion, for the test" in (tmp_path / "rig.html").read_text(encoding="utf-8")
+
+
+def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_path, monkeypatch):
+    from raceway.studies.shaft import bearing as module
+
+    changed = ["rig.speeds_rpm=[11000.0, 13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.1"]
+    words = ["study", "rig", SCENE, *(w for change in changed for w in ("--set", change)), "--out", tmp_path]
+    words += ["--no-signals", "--no-pictures", "--json"]
+    whole = json.loads(invoke(*words).stdout)
+    real, moving = module.run, []
+
+    def counted(scene, *rest, **more):
+        moving.append(scene.excitation is not None)
+        return real(scene, *rest, **more)
+
+    monkeypatch.setattr(module, "run", counted)
+    assert json.loads(invoke(*words).stdout) == whole
+    assert moving == [False]  # the equilibrium under the load
+    lines = (tmp_path / "rig-rows.jsonl").read_text(encoding="utf-8").splitlines()
+    (tmp_path / "rig-rows.jsonl").write_text(lines[0] + "\n", encoding="utf-8")
+    assert json.loads(invoke(*words).stdout) == whole
+    assert sum(moving) > 20
 
 
 def test_marks_and_a_speed_that_disagree(rig, held, state):

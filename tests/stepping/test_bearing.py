@@ -8,7 +8,6 @@ import attrs
 import numpy as np
 import pytest
 
-from benchmarks.evidence._scenes import model_of, rotating
 from raceway.core.ring.start import at_rest, static_orbit
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import Drivers, integrate
@@ -18,6 +17,7 @@ from raceway.errors import RacewayError, StabilityError
 from raceway.integrators import raceway_integrators
 from raceway.pipeline.settle import settle
 from raceway.testing.integrator import IntegratorSuite
+from validation.scenes import model_of, rotating
 
 #: Those that march in time.
 METHODS = [m for m in raceway_integrators() if not m.steady]

@@ -25,7 +25,7 @@ from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.errors import ConvergenceError, MeshError, StabilityError
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
-from tests.reference import elastic
+from validation.reference import elastic
 
 YOUNG, SIDE = 2e11, 2e-3
 MODULUS = YOUNG / 2.0

@@ -13,7 +13,7 @@ from raceway.core.stepping.restart import load_motion, save_motion
 from raceway.errors import ConvergenceError
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
-from tests.stepping.block import POISSON, YOUNG, Block
+from validation.block import POISSON, YOUNG, Block
 
 WEIGHT, MU = 2.0, 0.3
 

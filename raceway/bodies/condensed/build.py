@@ -43,7 +43,7 @@ def build(scene: Scene, plan: Plan) -> CondensedBearing:
     _refuse_stiff_law(scene, stiff, bodies)
     _refuse_dashpots(scene, plan, bodies)
     angles = _angles(scene, stiff) if plan.keeps(BETWEEN_BALLS) else None
-    system = elastic_system(stiff.system, bodies, angles)
+    system = elastic_system(stiff.system.surrogate, bodies, angles)
     system.table[:, ring.SHIFT] = 0.0
     guess = place_ring(scene, stiff.basis, system)
     return CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
@@ -66,7 +66,7 @@ class CondensedBearing(Bearing):
 
     def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""
-        system: System = self.rigid.system
+        system: System = self.rigid.system.surrogate
         q, ball, _ = system.settle(self.rigid.guess)
         stiffness = system.evaluate(q, ball=ball).stiffness
         angle = float(np.nanmean(equilibrium.angle_inner))
@@ -103,7 +103,7 @@ class CondensedBearing(Bearing):
         """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
         scene = model.scene
         coarse = elastic_bodies(scene, self.rigid.basis, _COARSER)
-        system = elastic_system(self.rigid.system, coarse, self.angles)
+        system = elastic_system(self.rigid.system.surrogate, coarse, self.angles)
         system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
         try:
             q, ball, _ = attrs.evolve(system, load=model.system.load).settle(equilibrium.displacement)
@@ -144,7 +144,7 @@ def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | No
 
 def _angles(scene: Scene, stiff: RigidBearing) -> np.ndarray:
     """(Z,) contact angles with rigid rings: the free one where a ball carries nothing; their mean for balls that orbit."""
-    system: System = stiff.system
+    system: System = stiff.system.surrogate
     angles = np.full(system.ball_count, scene.bearing.contact_angle)
     try:
         q, ball, _ = system.settle(stiff.guess)
@@ -163,7 +163,7 @@ def _refuse_stiff_law(scene: Scene, stiff: RigidBearing, bodies: ElasticBodies) 
     taken = min(bodies.at(scene.bearing.contact_angle))
     if taken >= 0.0:
         return
-    basis, system = stiff.basis, stiff.system
+    basis, system = stiff.basis, stiff.system.surrogate
     for load in (1.0, 5.0):
         ellipse = basis.inner
         gap = -ellipse.approach(load * basis.ball_load) * np.ones(2 * system.ball_count)

@@ -1,4 +1,4 @@
-"""What condensed rings with one force a contact will take, and what they cannot be; nothing is meshed."""
+"""Plan of condensed rings with contact resultants: cost and limits of their sections; nothing is meshed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class SectionCost:
 
 
 def section_cost(scene: Scene) -> SectionCost:
-    """What the rings of a condensed scene will take."""
+    """Predicted cost of the rings of a condensed scene."""
     b = scene.bearing
     length = 0.34 * b.ball_diameter
     size, along = 0.62 * length, 0.077 * length

@@ -1,1 +1,8 @@
-"""TODO."""
+"""Rings and balls whose every node is a degree of freedom.
+
+build        the system of a scene
+report       its results: reactions, energies, mesh, balance of forces
+points       results of contacts at surface points: pressures, overlap
+resultants   results of contacts with one calibrated resultant each
+locking      nearly incompressible materials whose elements lock under contacts at surface points
+"""

@@ -20,6 +20,7 @@ from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.ring import ElasticRing
 from raceway.core.elastic.setup import Setup
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, FRICTION
+from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError, PluginError, SceneError
@@ -62,9 +63,9 @@ def build(scene: Scene, plan: Plan) -> ElasticBodies:
     bodies = ElasticBearing(mesh_scene(scene), setup)
     if whole:
         _refuse_stiff_law(scene, basis, bodies)
-    fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(System)}
+    fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}
     held_by = scene.load.axial if scene.supports.axial == "displacement" else None
-    system = ElasticRing(**fields, bodies=bodies, held_by=held_by)
+    system = ElasticRing(**fields, rigid=rigid, bodies=bodies, held_by=held_by)
     if whole:
         return ElasticResultants(basis, system, guess, bodies, rigid, compliances)
     return ElasticPoints(basis, system, guess, bodies, rigid)

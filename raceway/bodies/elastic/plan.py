@@ -1,4 +1,4 @@
-"""What a plan says of elastic bodies: what they cannot do, how large they are, and what they cost."""
+"""Plan of elastic bodies: their limits, size and cost."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class ElasticCost:
 
 
 def elastic_cost(scene: Scene) -> ElasticCost | None:
-    """What the bodies of a scene will take; None where the mesher cannot tell before it meshes."""
+    """Predicted cost of the bodies of a scene; None where the mesher cannot tell before it meshes."""
     mesh = predicted_mesh(scene)
     if mesh is None:
         return None
@@ -130,7 +130,7 @@ def machine_bytes() -> float:
 
 
 def elastic_faults(scene: Scene) -> list[Mistake]:
-    """What elastic bodies cannot do, each with the way out."""
+    """Limits of elastic bodies that a scene violates, each with the way out."""
     faults: list[Mistake] = []
 
     def refuse(bad: bool, path: str, value: object, why: str) -> None:

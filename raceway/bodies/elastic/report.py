@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -10,8 +11,13 @@ import numpy as np
 
 from raceway.bodies.bearing import Bearing
 from raceway.bodies.elastic.locking import locking
+from raceway.core.elastic import start
 from raceway.core.elastic.bearing import ElasticBearing
-from raceway.core.ring.system import COORDINATES, System
+from raceway.core.elastic.ring import ElasticRing
+from raceway.core.ring.orbit import Orbit
+from raceway.core.ring.ring import COORDINATES, Ring
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Motion
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -34,7 +40,30 @@ class ElasticBodies(Bearing):
     @property
     def foreseen(self) -> System:
         """The same ring with rigid bodies: elastic ones would iterate for minutes."""
-        return self.system.companion
+        return self.system.surrogate
+
+    def settle(
+        self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Newton's iteration over all nodes."""
+        self.bearing.system.on_residual = on_residual
+        return super().settle()
+
+    def orbiting(self, system: Ring) -> Ring:
+        """The rigid one: periodic motions of all nodes would take hours."""
+        return system.surrogate.at_standstill()
+
+    def on_orbit(self, system: Ring, orbit: Orbit, dt: float) -> Motion:
+        """Near the orbit of rigid bodies."""
+        return start.from_orbit(_elastic(system), orbit, dt)
+
+    def at_rest(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+        """All nodes at rest."""
+        return start.at_rest(_elastic(system), q, ball, ramped)
+
+    def at_equilibrium(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+        """All nodes in balance."""
+        return start.static_orbit(_elastic(system), q, ball, ramped)
 
     def has_places(self, balls: str) -> bool:
         """Always: balls are bodies."""
@@ -109,3 +138,8 @@ class ElasticBodies(Bearing):
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Elements that lock."""
         return locking(model.scene)
+
+
+def _elastic(system: Ring) -> ElasticRing:
+    assert isinstance(system, ElasticRing)
+    return system

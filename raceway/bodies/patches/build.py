@@ -28,6 +28,7 @@ from raceway.core.patches.reach import Reach, reach_of
 from raceway.core.patches.system import PatchSystem
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import steady_orbit
+from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError
@@ -64,7 +65,7 @@ def build(scene: Scene, plan: Plan) -> NodalBearing:
         rigid = attrs.evolve(rigid, table=rigid.table.copy())
         guess = place_ring(as_rigid, basis, system)
 
-    def coarser() -> System:
+    def coarser() -> Ring:
         coarse, _ = _system(scene, basis, system, reach, 0.5 * nodes, load)
         return coarse
 
@@ -72,17 +73,15 @@ def build(scene: Scene, plan: Plan) -> NodalBearing:
     return NodalBearing(basis, system, guess, nodes, load, spacing, system.pool, rigid, beside, fewer)
 
 
-def _system(
-    scene: Scene, basis: Basis, like: System, reach: Reach, nodes: float, load: float
-) -> tuple[PatchSystem, Spacing]:
+def _system(scene: Scene, basis: Basis, like: Ring, reach: Reach, nodes: float, load: float) -> tuple[PatchSystem, Spacing]:
     """A ring like another one, on patches with so many points along the semi-axes at a load [N]."""
     spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
     make = _maker(scene, spacing)
     laws = _point_laws(scene, basis, spacing)
     pool = Pool(make(reach), laws, _widening(basis, reach, make), scene.contact.friction)
     mass = basis.geometry.ball_mass(scene.bearing.balls.density) if scene.kinematics.ball_inertia else 0.0
-    fields = {f.name: getattr(like, f.name) for f in attrs.fields(System)}
-    return PatchSystem(**{**fields, "table": like.table.copy()}, pool=pool, ball_mass=mass), spacing
+    fields = {f.name: getattr(like, f.name) for f in attrs.fields(Ring)}
+    return PatchSystem(**{**fields, "table": like.table.copy()}, rigid=like.surrogate, pool=pool, ball_mass=mass), spacing
 
 
 def _semi_axes(ellipse: Any, load: float) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""What a plan says of contacts at surface points of condensed bodies: what they cannot do, and what they cost."""
+"""Plan of contacts at surface points of condensed bodies: their limits and cost."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class PatchCost:
 
 
 def patch_cost(scene: Scene) -> PatchCost:
-    """What the contacts of a scene will take."""
+    """Predicted cost of the contacts of a scene."""
     n = nodes_of(scene)
     balls = scene.bearing.ball_count * len(scene.bearing.rows)
     points = int(3.2 * n * n)
@@ -63,7 +63,7 @@ def nodes_of(scene: Scene) -> int:
 
 
 def patch_faults(scene: Scene) -> list[Mistake]:
-    """What contacts at surface points of condensed bodies cannot do, each with the way out."""
+    """Limits of contacts at surface points that a scene violates, each with the way out."""
     faults: list[Mistake] = []
 
     def refuse(bad: bool, path: str, value: object, why: str) -> None:

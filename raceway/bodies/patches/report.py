@@ -16,8 +16,11 @@ from raceway.core.patches.contact import Pressed
 from raceway.core.patches.field import PressureField, pressure_field
 from raceway.core.patches.patch import Spacing
 from raceway.core.patches.pool import Pool
+from raceway.core.patches.system import PatchSystem
 from raceway.core.ring.kernels.layout import CAGE
-from raceway.core.ring.system import COORDINATES, Evaluation, System
+from raceway.core.ring.ring import COORDINATES, Evaluation, Ring
+from raceway.core.ring.system import System
+from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.scene.inner_ring import load_at_edge
 
@@ -50,10 +53,17 @@ class NodalBearing(Bearing):
     pool: Pool
     rigid: System
     beside: np.ndarray
-    coarser: Callable[[], System] | None
+    coarser: Callable[[], Ring] | None
     _errors: dict[bytes, tuple[float | None, str]] = attrs.field(init=False, factory=dict)
 
-    def settle(self, near: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, int]:
+    def friction_lost(self, system: Ring, record: Record) -> float:
+        """By the points' memory."""
+        assert isinstance(system, PatchSystem)
+        return system.friction_lost(record)
+
+    def settle(
+        self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
+    ) -> tuple[np.ndarray, np.ndarray, int]:
         """From a near equilibrium, what is held staying where it is; from the own guess where that fails."""
         if near is not None:
             try:
@@ -172,7 +182,7 @@ class NodalBearing(Bearing):
         return self._errors[state]
 
     @staticmethod
-    def _compared(coarser: Callable[[], System], model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+    def _compared(coarser: Callable[[], Ring], model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         try:
             coarse = coarser()
             q, _, _ = attrs.evolve(coarse, load=model.system.load).settle(equilibrium.displacement)

@@ -1,1 +1,4 @@
-"""TODO."""
+"""Rigid rings and balls: only the contacts deform.
+
+build   the system of a scene
+"""

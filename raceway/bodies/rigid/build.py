@@ -12,6 +12,7 @@ from raceway.bodies.contact_error import against_hertz
 from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
+from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
@@ -43,6 +44,7 @@ def build(scene: Scene, plan: Plan) -> RigidBearing:
     basis = make_basis(scene)
     system = rigid_system(scene, plan, basis)
     probe(scene, basis, system)
+    system = by_address(system)
     return RigidBearing(basis, system, place_ring(scene, basis, system))
 
 

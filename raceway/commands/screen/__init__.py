@@ -1,4 +1,4 @@
-"""What a person sees: tables made from the same dictionaries that ``--json`` prints.  Prints nothing by itself.
+"""Tables for the screen, made from the same dictionaries that ``--json`` prints.  Prints nothing by itself.
 
 text          sections, tables, numbers with units
 result        one run

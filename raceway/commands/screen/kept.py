@@ -1,4 +1,4 @@
-"""What ``raceway cache`` prints."""
+"""Tables of ``raceway cache``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``raceway plan`` prints."""
+"""Tables of ``raceway plan``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from raceway.commands.screen.text import Row, grouped, number, sections
 
 
 def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
-    """What would be built, what not, and the predictions."""
+    """Parts kept and left out, and the predictions."""
     step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
     rows = [
         ("Size and cost, predicted", "", ""),

@@ -1,9 +1,8 @@
-"""One run: what ``raceway run`` prints, from the content of result.json."""
+"""Tables of ``raceway run``, from the content of result.json."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import acos, degrees, pi
 from typing import Any
 
 from rich.console import Group, RenderableType
@@ -29,7 +28,7 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     parts: list[RenderableType] = [Text(f"warning: {text}", style="yellow") for text in result["warnings"]]
     parts += [
         Text(result["title"], style="bold"),
-        Text(_bearing(result["scene"]), style="dim"),
+        Text(_bearing(result), style="dim"),
         sections(rows),
     ]
     left_out = result["plan"]["left_out"]
@@ -40,9 +39,11 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     return Group(*parts)
 
 
-def _bearing(scene: Mapping[str, Any]) -> str:
+def _bearing(result: Mapping[str, Any]) -> str:
+    scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
     b, load = scene["bearing"], scene["load"]
-    angle = f"{b['contact_angle_deg']:g} deg" if b.get("contact_angle_deg") else _angle_of_clearance(b)
+    if b.get("radial_clearance") and not b.get("contact_angle_deg"):
+        angle += ", from the clearance"
     balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
     words = [
         f"{b.get('preset', 'own geometry')}: {balls}, contact angle {angle}",
@@ -52,12 +53,6 @@ def _bearing(scene: Mapping[str, Any]) -> str:
     if any(load["moment"]):
         words[-1] += f", moment {load['moment'][0]:g}, {load['moment'][1]:g} N m"
     return "\n".join(words)
-
-
-def _angle_of_clearance(b: Mapping[str, Any]) -> str:
-    distance = (b["conformity_inner"] + b["conformity_outer"] - 1.0) * b["ball_diameter"]
-    clearance = b.get("radial_clearance") or 0.0
-    return f"{degrees(acos(1.0 - clearance / (2.0 * distance))):.2f} deg, from the clearance" if clearance else "0 deg"
 
 
 def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
@@ -82,12 +77,13 @@ def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
     rows.append(("tangent kxx", number(1e-6 * k[0][0], "N/µm"), "axial, all other motions held"))
     rows.append(("tangent kyy", number(1e-6 * k[1][1], "N/µm"), "radial, tilt and all other motions held"))
     if tilt != "locked":
-        rows.append((f"kyy, {tilt_words(tilt)}", number(1e-6 * _condensed(k, tilt), "N/µm"), "tilts follow, x and z held"))
+        follow = number(1e-6 * found["kyy_tilts_follow_n_per_m"], "N/µm")
+        rows.append((f"kyy, {tilt_words(tilt)}", follow, "tilts follow, x and z held"))
     return rows
 
 
 def _mounted(found: Mapping[str, Any]) -> list[Row]:
-    """What was built in at standstill, and what has become of it."""
+    """Preload and held axial force: mounted and running."""
     rows, preload, held = [], found["preload"], found["held_axial"]
     if preload is not None:
         forces = ", ".join(f"{force:.5g}" for force in preload["rows_n"])
@@ -113,28 +109,19 @@ def _small(metres: float) -> str:
     return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
 
 
-def _condensed(k: Sequence[Sequence[float]], tilt: float | str) -> float:
-    """Radial tangent with the tilts following: kyy - k_yt (k_tt + k_shaft)^-1 k_ty."""
-    shaft = tilt if isinstance(tilt, float) else 0.0
-    a, b, c, d = k[3][3] + shaft, k[3][4], k[4][3], k[4][4] + shaft
-    determinant = a * d - b * c
-    along = k[1][3] * (d * k[3][1] - b * k[4][1]) + k[1][4] * (a * k[4][1] - c * k[3][1])
-    return k[1][1] - along / determinant if determinant else k[1][1]
-
-
 def _identification(result: Mapping[str, Any]) -> list[Row]:
     found = result["identification"]
     if found is None:
         return [("Dynamic stiffness", "", ""), ("none", "-", "static scene: add a table [excitation] to identify one")]
     z, orbit = found["dynamic_stiffness"], found["orbit"]
     excited = result["scene"]["excitation"]["kind"]
-    mass = found["mass_used_kg"]
+    mass, across = found["mass_used_kg"], found["dynamic_stiffness_imag_error"]
     return [
         (f"Dynamic stiffness at {found['speed_rpm']:g} r/min, {tilt_words(found['tilt'])}", "", ""),
         (f"  {found['definition']}", "", ""),
         ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
         ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
-        _resolved("Z imaginary", 1e-6 * z["imag"], _times(found, z), "N/µm", "w C"),
+        _resolved("Z imaginary", 1e-6 * z["imag"], None if across is None else 1e-6 * across, "N/µm", "w C"),
         ("|Z|", number(1e-6 * z["abs"], "N/µm"), ""),
         _stiffness(found, f"Re Z + m w^2, m = {mass:.4g} kg"),
         _resolved(
@@ -156,12 +143,6 @@ def _stiffness(found: Mapping[str, Any], remark: str) -> Row:
     if abs(value) < error:
         return name, "not resolved", f"below its error of {told}"
     return name, number_within(1e-6 * value, 1e-6 * error, "N/µm"), f"+- {told}"
-
-
-def _times(found: Mapping[str, Any], z: Mapping[str, float]) -> float | None:
-    """Absolute error of Z [N/um]."""
-    error = found["phase_lag_error_deg"]
-    return None if error is None else 1e-6 * z["abs"] * error * pi / 180.0
 
 
 def _resolved(name: str, value: float, error: float | None, unit: str, remark: str) -> Row:
@@ -189,7 +170,7 @@ def _error(result: Mapping[str, Any]) -> list[Row]:
 
 
 def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
-    """What elastic bodies change, how good their mesh is, and what their inertia would; each where it is told."""
+    """Effect of elasticity, quality of the mesh, and error of the missing inertia; each where the result has it."""
     if not model:
         return []
     rows = [("Elastic bodies", "", str(model.get("bodies", "")))]

@@ -1,11 +1,11 @@
-"""Structural compliance of one contact from pressures at its surface points: what calibrates those of rings and balls.
+"""Structural compliance of one contact from pressures at its surface points, for the calibration of rings and balls.
 
 Notes
 -----
-Depth matching (``structural``) compares fields on the normal through the middle of a contact.  A contact that is not short
-against the wall below it feels their mean over its length, which is less; nor is a groove a paraboloid.  One ball on one race,
-solved at its surface points, has all that: (approach - Hertz's) / load, and how that changes with the load.  Its error falls with the square of the distance of
-points, so that two distances tell the limit; a mean over loads takes away the ripple of points that come and go.
+Depth matching (``structural``) compares fields on the normal through the centre of a contact.  The compliance of a contact that is long against
+the wall below it is their mean over its length, which is less; nor is a groove a paraboloid.  One ball on one race, solved at its
+surface points, has both effects: (approach - Hertz's) / load as a function of the load.  Its error falls with the square of the distance
+of points, so that two distances give the limit; a mean over loads removes the scatter of points that come and go.
 """
 
 from __future__ import annotations

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
-
 import attrs
 import numpy as np
 
 from raceway.core.condensed.calibration import Calibration
 from raceway.core.condensed.structural import RingCompliance
 from raceway.core.revolution.grooves import along_normal, groove_compliance, own_compliance
+from raceway.core.ring.kernels.condensed import condensed
 from raceway.core.ring.system import System
 
 #: Least standard deviation of the contact angles that compliances between groove centres are fitted for [rad].
@@ -19,7 +17,7 @@ _WIDTH = 0.2
 
 @attrs.frozen(eq=False)
 class ElasticBodies:
-    """What rings and balls add to the approach of each contact beyond Hertz.
+    """Structural compliances of rings and balls, added to the approach of each contact.
 
     Attributes
     ----------
@@ -44,7 +42,7 @@ class ElasticBodies:
         return self._matched(race, angles) + self.beyond(race, angles)
 
     def beyond(self, race: int, angles: np.ndarray) -> np.ndarray:
-        """What contacts at surface points have beyond compliances matched at depth, at contact angles [rad], in m/N."""
+        """Compliance of contacts at surface points beyond that of depth matching, at contact angles [rad], in m/N."""
         calibration = self.calibrations[race]
         if calibration is None:
             return np.zeros(len(angles))
@@ -102,8 +100,8 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
         tables.append(np.column_stack([rings[0] + rings[1], rings[1][:, 1:]]).ravel())
     return attrs.evolve(
         rigid,
-        kernel=_elastic(rigid.kernel),
-        base_kernel=_elastic(rigid.base_kernel),
+        kernel=condensed(rigid.kernel),
+        base_kernel=condensed(rigid.base_kernel),
         scalars=np.concatenate([rigid.scalars, head, *tables]),
     )
 
@@ -129,9 +127,3 @@ def between_grooves(one: RingCompliance, angles: np.ndarray) -> np.ndarray:
     out[0] = own_compliance(one.angles, one.own, weight)
     out[1:] = groove_compliance(one.angles, one.across[:, :, 1:], weight)
     return out
-
-
-def _elastic(kernel: Any) -> Any:
-    """The kernel of elastic bodies that belongs to one of rigid bodies; the others are not imported, hence not compiled."""
-    name = kernel.__name__.replace("rigid", "condensed")
-    return getattr(import_module(f"raceway.core.ring.kernels.{name}"), name)

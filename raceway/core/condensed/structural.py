@@ -1,11 +1,11 @@
-"""Structural compliances: what the finite elements of a body give beyond the half-space that Hertz's formula knows.
+"""Structural compliances: deflection of a body's finite elements beyond the half-space of Hertz's formula.
 
 Notes
 -----
 A contact force presses with the line density of its Hertz ellipse on the nodes of the surface.  Below it, on the inward
 normal, the elements' displacement and that of a half-space under the same line differ by a nearly constant amount, the
-structural compliance: mean over depth of (u_elements - u_half-space) / Q.  Nothing is measured at the patch itself, so the
-result does not depend on how coarse the mesh is there.  Depths and sizes scale with ``reach``, the smaller of the ring's
+structural compliance: mean over depth of (u_elements - u_half-space) / Q.  No displacement at the patch itself enters, so the
+result does not depend on the mesh there.  Depths and sizes scale with ``reach``, the smaller of the ring's
 wall below the groove and 0.34 D: 1.0 to 2.5 mm where they were found (B7206C: wall 3.23 mm, D 9.525 mm).
 """
 

@@ -1,1 +1,8 @@
-"""TODO."""
+"""Contact of two bodies, and the geometry of a ball bearing.
+
+hertz        exact elliptic Hertz contact
+half_space   half-space under normal forces
+sphere       structural compliance of a ball beyond the half-space
+geometry     groove curvatures, groove centres, contact angle, cage speed
+damping      normal damping, and the energy that a contact stores
+"""

@@ -1,4 +1,4 @@
-"""What the core does with every contact law: normal damping, and the energy that a contact stores."""
+"""Normal damping of every contact law, and the energy that a contact stores."""
 
 from numba import float64, void
 

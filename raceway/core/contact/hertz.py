@@ -14,6 +14,8 @@ Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 6 
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import attrs
 import numpy as np
 from scipy.special import ellipe, ellipkm1
@@ -125,6 +127,7 @@ class Ellipse:
         return np.where(load > 0.0, 1.5 * load / (np.pi * a * b), 0.0)
 
 
+@lru_cache(maxsize=256)
 def ellipse(curvature_sum: float, curvature_difference: float, modulus: float) -> Ellipse:
     """Hertz contact from curvature sum [1/m], curvature difference and E* [Pa]."""
     chi = ellipticity(curvature_difference)

@@ -137,7 +137,7 @@ class Assembly:
         return sum(b.operator.hourglass_energy(u[self.part(i)]) for i, b in enumerate(self.bodies))
 
     def loose_motions(self, contacts: list[tuple[int, int]]) -> list[str]:
-        """What nothing holds: for each body in words; ``contacts`` are pairs of bodies that touch and so hold each other.
+        """Rigid motions that nothing holds: for each body in words; ``contacts`` are pairs of bodies that touch and so hold each other.
 
         Notes
         -----

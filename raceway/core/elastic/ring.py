@@ -1,46 +1,49 @@
-"""A bearing of elastic bodies seen from its inner ring: the interface of ``raceway.core.ring.system.System``."""
+"""A bearing of elastic bodies seen from its inner ring: the interface of ``raceway.core.ring.ring.Ring``."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.ring.system import Evaluation, System
+from raceway.core.ring.ring import Evaluation, Ring
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 
 #: Relative residual of equilibria, and of the linear solves for the ring's stiffness, whose error is its square.
 _TOLERANCE, _LINEAR = 1e-7, 1e-4
 
 
-@attrs.define(eq=False)
-class ElasticRing(System):
+@attrs.define(eq=False, kw_only=True)
+class ElasticRing(Ring):
     """All nodes of rings and balls; the ring's reference point is what the rest of the program sees.
-
-    The kernels of the base class are those of rigid rings with Hertz's contacts: they give first guesses and the orbit
-    that a motion starts near.
 
     Attributes
     ----------
+    rigid : the same ring with rigid bodies and Hertz's contacts
     bodies : ElasticBearing
     held_by : axial load [N] whose displacement, where it acts alone on the mounted bearing, is held; None: the axial motion is free
     """
 
-    bodies: ElasticBearing = attrs.field(kw_only=True)
-    held_by: float | None = attrs.field(kw_only=True, default=None)
+    rigid: System
+    bodies: ElasticBearing
+    held_by: float | None = None
     _y: np.ndarray | None = attrs.field(init=False, default=None)
     _stiffness: np.ndarray | None = attrs.field(init=False, default=None)
 
     @property
-    def companion(self) -> System:
-        """The same ring with rigid bodies and Hertz's contacts, compiled."""
-        fields = [f.name for f in attrs.fields(System)]
-        return System(**{name: getattr(self, name) for name in fields})
+    def compiled(self) -> None:
+        """All nodes are stepped from Python."""
+        return None
+
+    @property
+    def surrogate(self) -> System:
+        """The rigid ring under this one's loads: it gives first guesses and the orbit that a motion starts near."""
+        return attrs.evolve(self.rigid, **{f.name: getattr(self, f.name) for f in attrs.fields(Ring)})
 
     @property
     def conservative(self) -> bool:
@@ -55,10 +58,6 @@ class ElasticRing(System):
         """The system that the loops in Python step."""
         self.bodies.system.excitation = self.outer_force
         return SteppedElastic(self.bodies.system, self.bodies.look, self.ball_count)
-
-    def follow(self, on_residual: Callable[[float], None] | None) -> None:
-        """What to call with the relative residual of every iteration of an equilibrium."""
-        self.bodies.system.on_residual = on_residual
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = _TOLERANCE
@@ -77,7 +76,7 @@ class ElasticRing(System):
         if self._y is None and self.held_by is not None:
             guess = self._alone(q, self.held_by)
         elif self._y is None:
-            guess = self._undeformed(self.companion, q)
+            guess = self._undeformed(self.surrogate, q)
         else:
             guess = self._y
         self._y, count = self.settled(guess, self.load, max(tolerance, _TOLERANCE))
@@ -96,12 +95,6 @@ class ElasticRing(System):
         if self._y is None:
             raise ConvergenceError("elastic bodies know the forces at their equilibria only: settle them first")
         return self._y
-
-    @property
-    def starts(self) -> Any:
-        from raceway.core.elastic import start
-
-        return start
 
     def in_place(self, y: np.ndarray) -> np.ndarray:
         """(size,) internal forces of a state at rest without friction; the bodies keep its contacts."""
@@ -122,7 +115,7 @@ class ElasticRing(System):
         ball_gain: float = 0.0,
         memory: np.ndarray | None = None,
     ) -> Evaluation:
-        """What the last equilibrium holds; its tangent is that of the ring with all nodes in balance.
+        """The last equilibrium; its tangent is that of the ring with all nodes in balance.
 
         Raises
         ------
@@ -153,10 +146,6 @@ class ElasticRing(System):
     def stopped(self, t: float) -> ElasticRing:
         return self
 
-    def at_standstill(self) -> System:
-        """The compiled companion's: periodic motions of all nodes would take hours."""
-        return self.companion.at_standstill()
-
     def critical_time_step(self, tangent: np.ndarray) -> float:
         """Of elements and contacts at the last state that was computed [s]; the ring's own tangent does not limit it."""
         return float(self.bodies.system.stable_step())
@@ -183,7 +172,7 @@ class ElasticRing(System):
     def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
         """(size,) equilibrium as mounted under an axial load [N] alone, the ring's other motions held."""
         only, load = np.arange(5) == 0, np.array([axial, 0.0, 0.0, 0.0, 0.0])
-        rigid = self.companion.as_mounted(self.bodies.setup.growth)
+        rigid = self.surrogate.as_mounted(self.bodies.setup.growth)
         rigid = attrs.evolve(rigid, free=only.astype(float), load=load)
         with self.bodies.mounted(), self._letting_free(only):
             found, _ = self.settled(self._undeformed(rigid, q * only), load)

@@ -1,4 +1,4 @@
-"""What an elastic bearing is beyond its meshes."""
+"""Data of an elastic bearing beyond its meshes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Material = tuple[float, float, float]
 
 @attrs.frozen(eq=False)
 class Setup:
-    """What a bearing is beyond its meshes.
+    """Data of a bearing beyond its meshes.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Setup:
     ball_force : outward force on each ball [N], centrifugal
     growth : how much larger in radius the inner raceway is than meshed [m]: fit, temperature, rotation
     caged : whether an ideal cage holds the balls at their azimuth
-    angles : (2 Z,) contact angles [rad] at which whole contacts press on the meshes, inner races first; None: pressures at points
+    angles : (2 Z,) contact angles [rad] at which contact resultants press on the meshes, inner races first; None: pressures at points
     beyond : (2 Z,) compliance of a contact at its surface points beyond Hertz's and what is matched at depth [m/N]: its calibration
     friction : Coulomb's coefficient;  stick : stiffness of sticking points [N/m3], None: Mindlin's ratio times the penalty's
     """

@@ -108,7 +108,7 @@ class LinearSolver:
         self._extend(c_k, c_m)
 
     def _extend(self, c_k: float, c_m: float) -> None:
-        """How the free nodes follow each frame: the solution of the whole for a unit motion of the frame."""
+        """Displacement of the free nodes with each frame: the solution of the whole for a unit motion of the frame."""
         a, m = self.assembly, self.assembly.frame_size
         self._follow = self._ride.copy()
         apply, multigrid = self.image(c_k, 0.0, c_m), self._inverse(c_k, 0.0)

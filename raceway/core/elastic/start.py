@@ -1,16 +1,12 @@
-"""Where a time integration of elastic bodies begins: what ``raceway.core.ring.start`` does for systems of five coordinates."""
+"""Initial states of elastic bodies in time, as ``raceway.core.ring.start`` gives them for five coordinates."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from raceway.core.elastic.ring import ElasticRing
 from raceway.core.ring.orbit import Orbit, at_time
 from raceway.core.stepping.record import Motion
-
-if TYPE_CHECKING:
-    from raceway.core.elastic.ring import ElasticRing
 
 #: Angle of the excitation between the equilibria that tell velocity and acceleration [rad].
 _ANGLE = 0.25
@@ -34,7 +30,7 @@ def from_orbit(ring: ElasticRing, orbit: Orbit, dt: float) -> Motion:
         return np.asarray(ring.load + ring.outer_force(t) - scale * ring.mass @ at_time(orbit.acceleration, orbit.period, t))
 
     now, _ = ring.settled(still, load(0.0, 1.0))
-    rigid = ring.companion.settle(still[:5])[0]
+    rigid = ring.surrogate.settle(still[:5])[0]
     moved, wanted = now[1:3] - still[1:3], orbit.displacement[0, 1:3] - rigid[1:3]
     scale = float(np.linalg.norm(moved) / max(float(np.linalg.norm(wanted)), 1e-300)) if wanted.any() else 1.0
     now, _ = ring.settled(now, load(0.0, scale))

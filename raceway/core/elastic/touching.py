@@ -1,4 +1,4 @@
-"""The contacts of a ball bearing: points of the balls' surfaces on the grooves, or a whole contact for each ball and race."""
+"""The contacts of a ball bearing: points of the balls' surfaces on the grooves, or a contact resultant for each ball and race."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole contacts and the cage in a preconditioner: a few motions each, added to the inverse of the bodies without them."""
+"""Contact resultants and the cage in a preconditioner: low-rank changes of the inverse of the bodies without them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from raceway.core.elastic.contacts.contact import Contact
 
 
 class WholeContacts:
-    """What a few contacts, and a cage, change in an inverse.
+    """Low-rank change of an inverse by a few contact resultants and a cage.
 
     Parameters
     ----------

@@ -1,1 +1,9 @@
-"""TODO."""
+"""Linear elasticity of one body.
+
+statics         K u = f with prescribed displacements
+natural_modes   K u = w^2 M u, free or held
+multigrid       one W-cycle of smoothed aggregation, in single precision
+aggregates      aggregates of nodes along short edges
+blocks          products of sparse matrices of 3x3 blocks
+rigid_motions   rigid-body motions: near-nullspace of K
+"""

@@ -1,7 +1,15 @@
-"""How structured meshes are made: spacings along a line, rings swept from a profile, balls as cubed spheres.
+"""Structured meshes of rings and balls, and what every mesh is judged by.
 
-spacing   graded points on a line            ring   a ring with the true groove
-sphere    a ball: inner cube and six blocks  size   how many cells and bytes, and what is refused
-ring_shape  the profile of a ring from the dimensions of a scene
-outline   its section without the groove, plain or from a polygon
+hex_mesh      points, cells, sets of nodes and facets
+spacing       graded points on a line
+ring_mesh     a ring with the true groove, swept in azimuth
+ring_shape    profile of a ring from the dimensions of a scene
+ring_section  exact section of an inner ring: inertia, growth by rotation
+outline       outline of a section without the groove, plain or from a polygon
+ball_mesh     a ball as a cubed sphere
+quarter       a quarter of a ball above a quarter of a grooved block
+place         places of the balls in the bearing
+quality       scaled Jacobian, aspect, skew; refusal of bad cells
+size          cells and bytes, before a mesh is made
+summary       counts and quality as plain numbers
 """

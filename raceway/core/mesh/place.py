@@ -1,4 +1,4 @@
-"""Where balls stand in the bearing."""
+"""Places of the balls in the bearing."""
 
 from __future__ import annotations
 

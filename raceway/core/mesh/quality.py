@@ -1,4 +1,4 @@
-"""How good the cells of a mesh are, and the refusal of those that cannot be computed with.
+"""Quality of cells (scaled Jacobian, aspect, skew), and refusal of those that cannot be computed with.
 
 References
 ----------

@@ -1,4 +1,4 @@
-"""How many cells and bytes a mesh will take, before it is made, and the refusal of sizes that cannot work."""
+"""Cells and bytes of a mesh before it is made, and refusal of sizes that cannot work."""
 
 from __future__ import annotations
 

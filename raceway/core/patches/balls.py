@@ -33,7 +33,7 @@ _IDLE = 1e-12
 
 @attrs.frozen(eq=False)
 class Given:
-    """What acts on balls and contacts beside their places.
+    """Loads on balls and contacts beside those of their places.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Given:
         return bool(self.slip) or self.gyroscopic is not None
 
     def of(self, contact: int) -> Held | None:
-        """What a contact has to know."""
+        """The part of one contact."""
         if not self.slip:
             return None
         return Held(float(self.turn[contact % len(self.turn)]), self.slip[contact])

@@ -70,7 +70,7 @@ class Pressed:
 
 @attrs.frozen(eq=False)
 class Held:
-    """What friction at a contact needs to know: the turn of the ring's section [rad], slips (rows * columns,) [m]."""
+    """State of friction at a contact: the turn of the ring's section [rad], slips (rows * columns,) [m]."""
 
     turn: float
     slip: np.ndarray

@@ -4,13 +4,13 @@ Notes
 -----
 All points share one rigid displacement along the groove (``raceway.core.ring.kernels.rigid_tangential``: the way L a of the
 contact less the turn of the ring's section), as bodies do that are stiff away from their contact.  With C the
-compliance of ball and race along the groove and s what every point has slipped,
+compliance of ball and race along the groove and s the slip of every point,
 
     place - s - C q = 0,  |q| <= mu f    where a point sticks,        q = +- mu f    where it slips, s growing along q
 
-which is the return mapping of all points at once: the least of q.C q / 2 - q.(place - s) under the bounds, found by exchange.
-Points without pressure follow the ball.  What pressures do along the groove is left out: between bodies of one material
-both surfaces move alike (Goodman 1962), and so is traction along the rolling direction.
+which is the return mapping of all points at once: the least of q.C q / 2 - q.(place - s) under the bounds, found by an active set.
+Points without pressure follow the ball.  Tangential displacements by pressures are left out: between bodies of one material
+both surfaces move alike (Goodman 1962).  So is traction along the rolling direction.
 
 References
 ----------

@@ -20,7 +20,7 @@ _STEP = 1e-5
 
 @attrs.frozen(eq=False)
 class Turned:
-    """What a ball's moment adds to its contacts.
+    """Tangential resultants of a ball's gyroscopic moment.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What nodal contacts and their balls remember between accepted steps, in the rows of a system's ``memory``."""
+"""Memory of nodal contacts and their balls between accepted steps, in the rows of a system's ``memory``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far contacts go: windows of contact angles and the widest ellipse."""
+"""Extent of contacts: windows of contact angles, and the widest ellipse."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Window = tuple[float, float]
 
 @attrs.frozen
 class Reach:
-    """What patches have to hold.
+    """Extent that patches have to cover.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The ring on balls whose contacts are nodal patches: the interface of ``raceway.core.ring.system.System``, stepped from Python."""
+"""The ring on balls whose contacts are nodal patches: the interface of ``raceway.core.ring.ring.Ring``, stepped from Python."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ from raceway.core.ring.kernels.layout import (
     TILT_ARM,
     place,
 )
-from raceway.core.ring.system import TOLERANCE, Evaluation, System
+from raceway.core.ring.ring import TOLERANCE, Evaluation, Ring
+from raceway.core.ring.system import System
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
 
@@ -38,14 +39,13 @@ _LIMIT = 60
 _BALLS = 1e-11
 
 
-@attrs.define(eq=False)
-class PatchSystem(System):
+@attrs.define(eq=False, kw_only=True)
+class PatchSystem(Ring):
     """M q'' + C q' + K q + f(q, q') = load + force(t), f from pressures at surface points of finite elements.
-
-    The kernels of the base class are those of rigid rings with Hertz's contacts: they give first guesses.
 
     Attributes
     ----------
+    rigid : the same ring with rigid bodies and Hertz's contacts
     pool : patches and solvers, shared by all copies of this system
     ball_mass : of one ball [kg]; 0 leaves out its inertia in steps of time
 
@@ -56,14 +56,23 @@ class PatchSystem(System):
     [m/s]; number of the patches; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
     """
 
-    pool: Pool = attrs.field(kw_only=True)
-    ball_mass: float = attrs.field(kw_only=True, default=0.0)
+    rigid: System
+    pool: Pool
+    ball_mass: float = 0.0
 
     @property
-    def companion(self) -> System:
-        """The same ring with rigid bodies and Hertz's contacts, compiled."""
-        fields = [f.name for f in attrs.fields(System)]
-        return System(**{name: getattr(self, name) for name in fields})
+    def compiled(self) -> None:
+        """Points come and go: no compiled loop follows them."""
+        return None
+
+    @property
+    def surrogate(self) -> System:
+        """The rigid ring under this one's loads."""
+        return attrs.evolve(self.rigid, **{f.name: getattr(self, f.name) for f in attrs.fields(Ring)})
+
+    def of_balls(self, chosen: slice, table: np.ndarray) -> PatchSystem:
+        """With the rigid ring of these balls."""
+        return attrs.evolve(super().of_balls(chosen, table), rigid=self.rigid.of_balls(chosen, table))
 
     @property
     def conservative(self) -> bool:
@@ -199,7 +208,7 @@ class PatchSystem(System):
 
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
-        first = attrs.evolve(self.companion, load=self.load / parts)
+        first = attrs.evolve(self.surrogate, load=self.load / parts)
         place, ball, _ = first.settle(q)
         if not self.table[:, CENTRIFUGAL].any():
             ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own

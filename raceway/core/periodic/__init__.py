@@ -2,12 +2,22 @@
 
 rule            Gauss points, and the matrices that integrate a polynomial acceleration twice
 sweep           compiled: residuals, exact tangents and their condensation to transfer matrices, one interval after the other
-rates           how fast the balls move, and how far dashpots make them lag
-collocation     the boundary-value problem on one mesh, and Newton's iteration for it
-symmetry        which rotation maps the motion onto itself, and after what time: one turn, or one ball pitch
+newton          compiled: Newton's iteration on one mesh
+rates           rates of the balls, and their lag behind dashpots
+collocation     the boundary-value problem on one mesh
+symmetry        period of the motion up to a rotation: one turn, or one ball pitch
 first_guess     linear response about the static equilibrium
-refinement      meshes halved where the error is made, until it is small enough; the error that is left
+neighbour       a first guess from the motion of a similar problem
+refinement      meshes halved where the error is made; the error that is left
 branch          pseudo-arclength continuation over any parameter, with folds
-floquet         multipliers of the motion and what they mean
+direct          a motion from a first guess, at once or under a growing force
+from_rest       the branch that grows out of rest with the force
+detour          a motion reached from another speed
+search          all motions that are found, directly and along branches
+beginning       the motion that a transient starts on
+stop            an end to a search
+floquet         Floquet multipliers and stability
 sampling        equidistant samples of the motion, as a ``Record``
+told            found motions as tables of a result
+steady          from a system and an equilibrium to the record of its steady motion
 """

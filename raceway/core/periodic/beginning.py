@@ -33,7 +33,7 @@ _SAMPLES, _TOLERANCE = 65, 1e-7
 
 @attrs.frozen(eq=False)
 class Beginning:
-    """What a transient starts on.
+    """The motion that a transient starts on.
 
     Attributes
     ----------

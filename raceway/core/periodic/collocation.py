@@ -140,7 +140,7 @@ class Solved:
 
 
 def gap(problem: Problem, path: Path) -> np.ndarray:
-    """What a path (2 n,) ends beyond the turned state that it begins with: y_m - P y_0 of the unknown states."""
+    """Gap between the end of a path (2 n,) and the rotated state of its beginning: y_m - P y_0 of the unknown states."""
     first, last = (np.concatenate([path.q[k, problem.free], path.v[k, problem.free]]) for k in (0, -1))
     return np.asarray(last - problem.closing @ first)
 

@@ -57,7 +57,7 @@ class Floquet:
 
     @property
     def leaves_by(self) -> str:
-        """How an unstable motion is left: "+1", "-1" or "pair", of the period of one span; empty when it is not unstable."""
+        """Type of instability: "+1", "-1" or "pair", of the period of one span; empty when it is not unstable."""
         if self.verdict != "unstable":
             return ""
         first = self.of_span[np.argmax(np.abs(self.of_span))]

@@ -30,7 +30,7 @@ _SMALL_SHARE, _SMALL_POINTS = 0.2, 10
 
 @attrs.frozen(eq=False)
 class Trail:
-    """What is kept of a branch over the share of the force.
+    """Points of a branch over the share of the force.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a periodic motion lends to that of a similar problem: how it differs from its own linear response.
+"""First guess of a periodic motion from a similar problem: the difference of that motion from its own linear response.
 
 Notes
 -----
@@ -40,7 +40,7 @@ class Neighbour:
     share: float
 
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path | None:
-        """Where Newton's iteration may begin on a mesh; None where this motion is none of the problem's unknowns.
+        """First guess for Newton's iteration on a mesh; None where this motion is none of the problem's unknowns.
 
         Parameters
         ----------

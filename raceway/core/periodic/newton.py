@@ -5,6 +5,7 @@ from numba import float64, int64
 
 from raceway.core.jit import jit
 from raceway.core.periodic.sweep import INDICES, MODEL, condense, differentiate, eliminate, spread
+from raceway.core.ring.dense import copy_cube
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 #: A displacement's rounding over the displacement itself, below which no correction can come.
@@ -68,7 +69,7 @@ def newton(
             for k in range(m * s):
                 for c in range(5):
                     a[k, c] -= factor * da[k, c]
-            ball[:, :, :] = safe
+            copy_cube(safe, ball)
             continue
         worst, halvings = noted[0], 0
         report[IMBALANCE] = worst
@@ -99,7 +100,7 @@ def newton(
         report[CORRECTION], report[SIZE] = correction, size
         if not np.isfinite(correction):
             return SINGULAR
-        safe[:, :, :] = ball
+        copy_cube(ball, safe)
         for k in range(m * s):
             for b in range(z):
                 for c in range(columns):

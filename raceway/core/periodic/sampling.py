@@ -16,17 +16,37 @@ from raceway.errors import ConvergenceError
 
 def motion_at(problem: Problem, path: Path, angles: np.ndarray) -> tuple[np.ndarray, ...]:
     """q, dq/dtheta, d2q/dtheta2 (n, 5), balls and rates (n, Z, c) at angles (n,) within the span; balls are interpolated."""
-    s, h = len(problem.rule.points), np.diff(path.nodes)
-    k = np.clip(np.searchsorted(path.nodes, angles, side="right") - 1, 0, path.intervals - 1)
-    step = h[k][:, None]
-    u = (angles - path.nodes[k]) / h[k]
-    values, once, twice = integrals(problem.rule.points, u)
-    a = path.a.reshape(path.intervals, s, 5)[k]
-    q = path.q[k] + u[:, None] * step * path.v[k] + step**2 * np.einsum("ns,nsc->nc", twice, a)
+    k, step, u, q, (values, once, _), a = _displacement_at(problem, path, angles)
+    s = len(problem.rule.points)
     v = path.v[k] + step * np.einsum("ns,nsc->nc", once, a)
     shape = (path.intervals, s, *path.ball.shape[1:])
     ball, rate = (np.einsum("ns,nszc->nzc", values, x.reshape(shape)[k]) for x in (path.ball, path.rate))
     return q, v, np.einsum("ns,nsc->nc", values, a), ball, rate
+
+
+def _displacement_at(problem: Problem, path: Path, angles: np.ndarray) -> tuple[Any, ...]:
+    """Of angles (n,) the intervals, their lengths (n, 1), the places in them, q (n, 5), the rule's integrals, accelerations."""
+    s, h = len(problem.rule.points), np.diff(path.nodes)
+    k = np.clip(np.searchsorted(path.nodes, angles, side="right") - 1, 0, path.intervals - 1)
+    step = h[k][:, None]
+    u = (angles - path.nodes[k]) / h[k]
+    rule = integrals(problem.rule.points, u)
+    a = path.a.reshape(path.intervals, s, 5)[k]
+    q = path.q[k] + u[:, None] * step * path.v[k] + step**2 * np.einsum("ns,nsc->nc", rule[2], a)
+    return k, step, u, q, rule, a
+
+
+def displacements(solved: Solved, angles: np.ndarray) -> np.ndarray:
+    """q (n, 5) at any angles (n,): the first of ``states``."""
+    problem, symmetry = solved.problem, solved.problem.symmetry
+    spans = _spans(symmetry.span, angles)
+    q = _displacement_at(problem, solved.path, angles - spans * symmetry.span)[3]
+    return np.einsum("nij,nj->ni", rotations(symmetry.angle * np.arange(spans.max() + 1))[spans], q) if spans.any() else q
+
+
+def _spans(span: float, angles: np.ndarray) -> np.ndarray:
+    """How many whole spans lie before each angle; a sample at the very end of one belongs to it: nothing has to be turned then."""
+    return np.maximum(np.ceil(angles / span - 1e-12).astype(int) - 1, 0)
 
 
 def record(solved: Solved, schedule: Schedule, counts: dict[str, Any]) -> Record:
@@ -76,8 +96,7 @@ def record(solved: Solved, schedule: Schedule, counts: dict[str, Any]) -> Record
 def states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
     """q, dq/dtheta, d2q/dtheta2 (n, 5), balls and rates (n, Z, c) at any angles (n,): those beyond the span are turned there."""
     problem, symmetry = solved.problem, solved.problem.symmetry
-    # A sample at the very end of a span belongs to it: nothing has to be turned then.
-    spans = np.maximum(np.ceil(angles / symmetry.span - 1e-12).astype(int) - 1, 0)
+    spans = _spans(symmetry.span, angles)
     q, v, a, ball, rate = motion_at(problem, solved.path, angles - spans * symmetry.span)
     if spans.any():
         repeat = _Repeat(problem, 1, int(spans.max()) + 1)

@@ -14,7 +14,7 @@ from raceway.core.periodic.from_rest import MOST, Trail, at_whole_force, trail
 from raceway.core.periodic.neighbour import Neighbour, Recorded, neighbour_of
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.refinement import Refined, refine
-from raceway.core.periodic.sampling import states
+from raceway.core.periodic.sampling import displacements
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.errors import ConvergenceError
 
@@ -46,6 +46,13 @@ class Found:
     fate: Floquet
     fold: float | None = None
     others: tuple[Found, ...] = ()
+    _lent: list[Neighbour] = attrs.field(factory=list, init=False, repr=False)
+
+    def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
+        """What the motion lends to others, about the problem's equilibrium q (5,) with its tangent (5, 5); made once."""
+        if not self._lent:
+            self._lent.append(neighbour_of(self.refined.solved, q, tangent))
+        return self._lent[0]
 
     @property
     def all(self) -> tuple[Found, ...]:
@@ -123,7 +130,7 @@ def _followed(
 
 def may_have_others(found: Found, q: np.ndarray, tangent: np.ndarray) -> bool:
     """Whether a motion is unstable or so far from its linear response about q (5,) that other ones may exist beside it."""
-    return found.fate.verdict == "unstable" or not neighbour_of(found.refined.solved, q, tangent).near_linear
+    return found.fate.verdict == "unstable" or not found.neighbour(q, tangent).near_linear
 
 
 def can_follow(problem: Problem, q: np.ndarray, tangent: np.ndarray) -> bool:
@@ -201,5 +208,5 @@ def taken(found: list[Found]) -> list[Found]:
 
 def _alike(one: Refined, two: Refined) -> bool:
     """Whether two motions of one problem are the same."""
-    pair = [states(found.solved, _COMPARED)[0] / found.solved.problem.weight for found in (one, two)]
+    pair = [displacements(found.solved, _COMPARED) / found.solved.problem.weight for found in (one, two)]
     return bool(np.abs(pair[0] - pair[1]).max() <= _SAME * max(one.solved.size, two.solved.size))

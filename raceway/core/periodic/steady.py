@@ -9,13 +9,13 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.direct import problem_of
-from raceway.core.periodic.neighbour import neighbour_of
 from raceway.core.periodic.sampling import record
 from raceway.core.periodic.search import Found, find
 from raceway.core.periodic.stop import passed_on, stopping
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
+from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import SceneError
@@ -25,7 +25,7 @@ _SETTLED = 1e-8
 
 
 def steady(
-    system: System,
+    ring: Ring,
     start: Motion,
     schedule: Schedule,
     tolerance: float,
@@ -47,8 +47,8 @@ def steady(
     ConvergenceError
         No such motion found.
     """
-    refuse(system, schedule)
-    system = by_address(system)
+    refuse(ring, schedule)
+    system = by_address(ring.surrogate)
     speed = 2.0 * np.pi / (schedule.dt * schedule.steps_per_turn)
     q, tangent = _equilibrium(system.without(CAGE), start)
     problem = problem_of(system, speed, q, symmetric)
@@ -71,7 +71,7 @@ def steady(
         "orbits": told,
         "warnings": warnings(found, told, tolerance),
     }
-    out = attrs.evolve(record(refined.solved, schedule, counts), solution=neighbour_of(refined.solved, q, tangent))
+    out = attrs.evolve(record(refined.solved, schedule, counts), solution=found.neighbour(q, tangent))
     if on_chunk is not None:
         on_chunk(schedule.steps, schedule.steps)
     return out
@@ -88,9 +88,9 @@ def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]
     return q, system.evaluate(q, ball=ball).stiffness
 
 
-def refuse(system: System, schedule: Schedule) -> None:
+def refuse(system: Ring, schedule: Schedule) -> None:
     """Raise ``SceneError`` for what has no motion that repeats itself every turn, or none that depends on the force alone."""
-    if system.companion is not system:
+    if system.compiled is None:
         why = "bodies that are stepped from Python have no compiled forces to linearise thousands of states with. Use 'newmark'"
         raise SceneError.at("integrator.kind", "periodic", why)
     if system.law_state.shape[1] > 0:

@@ -18,6 +18,7 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
+from raceway.core.ring.dense import copy_matrix
 from raceway.core.ring.kernels.columns import work_rows
 from raceway.core.signatures import CUBE, FORCE_POINTER, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
 
@@ -241,7 +242,7 @@ def try_between(
                     V[c] += h * tried[i, j] * a[k * s + j, c]
             for c in range(5):
                 V[c] *= speed
-            place[:, :] = ball[at]
+            copy_matrix(ball[at], place)
             t = (nodes[k] + u * h) / speed
             status = system(
                 t, 0.0, Q, V, place, 0.0, rate_tried[k * e + i], law, law_params, law_state, law_new, scalars, table, work, f,
@@ -371,7 +372,7 @@ def imbalances(
                     V[c] += h * rule[i, j] * a[k * s + j, c]
             for c in range(5):
                 V[c] *= speed
-            place[:, :] = ball[at]
+            copy_matrix(ball[at], place)
             t = (nodes[k] + u * h) / speed
             status = system(
                 t, 0.0, Q, V, place, 0.0, rate[at], law, law_params, law_state, law_new, scalars, table, work, f, none, none

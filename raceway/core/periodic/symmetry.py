@@ -1,4 +1,4 @@
-"""After what angle the motion repeats itself, turned: one turn, or one ball pitch.
+"""Symmetry of the periodic motion: the angle after which it repeats itself, one turn or one ball pitch.
 
 Notes
 -----

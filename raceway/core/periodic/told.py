@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from raceway.core.periodic.collocation import Solved
-from raceway.core.periodic.sampling import states
+from raceway.core.periodic.sampling import displacements
 from raceway.core.periodic.search import Found
 from raceway.core.periodic.sweep import forces
 from raceway.core.signals.identification import stiffness
@@ -51,7 +51,7 @@ def first_line(solved: Solved) -> tuple[complex, float]:
     push = np.empty((_SAMPLES, 5))
     forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
     turned = 2.0 / _SAMPLES * np.exp(-1j * angles)
-    line, force = turned @ states(solved, angles)[0], turned @ push
+    line, force = turned @ displacements(solved, angles), turned @ push
     forward, backward = 0.5 * abs(line[1] - 1j * line[2]), 0.5 * abs(line[1] + 1j * line[2])
     return complex(stiffness(force, line)), float(forward + backward)
 
@@ -69,7 +69,7 @@ def several(told: list[dict[str, Any]]) -> tuple[str, ...]:
 
 
 def unstable(one: dict[str, Any]) -> str:
-    """How disturbances of a motion grow."""
+    """Growth of disturbances of a motion, in words."""
     return f"disturbances grow {one['multiplier']:.4g} times a turn, {_WAYS[one['leaves_by']]}"
 
 

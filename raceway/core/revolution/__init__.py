@@ -6,6 +6,7 @@ ball_profile   section of a ball about its rolling direction
 sector         matrices of one sector, harmonic by harmonic
 factor         sparse factorisation, and condensation by it
 harmonics      which harmonics are solved, and the weights with which their compliances add up at an offset
+grooves        compliances between groove centres
 body           Revolution: compliances between nodes, natural frequencies
 kept           compliances through the cache on disk
 ball           the floating ball: one dimensionless compliance for all balls

@@ -1,4 +1,4 @@
-"""Which harmonics are solved, and with which weights their compliances add up to the compliance at an offset.
+"""Harmonics of a body of revolution that are solved, and the weights with which their compliances add up at an offset.
 
 A unit force at azimuth 0 is the sum of all harmonics with weight 1/N, N the number of sectors.  The compliance C(n) is a
 smooth function of n, so it is solved at few n; (1 + n) C as a function of log(1 + n/8) is interpolated by a spline of degree

@@ -25,7 +25,7 @@ class Address(types.WrapperAddressProtocol):
     """A kernel of one signature, its machine code looked up once; can be called from Python too."""
 
     def __init__(self, kernel: Any, pointer: Any) -> None:
-        self.pointer = pointer
+        self.pointer, self.__name__ = pointer, kernel.__name__
         self._kernel, self._signature = kernel, pointer.signature
         self._address = _get_wrapper_address(kernel, pointer.signature)
 
@@ -47,7 +47,7 @@ def _type_of(address: Address, _context: Any) -> Any:
 
 @lru_cache(maxsize=64)
 def _address(kernel: Any, pointer: Any) -> Address:
-    return Address(kernel, pointer)
+    return kernel if isinstance(kernel, Address) else Address(kernel, pointer)
 
 
 def by_address(system: System) -> System:

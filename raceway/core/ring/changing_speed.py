@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import attrs
 import numpy as np
@@ -11,8 +11,9 @@ import numpy as np
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, GYROSCOPIC, REST_RADIAL, SHIFT, SIDE, SINE
 
 if TYPE_CHECKING:
-    from raceway.core.ring.system import System
+    from raceway.core.ring.ring import Ring
 
+R = TypeVar("R", bound="Ring")  # ChangingSpeed is a Spin of it
 #: Half the interval over which a phase is differentiated [s]: its rounding then makes 1e-9 of the speed.
 _INTERVAL = 1e-5
 
@@ -50,7 +51,7 @@ class ChangingSpeed:
         """(n,) [rad] by which balls have travelled since time zero; ``cage``: their speed at w_r [rad/s]."""
         return np.asarray(cage / self.reference * (self.phase(time) - self.phase(np.zeros(1))))
 
-    def at(self, system: System, t: float) -> System:
+    def at(self, system: R, t: float) -> R:
         """The system with the constants of one moment; its kernels take a steady speed, so the azimuths at time zero are those
         from which balls at the speed of now would have come to their places of now."""
         now = np.array([t])
@@ -65,7 +66,7 @@ class ChangingSpeed:
             )
         return found
 
-    def constants(self, system: System, speed: float) -> System:
+    def constants(self, system: R, speed: float) -> R:
         """The system at a steady speed [rad/s]."""
         ratio = speed / self.reference
         scalars, table = system.scalars.copy(), system.table.copy()

@@ -1,9 +1,12 @@
-"""5x5 linear algebra inside compiled loops: no allocation, no LAPACK call."""
+"""Linear algebra and copies inside compiled loops: no allocation, no LAPACK call.
 
-from numba import boolean, int64
+Where an array is assigned to a slice of another, numba compiles the words of its error message, too: seconds.
+"""
+
+from numba import boolean, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.signatures import MATRIX, VECTOR
+from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 
 @jit(boolean(MATRIX, VECTOR))
@@ -66,3 +69,20 @@ def cholesky_solve(matrix, rhs, n):
             total -= matrix[k, i] * rhs[k]
         rhs[i] = total / matrix[i, i]
     return True
+
+
+@jit(void(MATRIX, MATRIX))
+def copy_matrix(source, target):
+    """target[:, :] = source."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[i, j] = source[i, j]
+
+
+@jit(void(CUBE, CUBE))
+def copy_cube(source, target):
+    """target[:, :, :] = source."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            for k in range(source.shape[2]):
+                target[i, j, k] = source[i, j, k]

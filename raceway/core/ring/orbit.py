@@ -20,7 +20,7 @@ from numba import int64
 
 from raceway.core.jit import jit
 from raceway.core.ring.kernels.columns import work_rows
-from raceway.core.ring.system import System
+from raceway.core.ring.ring import Ring
 from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
 from raceway.errors import ConvergenceError
 
@@ -81,7 +81,7 @@ def differentiation(count: int, period: float) -> np.ndarray:
 
 
 def steady_orbit(
-    system: System,
+    system: Ring,
     period: float,
     start: np.ndarray,
     samples: int = 65,
@@ -102,10 +102,10 @@ def steady_orbit(
     ConvergenceError
         With the last residual.
     """
-    if system.companion is not system:
+    if system.compiled is None:
         samples = min(samples, _SAMPLES_PYTHON)
-        # The nearest start is the compiled companion's orbit, moved to this system's equilibrium.
-        near = steady_orbit(system.companion, period, start, samples, inertial)
+        # The nearest start is the surrogate's orbit, moved to this system's equilibrium.
+        near = steady_orbit(system.surrogate, period, start, samples, inertial)
         at_rest = near.displacement - near.displacement.mean(axis=0) + start
         return _solve(system, period, at_rest, samples, inertial, max(tolerance, _TOLERANCE_PYTHON))
     if inertial:
@@ -117,7 +117,7 @@ def steady_orbit(
     return _solve(system, period, np.tile(start, (samples, 1)), samples, inertial, tolerance)
 
 
-def _solve(system: System, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float) -> Orbit:
+def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float) -> Orbit:
     """Newton on all times at once from a first guess (samples, 5)."""
     z = system.ball_count
     times = np.arange(samples) * (period / samples)
@@ -142,13 +142,14 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
     linear[diagonal, :, diagonal, :] += stiffness
     residual, worst, iterations = np.inf, np.inf, 0
     step = np.zeros_like(q)
+    compiled = system.compiled
     damping_factor = 1.0
     for iterations in range(1, 61):
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
-        if system.companion is system:
-            done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
+        if compiled is not None:
+            done = evaluate_many(*compiled.model, system.law_state, times, q, v, ball, rate, f, K, C)
         else:
             done = _evaluate_each(system, times, q, v, ball, f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force
@@ -183,7 +184,7 @@ def _solve(system: System, period: float, start: np.ndarray, samples: int, inert
 
 
 def _evaluate_each(
-    system: System,
+    system: Ring,
     times: np.ndarray,
     q: np.ndarray,
     v: np.ndarray,

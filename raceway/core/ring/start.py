@@ -6,14 +6,12 @@ import attrs
 import numpy as np
 
 from raceway.core.ring.orbit import Orbit, at_time
-from raceway.core.ring.system import System
+from raceway.core.ring.ring import Ring
 from raceway.core.stepping.record import Motion
 
 
-def from_orbit(system: System, orbit: Orbit, dt: float) -> Motion:
+def from_orbit(system: Ring, orbit: Orbit, dt: float) -> Motion:
     """On a steady orbit, at the first of its times, moving with it."""
-    if system.starts is not None:
-        return system.starts.from_orbit(system, orbit, dt)
     before = at_time(orbit.ball, orbit.period, -dt)
     ball = orbit.ball[0].copy()
     if not system.conservative:
@@ -23,19 +21,15 @@ def from_orbit(system: System, orbit: Orbit, dt: float) -> Motion:
     return Motion(orbit.displacement[0], orbit.velocity[0], a, now.ball, before)
 
 
-def at_rest(system: System, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+def at_rest(system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
     """At rest in a static equilibrium; under a ramp the excitation is still zero, else it acts at once."""
-    if system.starts is not None:
-        return system.starts.at_rest(system, q, ball, ramped)
     outer = np.zeros(5) if ramped else system.outer_force(0.0)
     a = system.acceleration(q, np.zeros(5), outer, system.evaluate(q, ball=ball))
     return Motion(q, np.zeros(5), a, ball, ball.copy())
 
 
-def static_orbit(system: System, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+def static_orbit(system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
     """The equilibrium under the constant load and the excitation's force at time zero: for series of equilibria."""
-    if system.starts is not None:
-        return system.starts.static_orbit(system, q, ball, ramped)
     outer = np.zeros(5) if ramped else system.outer_force(0.0)
     loaded = attrs.evolve(system, load=system.load + outer)
     q, ball, _ = loaded.settle(q, ball)

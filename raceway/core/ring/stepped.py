@@ -15,7 +15,7 @@ _STIFFER = 1.02
 
 
 class SteppedBearing:
-    """``SteppedSystem`` around a system with the interface of ``raceway.core.ring.system.System``.
+    """``SteppedSystem`` around a system with the interface of ``raceway.core.ring.ring.Ring``.
 
     Parameters
     ----------

@@ -1,127 +1,61 @@
-"""The arrays and kernels of one small model (five coordinates of the ring, balls condensed), ready for integrators."""
+"""A ring whose contact forces are compiled: kernels and their arrays, ready for compiled loops."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import attrs
 import numpy as np
 
-from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
 from raceway.core.ring.kernels.columns import BLOCK, ROW, are_condensed, elastic_columns, work_rows
 from raceway.core.ring.kernels.layout import (
     CAGE,
     CENTRIFUGAL,
-    DIAMETER,
     FRICTION,
     GYROSCOPIC,
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    REST_RADIAL,
-    SIDE,
-    TILT_ARM,
-    place,
-    stop,
 )
-from raceway.core.stepping.record import Record
+from raceway.core.ring.ring import COORDINATES, TOLERANCE, Evaluation, Ring
 from raceway.core.stepping.states import check_state
 from raceway.errors import ConvergenceError
 
-#: Relative residual that an equilibrium is solved to.
-TOLERANCE = 1e-11
-COORDINATES = ("x", "y", "z", "tilt_y", "tilt_z")
 
-
-@attrs.frozen(eq=False)
-class Evaluation:
-    """Contact forces at one state.
-
-    Attributes
-    ----------
-    force : (5,) internal force of the contacts [N, N m]
-    stiffness, damping : (5, 5) its derivatives by displacement and velocity
-    gap, contact_force : (2 Z,) inner races first, then outer [m, N]
-    ball : (Z, 2 to 8) positions of the balls in their meridian planes, slips, structural approaches and displacements [m]
-    memory : (2 Z, m) what the law would remember
-    """
-
-    force: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
-    gap: np.ndarray
-    contact_force: np.ndarray
-    ball: np.ndarray
-    memory: np.ndarray
-
-
-@attrs.define(eq=False)
-class System:
-    """M q'' + C q' + K q + f(q, q') = load + force(t) for the ring's reference point.
+@attrs.define(eq=False, kw_only=True)
+class System(Ring):
+    """A ring whose contact forces are compiled.
 
     Attributes
     ----------
     kernel : compiled ``SYSTEM``;  law : compiled ``LAW``
     base_kernel : the same bodies without gyroscopic moments and friction, whose forces have a potential; ``kernel``
         itself where there are none
-    law_params : (2 Z, k);  law_state : (2 Z, m) committed memory of the law
-    scalars, table : constants, see ``raceway.core.ring.kernels``
-    mass, damping, stiffness : (5, 5) linear parts
-    free : (5,) 1 for unknowns, 0 for coordinates that are held
-    load : (5,) constant load [N, N m]
-    force : compiled ``FORCE``, the excitation;  force_params : (k,)
-    spin : how the speed changes that constants belong to; None for a steady one
+    law_params : (2 Z, k)
     """
 
     kernel: Any
     base_kernel: Any
     law: Any
     law_params: np.ndarray
-    law_state: np.ndarray
-    scalars: np.ndarray
-    table: np.ndarray
-    mass: np.ndarray
-    damping: np.ndarray
-    stiffness: np.ndarray
-    free: np.ndarray
-    load: np.ndarray
-    force: Any
-    force_params: np.ndarray
-    spin: ChangingSpeed | None = None
 
     @property
-    def ball_count(self) -> int:
-        return self.table.shape[0]
+    def compiled(self) -> System:
+        """This one."""
+        return self
 
     @property
-    def arm(self) -> float:
-        """Arm of the tilts [m]."""
-        return float(self.scalars[TILT_ARM])
+    def surrogate(self) -> System:
+        """This one."""
+        return self
 
     @property
     def conservative(self) -> bool:
         """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
         return self.base_kernel is self.kernel
 
-    @property
-    def companion(self) -> System:
-        """A compiled system of the same ring: this one; another, near it, where this one is stepped from Python."""
-        return self
-
-    @property
-    def starts(self) -> Any:
-        """The functions of ``raceway.core.ring.start`` for a system that has more unknowns than these; None where they are all."""
-        return None
-
-    def follow(self, on_residual: Callable[[float], None] | None) -> None:
-        """What to call with the residual of every iteration of an equilibrium that takes long."""
-
-    def stepped(self) -> Any:
-        """The ``SteppedSystem`` that loops in Python step."""
-        from raceway.core.ring.stepped import SteppedBearing
-
-        return SteppedBearing(self)
+    def of_balls(self, chosen: slice, table: np.ndarray) -> System:
+        """With the law's parameters of their contacts."""
+        params = np.ascontiguousarray(self.law_params[self.contacts_of(chosen)])
+        return attrs.evolve(super().of_balls(chosen, table), law_params=params)
 
     @property
     def ball_columns(self) -> int:
@@ -188,12 +122,6 @@ class System:
         """The arguments that every compiled loop begins with, less the excitation."""
         return self.kernel, self.law, self.law_params, self.scalars, self.table
 
-    def outer_force(self, t: float) -> np.ndarray:
-        """(5,) the excitation at a time, without ramp."""
-        out = np.zeros(5)
-        self.force(float(t), self.force_params, out)
-        return out
-
     def evaluate(
         self,
         q: np.ndarray,
@@ -247,30 +175,6 @@ class System:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
         return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball, new)
 
-    def at_speed(self, t: float) -> System:
-        """With the speed of a time: itself where the speed is steady."""
-        return self if self.spin is None else self.spin.at(self, t)
-
-    def stopped(self, t: float) -> System:
-        """A copy whose orbiting balls stand still where they are at a time."""
-        scalars, table = self.scalars.copy(), self.table.copy()
-        stop(float(t), scalars, table)
-        return attrs.evolve(self, scalars=scalars, table=table)
-
-    def without(self, *entries: int) -> System:
-        """A copy with some ``scalars`` (FRICTION, GYROSCOPIC, CAGE of ``raceway.core.ring.kernels.layout``) set to zero."""
-        scalars = self.scalars.copy()
-        scalars[list(entries)] = 0.0
-        return attrs.evolve(self, scalars=scalars)
-
-    def as_mounted(self, growth: float) -> System:
-        """A copy at standstill whose inner raceway has not grown by ``growth`` [m]: the state in which bearings are mounted."""
-        scalars, table = self.scalars.copy(), self.table.copy()
-        scalars[[GYROSCOPIC, CAGE]] = 0.0
-        scalars[REST_RADIAL] -= growth
-        table[:, CENTRIFUGAL] = 0.0
-        return attrs.evolve(self, scalars=scalars, table=table)
-
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:
@@ -305,10 +209,6 @@ class System:
         guess = whole.evaluate(q_now, ball=guess).ball
         guess[:, 2:4] = self.rolled_in(q_now, guess)
         return q_now, guess, total
-
-    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
-        """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""
-        return now.stiffness
 
     def _by_parts(
         self, solver: Any, q: np.ndarray, ball: np.ndarray | None, tolerance: float, load: np.ndarray | None, parts: Any
@@ -350,56 +250,3 @@ class System:
             f"no static equilibrium found after {total} iterations: {what}, {left}",
             {"q": q_now, "ball": ball_now},
         )
-
-    def centre_vectors(self, q: np.ndarray, t: float = 0.0, ball: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """(Z, 2) vector (axial, radial) from the outer to the inner groove centre of every ball, and its azimuth's
-        direction (Z, 2) as cosine and sine; ``ball`` (Z, k): with what elastic rings add there."""
-        work = np.zeros((3, 2 * self.ball_count))
-        place(float(t), np.ascontiguousarray(q, dtype=float), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
-        direction, centre, _ = work.reshape(3, 2, -1)
-        moved = 0.0 if ball is None else self.groove_displacement(ball)
-        return centre.T + moved, direction.T.copy()
-
-    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
-        """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
-        e, direction = self.centre_vectors(q, t, ball)
-        inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
-        outer = np.arctan2(ball[:, 0], ball[:, 1])
-        turned = self.table[:, SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
-        groove = self.scalars[OFFSET_INNER] + 0.5 * self.scalars[DIAMETER]
-        return np.column_stack([self.scalars[OFFSET_INNER] * inner - groove * turned, self.scalars[OFFSET_OUTER] * outer])
-
-    def friction_lost(self, record: Record) -> float:
-        """Energy that friction has taken at the end of a record [J]."""
-        from raceway.core.ring.friction import friction_energy
-
-        return float(friction_energy(self, record).lost[-1])
-
-    def at_standstill(self) -> System:
-        """Without friction and with balls that do not orbit: for periodic motions that a transient may start on."""
-        return self.without(FRICTION, CAGE)
-
-    def reduced(self, matrix: np.ndarray) -> np.ndarray:
-        """The part of a (5, 5) matrix that belongs to the unknowns."""
-        chosen = self.free > 0.0
-        return matrix[np.ix_(chosen, chosen)]
-
-    def acceleration(self, q: np.ndarray, v: np.ndarray, outer: np.ndarray, now: Evaluation) -> np.ndarray:
-        """(5,) acceleration from the balance of forces at one state."""
-        chosen = self.free > 0.0
-        rest = self.load + outer - now.force - self.damping @ v - self.stiffness @ q
-        a = np.zeros(5)
-        a[chosen] = np.linalg.solve(self.reduced(self.mass), rest[chosen])
-        return a
-
-    def natural_frequencies(self, tangent: np.ndarray) -> np.ndarray:
-        """Undamped natural frequencies [rad/s], ascending, with a contact tangent (5, 5)."""
-        mass = self.reduced(self.mass)
-        root = np.linalg.inv(np.linalg.cholesky(mass))
-        squares = np.linalg.eigvalsh(root @ self.reduced(0.5 * (tangent + tangent.T) + self.stiffness) @ root.T)
-        return np.sqrt(np.maximum(squares, 0.0))
-
-    def critical_time_step(self, tangent: np.ndarray) -> float:
-        """2 / (largest natural frequency) [s]: the stable limit of central differences."""
-        highest = self.natural_frequencies(tangent)[-1]
-        return 2.0 / highest if highest > 0.0 else float("inf")

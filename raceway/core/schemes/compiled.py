@@ -18,6 +18,10 @@ Every loop has the signature ``raceway.core.signatures.LOOP``::
     counters (8,)       see ``COUNTERS``
 
 A loop that returns less than ``count`` failed at the next step; ``motion`` is then the last good state.
+
+implicit                 Newmark's method and generalised-alpha
+central_difference       explicit in the contacts
+quasi_static             a series of equilibria;  quasi_static_tangential: of forces without a potential
 """
 
 from numba import float64, int64, void

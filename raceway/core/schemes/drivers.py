@@ -10,6 +10,7 @@ import attrs
 from raceway.errors import PluginError
 
 if TYPE_CHECKING:
+    from raceway.core.ring.ring import Ring
     from raceway.core.ring.system import System
     from raceway.core.stepping.protocol import SteppedSystem
     from raceway.core.stepping.record import Motion, OnChunk, Record, Schedule
@@ -50,7 +51,7 @@ def missing_driver(scheme: Scheme, compiled: bool) -> str:
 
 def integrate(
     integrator: Any,
-    system: System | SteppedSystem,
+    system: Ring | SteppedSystem,
     start: Motion,
     schedule: Schedule,
     on_chunk: OnChunk | None = None,
@@ -69,17 +70,19 @@ def integrate(
     PluginError
         A scheme without the driver, which a plan refuses before.
     """
-    from raceway.core.ring.system import System
+    from raceway.core.ring.ring import Ring
     from raceway.core.stepping.recorder import Recorder
 
     scheme: Scheme = integrator.scheme
-    compiled = isinstance(system, System) and system.companion is system
-    if isinstance(system, System) and compiled and scheme.compiled is not None:
-        return scheme.compiled(system, start, schedule, on_chunk)
+    compiled = system.compiled if isinstance(system, Ring) else None
+    if compiled is not None and scheme.compiled is not None:
+        return scheme.compiled(compiled, start, schedule, on_chunk)
     if scheme.stepped is None:
         name = getattr(integrator, "name", type(integrator).__name__)
-        raise PluginError(f"integrator '{name}' has no driver `{missing_driver(scheme, compiled)}`, which these bodies need")
-    stepper: SteppedSystem = system.stepped() if isinstance(system, System) else system
+        raise PluginError(
+            f"integrator '{name}' has no driver `{missing_driver(scheme, compiled is not None)}`, which these bodies need"
+        )
+    stepper: SteppedSystem = system.stepped() if isinstance(system, Ring) else system
     recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
     scheme.stepped(stepper, recorder)
     return recorder.record()

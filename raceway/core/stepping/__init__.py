@@ -1,13 +1,13 @@
 """Systems that are stepped from Python: too large, or too varied, for one compiled loop.
 
 protocol            what such a system must do, as numbered duties
+record              schedule, start and record of a time integration
 recorder            sampled steps become a ``Record``; progress; failures with the last good state
+states              shapes of states that compiled kernels take
 implicit            Newmark's method and generalised-alpha: Newton with a line search
 central_difference  explicit steps, without matrices
 quasi_static        the motion as a series of equilibria
-bearing             any system with the ring's five coordinates, made steppable
 energy              balance of the energies that a system tells
-elastic             elastic bodies in nodal contact, stepped in time
 restart             a motion on disk, to go on from
 
 Each loop does what the compiled loop of the same name in ``raceway.core.schemes.compiled`` does, step for step.

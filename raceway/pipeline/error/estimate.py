@@ -26,7 +26,7 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
-from raceway.core.ring.system import TOLERANCE
+from raceway.core.ring.ring import TOLERANCE
 from raceway.core.signals.identification import Identification
 from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.pipeline.error.contact import contact_error

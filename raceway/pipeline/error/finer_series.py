@@ -48,7 +48,7 @@ def finer_value(
     Notes
     -----
     Bodies that are stepped from Python take milliseconds an equilibrium: of them the change is that of their compiled
-    companion, whose motion has nearly the same harmonics.
+    surrogate, whose motion has nearly the same harmonics.
     """
 
     def identified(models: list[Model], steps: int) -> complex:
@@ -56,8 +56,8 @@ def finer_value(
         return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
 
     models = [one for one, _ in motions]
-    if model.system.companion is model.system:
+    if model.system.compiled is not None:
         return identified(models, count)
-    models = [attrs.evolve(one, system=one.system.companion) for one in models]
+    models = [attrs.evolve(one, system=one.system.surrogate) for one in models]
     steps = motions[-1][1].whole.schedule.steps_per_turn
     return value + identified(models, count) - identified(models, steps)

@@ -1,1 +1,6 @@
-"""Built-in executors: this process, processes on this machine, workers of a dask scheduler."""
+"""Built-in executors.
+
+serial   in this process
+joblib   processes on this machine
+dask     workers of a dask scheduler
+"""

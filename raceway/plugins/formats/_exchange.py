@@ -1,4 +1,4 @@
-"""What the mesh formats share: calls of meshio, the choice of hexahedra, facets from quadrilaterals."""
+"""Common parts of the mesh formats: calls of meshio, the choice of hexahedra, facets from quadrilaterals."""
 
 from __future__ import annotations
 

@@ -35,10 +35,11 @@ class Fft1x:
         other, _ = fit_lines(record.time, np.hstack([record.force, record.displacement]), frequency, 3)
         per_turn = record.schedule.steps_per_turn // record.schedule.stride
         turns = len(record.time) // per_turn
-        force_straight = without_drift(record.time, record.force, frequency)
-        straight = without_drift(record.time, record.displacement, frequency)
         single = []
-        for turn in range(turns):
+        if turns > 1:
+            force_straight = without_drift(record.time, record.force, frequency)
+            straight = without_drift(record.time, record.displacement, frequency)
+        for turn in range(turns if turns > 1 else 0):
             part = slice(turn * per_turn, (turn + 1) * per_turn)
             force_1 = fourier_line(record.time[part], force_straight[part], frequency)
             single.append(stiffness(force_1, fourier_line(record.time[part], straight[part], frequency)))
@@ -49,6 +50,6 @@ class Fft1x:
         return identification(
             self.definition, frequency, force, line, model.mass_used,
             residual=float(np.sqrt(((motion - pure)[:, 1:] ** 2).sum()) / scale) if scale > 0 else None,
-            spread=float(max(abs(z - whole) for z in single) / abs(whole)) if turns > 1 else None,
+            spread=float(max(abs(z - whole) for z in single) / abs(whole)) if single else None,
             window=float(abs(stiffness(other[0, :5], other[0, 5:]) - whole) / abs(whole)),
         )  # fmt: skip

@@ -1,1 +1,6 @@
-"""Built-in meshers."""
+"""Built-in meshers.
+
+structured   rings with the true groove, balls as cubed spheres, graded to the contacts
+file         meshes from files
+gmsh         solids meshed by Gmsh
+"""

@@ -1,4 +1,4 @@
-"""What meshers of given bodies share: which bodies there are, and balls from the mesh of one ball."""
+"""Common parts of meshers of given bodies: names of the bodies, balls from the mesh of one ball."""
 
 from __future__ import annotations
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.errors import MeshError
+from raceway.errors import MeshError, PluginError
 from raceway.framework.options import nearest, option
+from raceway.framework.sources import blamed
 from raceway.plugins.meshers._bodies import (
     BODIES,
     ball_path,
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 @attrs.frozen
 class File:
-    """Hexahedra from files (.vtu, .inp, .msh), one for each body; [mesh.sets.BODY] names their sets."""
+    """Hexahedra from files of any installed format (.vtu, .inp, .msh), one for each body; [mesh.sets.BODY] names their sets."""
 
     name: ClassVar[str] = "file"
 
@@ -63,15 +64,8 @@ class File:
 
     def _body(self, body: str, path: str) -> HexMesh:
         from raceway.core.mesh.quality import refuse_bad_cells, refuse_doubled
-        from raceway.plugins.formats.abaqus import Abaqus
-        from raceway.plugins.formats.msh import Msh
-        from raceway.plugins.formats.vtu import Vtu
 
-        known = {suffix: form for form in (Vtu, Abaqus, Msh) for suffix in form.suffixes}
-        suffix = Path(path).suffix.lower()
-        if suffix not in known:
-            raise MeshError(f"'{path}': no format has the ending '{suffix}'; there are {', '.join(sorted(known))}")
-        mesh: HexMesh = known[suffix]().read(path)
+        mesh = _read(path)
         nodes, facets = dict(mesh.node_sets), dict(mesh.facet_sets)
         for own, theirs in (self.sets or {}).get(body, {}).items():
             try:
@@ -91,3 +85,19 @@ class File:
         refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
         refuse_doubled(mesh, f"{body} ({Path(path).name})")
         return with_node_sets(mesh.renumbered())
+
+
+def _read(path: str) -> HexMesh:
+    """A file by the format that has its ending, of those that this process knows."""
+    from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.framework.registry import default_registry
+
+    try:
+        form = default_registry().format_of(path)
+    except PluginError as why:
+        raise MeshError(str(why)) from None
+    with blamed(str(form), "read()"):
+        mesh = form.plugin().read(path)
+    if not isinstance(mesh, HexMesh):
+        raise MeshError(f"'{path}': {form} reads no mesh from it, but {type(mesh).__name__}")
+    return mesh

@@ -101,7 +101,7 @@ class Structured:
         return found
 
     def _suffixes(self, bearing: Any) -> list[str]:
-        """What follows the names of the bodies of each row."""
+        """Suffixes of the names of the bodies of each row."""
         count = len(bearing.rows)
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
 

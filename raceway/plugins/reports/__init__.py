@@ -1,1 +1,4 @@
-"""Built-in reports."""
+"""Built-in reports.
+
+pictures   orbit, spectrum and ball loads as PNG files
+"""

@@ -7,10 +7,10 @@ rules        what a claim asks of a curve or a surface, as plain functions of nu
 regions      where a rule holds, in words
 power_law    what "quadratic" asks: an exponent with its interval
 verdict      a verdict and how it follows from a rule's outcomes
-claims       the claims, each with its rule, what was computed and the verdict; 4 and 6 in claims_rotating, 5 in claims_axial
+claims       the claims, each with its rule, what was computed and the verdict;  claims_rotating: 4 and 6;  claims_axial: 5
 expected     the quasi-static trends of an independent solver and the same numbers computed here
 causes       direction, amplitude law, ball inertia, bodies and friction swapped one at a time
-figures      figures 9 to 12
-report       the page
-study        all of it: ``article()``
+figures      figures 9 to 12;  panel: their axes
+report       the page;  files: page, pictures and tables on disk;  screen: the verdicts
+study        all of it: ``article()``;  command: ``raceway study article``
 """

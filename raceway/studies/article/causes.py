@@ -1,4 +1,4 @@
-"""What causes the trend: direction, amplitude law, ball inertia and bodies swapped one at a time, and the tilt stiffness."""
+"""Causes of the trend: direction, amplitude law, ball inertia, bodies and tilt stiffness, one swapped at a time."""
 
 from __future__ import annotations
 

@@ -9,11 +9,11 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from raceway.commands.console import warn
 from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    keeping,
     out_option,
     plugin_files,
     processes_at_a_time,
@@ -96,11 +96,8 @@ def article(
         from raceway.studies.article.study import article as study
 
         kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
-        try:
+        with keeping("curves", kept):
             found = study(tables, speeds, axial, shaft, kinds, friction, processes, kept, registry, plugins, progress)
-        except KeyboardInterrupt:
-            warn(f"finished curves are kept in {kept}; the same command goes on from there", label="")
-            raise
         progress("writing", 0, 0)
         content, files = found.as_dict(), list[str]()
         failed = attempt(lambda: found.write(folder, pictures, command), files) or found.fault

@@ -1,4 +1,4 @@
-"""What the study runs: every setting at every axial load over all speeds, made from one scene."""
+"""Runs of the study: every setting at every axial load over all speeds, made from one scene."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ class Design:
 
 
 def shaft_tilt_stiffness(diameter: float = SHAFT_DIAMETER, span: float = SPAN, young: float = YOUNG) -> float:
-    """What the rig's shaft opposes to a tilt of the inner ring [N m/rad].
+    """Tilt stiffness of the rig's shaft at the inner ring [N m/rad].
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""What "quadratic" asks of a curve: the exponent of a power law, with its interval.
+"""Exponent of a power law with its interval: the test of "quadratic".
 
 Notes
 -----

@@ -1,4 +1,4 @@
-"""Where something holds, in words that mention only what matters."""
+"""Regions in which a rule holds, in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the claims ask of numbers.  Plain functions: arrays in, answers out; None where numbers are missing.
+"""Rules of the claims, as plain functions of arrays; None where numbers are missing.
 
 A number that is missing is nan.  Where ``failed`` is True a run failed or was refused: nothing is judged over such a gap.  The
 other numbers that are missing belong to unstable motions: those between two numbers are bridged, those at an end leave no judgement.

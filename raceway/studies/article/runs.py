@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.file import scene_from_dict
-from raceway.studies.many.processes import in_processes
+from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, program_key
 
 Row = dict[str, Any]
@@ -82,48 +81,12 @@ def work(
     plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None,
 ) -> tuple[list[list[Row]], int]:
-    """Rows of every task, in order, and how many tasks were taken from the store.
-
-    Parameters
-    ----------
-    processes : how many work at a time; 0 works in this process
-    plugins : one-off plug-in files, which each process loads
-
-    Raises
-    ------
-    KeyboardInterrupt
-        Finished tasks are in the store.
-    """
+    """Rows of every task, in order, and how many tasks were taken from the store; see ``raceway.studies.many.engine``."""
     program = program_key(registry)
-    keys = [task.key(program) for task in tasks]
-    found = {k: kept["rows"] for k, key in enumerate(keys) if (kept := store.get(key)) is not None}
-    reused = len(found)
-    waiting = [k for k in range(len(tasks)) if k not in found]
-    finished = _here(tasks, waiting, registry) if processes == 0 else _apart(tasks, waiting, processes, plugins)
-    for k, rows in finished:
-        found[k] = rows
-        store.put(keys[k], {"rows": rows})
-        if on_progress is not None:
-            on_progress(tasks[k].name, len(found), len(tasks))
-    return [found[k] for k in range(len(tasks))], reused
+    items = [Item(task.key(program), task.name, task) for task in tasks]
+    done, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
+    return [row["rows"] for row in done], reused
 
 
-def _here(tasks: Sequence[Task], waiting: Sequence[int], registry: Registry) -> Iterator[tuple[int, list[Row]]]:
-    return ((k, _rows(tasks[k], registry)) for k in waiting)
-
-
-def _apart(
-    tasks: Sequence[Task], waiting: Sequence[int], processes: int, plugins: Sequence[Path]
-) -> Iterator[tuple[int, list[Row]]]:
-    try:
-        for place, rows in in_processes(_rows, [tasks[k] for k in waiting], processes, plugins):
-            yield waiting[place], rows
-    except BrokenProcessPool:
-        raise RacewayError(
-            "a process of the study was ended from outside, perhaps for want of memory; finished curves are kept: run the "
-            "command again, with --processes 1"
-        ) from None
-
-
-def _rows(task: Task, registry: Registry) -> list[Row]:
-    return task.function(task.given, registry)
+def _rows(task: Task, registry: Registry) -> dict[str, Any]:
+    return {"rows": task.function(task.given, registry)}

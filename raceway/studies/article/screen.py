@@ -1,4 +1,4 @@
-"""What a person sees of ``raceway study article``.  Prints nothing by itself."""
+"""Table of ``raceway study article``.  Prints nothing by itself."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import BODIES, LOADS, SPEEDS, TILTS, Design, Setting, article_tables, design
 from raceway.studies.article.runs import Row, Task, curve, work
 from raceway.studies.article.verdict import Verdict
-from raceway.studies.many.processes import processor_time
+from raceway.studies.many.engine import processor_time
 from raceway.studies.many.reference import reference_cases
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.verify import study as verification

@@ -1,4 +1,4 @@
-"""What causes the change of K(w) along the leading axis: usually stiffness over speed."""
+"""Causes of the change of K(w) along the leading axis: usually stiffness over speed."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def causes(comparison: Findings, leading: Axis) -> list[str]:
 
 
 def _course(comparison: Findings, leading: Axis, partner: Axis) -> list[str]:
-    """How K runs along the leading axis at each value of its strongest partner."""
+    """Course of K along the leading axis at each value of its strongest partner."""
     trends = [t for t in comparison.trends if t["axis"] == leading.key and t["quantity"] == "equivalent_stiffness"]
     words = []
     for value in partner.values:
@@ -72,7 +72,7 @@ def _course(comparison: Findings, leading: Axis, partner: Axis) -> list[str]:
 
 
 def _size(comparison: Findings, leading: Axis, partner: Axis, others: list[str]) -> list[str]:
-    """What decides the size of the change, at each end of the strongest partner."""
+    """Cause of the size of the change, at each end of the strongest partner."""
     factorial = comparison.factorials["equivalent_stiffness"]
     words = []
     for end, value in enumerate(partner.ends):
@@ -161,7 +161,7 @@ def _factors(log_changes: list[float]) -> str:
 
 
 def _in_short(comparison: Findings, leading: Axis, partner: Axis, others: list[str]) -> str:
-    """What decides the sense and the size of the change, in one sentence."""
+    """Cause of the sense and of the size of the change, in one sentence."""
     factorial = comparison.factorials["equivalent_stiffness"]
     flips = sense_flips(factorial, leading)[1]
     turning = [named(key) for key in sorted(flips, key=lambda key: -flips[key]) if flips[key]]
@@ -177,7 +177,7 @@ def _in_short(comparison: Findings, leading: Axis, partner: Axis, others: list[s
 
 
 def _least(factorial: Factorial, along: str, key: str, given: dict[str, int]) -> float:
-    """What a shift of the change along an axis has to reach to count."""
+    """Least shift of the change along an axis that counts."""
     return max(HARDLY, sum(factorial.log_error(along, {**given, key: end}) for end in (0, 1)))
 
 

@@ -10,6 +10,7 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    keeping,
     on_scene,
     out_folder,
     plugin_files,
@@ -39,6 +40,8 @@ def compare(
 ) -> int:
     """Vary some keys of a scene and say which of them causes what: main effects and interactions.
 
+    Writes compare.json and compare.png. Finished runs are kept in DIR/compare-rows.jsonl and reused.
+
     \b
     Example:
       raceway compare examples/b7206.toml --set integrator.kind=periodic \\
@@ -52,13 +55,14 @@ def compare(
     folder = writable(out or RESULTS / f"{slug(title)}-compare")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
+    kept = folder / "compare-rows.jsonl"
     with show_progress() as progress:
         from raceway.pipeline.result import write_json
         from raceway.studies.compare.study import compare as study
 
         stopped = None
         try:
-            comparison = study(tables, list(vary), registry, progress)
+            comparison = study(tables, list(vary), registry, progress, kept)
         except KeyboardInterrupt as stop:
             partial = getattr(stop, "partial", None)
             if partial is None or not partial.rows:
@@ -66,12 +70,13 @@ def compare(
             comparison, stopped = partial, stop  # what is finished is shown and written first
     content = comparison.as_dict()
     files: list[str] = []
-    failed = attempt(lambda: [write_json(content, folder / "compare.json")], files)
+    failed = attempt(lambda: [write_json(content, folder / "compare.json")], files) or comparison.fault
     if pictures and failed is None and stopped is None:
         failed = attempt(lambda: comparison.picture(folder), files)
     from raceway.studies.compare.screen import compare_screen
 
     show(content, as_json, failed, lambda: compare_screen(title, comparison.table(), comparison.words, files))
-    if stopped is not None:
-        raise stopped
+    with keeping("runs", kept):
+        if stopped is not None:
+            raise stopped
     return 0

@@ -8,6 +8,7 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import RacewayError
 from raceway.studies.compare.explain import explain
 from raceway.studies.compare.findings import QUANTITIES, Findings, Row
 from raceway.studies.many.axes import Axis, shown
@@ -15,7 +16,9 @@ from raceway.studies.many.axes import Axis, shown
 
 @attrs.frozen(eq=False, slots=False)
 class Comparison(Findings):
-    """Findings with words, table and picture."""
+    """Findings with words, table and picture; ``fault``: why finished runs could not be kept."""
+
+    fault: RacewayError | None = None
 
     @cached_property
     def words(self) -> list[str]:

@@ -86,7 +86,7 @@ class Factorial:
 
     @property
     def error(self) -> float:
-        """What the corners' errors can move any effect by, at most."""
+        """Largest shift of any effect by the corners' errors."""
         return float(2.0 * self._log_errors.mean())
 
     @cached_property
@@ -117,7 +117,7 @@ class Factorial:
         return last - first
 
     def log_error(self, key: str, given: Mapping[str, int] | None = None) -> float:
-        """What the corners' errors can move that change by, at most."""
+        """Largest shift of that change by the corners' errors."""
         return sum(self._mean(self._log_errors, {**(given or {}), key: end}) for end in (0, 1))
 
     def resolved_change(self, key: str, given: Mapping[str, int] | None = None) -> float:

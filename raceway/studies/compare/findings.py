@@ -1,4 +1,4 @@
-"""What a comparison found, in numbers: rows, effects, trends."""
+"""Findings of a comparison in numbers: rows, effects, trends."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Row:
 
 @attrs.frozen(eq=False, slots=False)
 class Findings:
-    """What a comparison found.
+    """Findings of a comparison.
 
     Attributes
     ----------
@@ -162,7 +162,7 @@ class Findings:
 
     @cached_property
     def trends(self) -> list[dict[str, Any]]:
-        """How each quantity runs along each axis of three or more numbers, for every combination of the others."""
+        """Trend of each quantity along each axis of three or more numbers, for every combination of the others."""
         found = []
         for axis in self.varied:
             if not axis.numeric or len(axis.values) < 3:

@@ -1,4 +1,4 @@
-"""How |Z| differs from K(w) in a comparison, in sentences made from its rows."""
+"""Difference of |Z| and K(w) in a comparison, in sentences made from its rows."""
 
 from __future__ import annotations
 

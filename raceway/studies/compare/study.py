@@ -5,11 +5,11 @@ Only ``raceway.pipeline.run.run`` is called.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
-from raceway.errors import RacewayError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
@@ -17,7 +17,9 @@ from raceway.scene.file import scene_from_dict
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
 from raceway.studies.many.axes import parse_axes, points
+from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.points import refuse_mistakes, tables_at
+from raceway.studies.many.row_store import RowStore, row_key, tables_key
 
 
 def compare(
@@ -25,6 +27,7 @@ def compare(
     vary: Iterable[str],
     registry: Registry | None = None,
     on_progress: OnProgress | None = None,
+    store: Path | None = None,
 ) -> Comparison:
     """Run a scene at every combination of the axes' values.
 
@@ -33,13 +36,14 @@ def compare(
     scene_tables : plain tables of a TOML scene
     vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``
     on_progress : called as ``on_progress(what, done, total)`` after each run; an exception stops the study
+    store : file that finished runs are kept in and taken from
 
     Raises
     ------
     SceneError
         A mistake in an axis or in the scene; nothing has been run.
     KeyboardInterrupt
-        Passed on, with the finished rows as a ``Comparison`` in its attribute ``partial``.
+        Passed on, with the finished rows as a ``Comparison`` in its attribute ``partial``; they are in ``store``, too.
 
     Notes
     -----
@@ -49,17 +53,29 @@ def compare(
     axes = parse_axes(vary)
     notes: list[str] = []
     title = refuse_mistakes(scene_tables, axes, registry)
-    rows: list[Row] = []
-    total = math.prod(len(axis.values) for axis in axes)
+    kept, places = RowStore(store), list(points(axes))
+    items = [_item(tables_at(scene_tables, point, registry, notes), registry) for point in places]
     try:
-        for point in points(axes):
-            rows.append(Row(point, _result(tables_at(scene_tables, point, registry, notes), registry)))
-            if on_progress is not None:
-                on_progress("runs", len(rows), total)
+        work_through(_result, items, kept, local(registry, 0), registry, on_progress=on_progress)
     except KeyboardInterrupt as stop:
-        stop.partial = Comparison(title, axes, tuple(rows), tuple(notes))  # type: ignore[attr-defined]
+        stop.partial = _comparison(title, axes, places, items, kept, notes)  # type: ignore[attr-defined]
         raise
-    return Comparison(title, axes, tuple(rows), tuple(notes))
+    return _comparison(title, axes, places, items, kept, notes)
+
+
+def _comparison(title: str, axes: Any, places: list[Any], items: list[Item], kept: RowStore, notes: list[str]) -> Comparison:
+    """Of the points that are finished."""
+    found = [(point, kept.get(item.key)) for point, item in zip(places, items, strict=True)]
+    rows = tuple(Row(point, result) for point, result in found if result is not None)
+    return Comparison(title, axes, rows, tuple(notes), kept.fault)
+
+
+def _item(tables: Mapping[str, Any], registry: Registry) -> Item:
+    try:
+        key = row_key(scene_from_dict(tables, registry), registry, "compare")
+    except SceneError:  # refused as it is run
+        key = tables_key(tables, registry, "compare")
+    return Item(key, "runs", tables)
 
 
 def _result(tables: Mapping[str, Any], registry: Registry) -> dict[str, Any]:

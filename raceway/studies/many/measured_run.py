@@ -11,6 +11,8 @@ from typing import Any
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.scene.tables import Scene
+from raceway.studies.many.engine import Item, local, work_through
+from raceway.studies.many.row_store import RowStore, row_key
 
 #: No further repeat is begun once a setting has taken this long [s].
 PATIENCE_S = 10.0
@@ -39,6 +41,23 @@ def quantities(result: dict[str, Any]) -> dict[str, float]:
         "peak_ball_load": max(ball["load_inner_n"] for ball in balls),
         "p0": max(max(ball["peak_pressure_inner_pa"], ball["peak_pressure_outer_pa"]) for ball in balls),
     }
+
+
+def measured_once(
+    scene: Scene, repeats: int, extra: Any, registry: Registry, store: RowStore
+) -> tuple[dict[str, Any], bool]:
+    """``measured``, and whether it was kept from before; ``extra`` is a part of the row's key.
+
+    In this process, with nothing beside it: times are what is asked for.
+    """
+    item = Item(row_key(scene, registry, extra), scene.title, (scene, repeats))
+    (row,), reused = work_through(_measured, [item], store, local(registry, 0), registry)
+    return row, reused == 1
+
+
+def _measured(given: tuple[Scene, int], registry: Registry) -> dict[str, Any]:
+    scene, repeats = given
+    return measured(scene, registry, repeats)
 
 
 def measured(scene: Scene, registry: Registry, repeats: int) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -80,11 +80,18 @@ def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | 
     ----------
     program : instead of ``program_key(registry)``
     """
+    return tables_key(scene.as_dict(), registry, extra, program, files_of(scene))
+
+
+def tables_key(
+    tables: Mapping[str, Any], registry: Registry, extra: Any = None, program: str | None = None, files: Iterable[str] = ()
+) -> str:
+    """The same of a scene's tables, and of the files that they name."""
     digest = hashlib.sha256()
-    tables = {name: table for name, table in scene.as_dict().items() if name != "title"}
-    digest.update(json.dumps([tables, extra], sort_keys=True, default=str).encode())
+    untitled = {name: table for name, table in tables.items() if name != "title"}
+    digest.update(json.dumps([untitled, extra], sort_keys=True, default=str).encode())
     digest.update((program or program_key(registry)).encode())
-    for name in files_of(scene):
+    for name in files:
         path = Path(name)
         digest.update(path.read_bytes() if path.is_file() else b"missing")
     return digest.hexdigest()[:24]

@@ -8,11 +8,11 @@ from typing import Any
 
 import click
 
-from raceway.commands.console import warn
 from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    keeping,
     out_folder,
     plugin_files,
     processes_at_a_time,
@@ -72,11 +72,8 @@ def study_map(
         from raceway.studies.map.page import write_data, write_pictures
         from raceway.studies.map.study import study_map as study
 
-        try:
+        with keeping("points", kept):
             found = study(planned, processes, kept, registry, plugins, progress)
-        except KeyboardInterrupt:
-            warn(f"finished points are kept in {kept}; the same command goes on from there", label="")
-            raise
         progress("writing", 0, 0)
         written: list[str] = []
         failed = attempt(lambda: write_data(found, folder), written)

@@ -1,4 +1,4 @@
-"""What the map varies, from what it starts, and how its numbers are defined."""
+"""Axes of the map, its start, and the definitions of its numbers."""
 
 from __future__ import annotations
 

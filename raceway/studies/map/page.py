@@ -1,4 +1,4 @@
-"""What a map leaves: map.json, map.csv, pictures, and map.html with all of it."""
+"""Files of a map: map.json, map.csv, pictures, and map.html with all of it."""
 
 from __future__ import annotations
 

@@ -14,10 +14,11 @@ import attrs
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.simulate import OnProgress
+from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.map.curves import LEVEL, SATURATED, curves, words
-from raceway.studies.map.design import SPEED, Design, amplitude_words
-from raceway.studies.map.workers import Numbered, in_parallel, rows_of
+from raceway.studies.map.design import Design, amplitude_words
+from raceway.studies.map.point import point_row
 
 #: Points above which processes of their own are worth their start: importing the program takes as long as a hundred.
 _WORTH = 150
@@ -57,7 +58,7 @@ class Map:
 
 
 def definitions(method: str) -> dict[str, str]:
-    """What the numbers of a map are."""
+    """Definitions of the numbers of a map."""
     how = {
         "quasi_static": "secant: 1x line of the force over that of the displacement, the orbit as a series of equilibria "
         "under the force as given; the contacts carry just this force",
@@ -99,43 +100,20 @@ def study_map(
     """
     registry = registry or default_registry()
     points, store = design.points(), RowStore(kept)
-    keys = [row_key(design.scene(point, registry), registry, "map") for point in points]
-    missing = [(number, point) for number, point in enumerate(points) if store.get(keys[number]) is None]
-    tasks = _tasks(missing)
-
-    def keep(rows: Numbered) -> None:
-        for number, row in rows:
-            store.put(keys[number], row)
-        if on_progress is not None:
-            done = sum(1 for key in keys if store.get(key) is not None)
-            on_progress("points of the map", done, len(points))
-
-    def alone(some: Sequence[Numbered]) -> None:
-        for task in some:
-            for one in task:
-                keep(rows_of(design, [one], registry))
-
-    if processes < 2 or len(missing) < _WORTH:
-        alone(tasks)
-    else:
-        # The first curve here: it compiles what is not in the cache yet, once.
-        alone(tasks[:1])
-        for finished in in_parallel(design, tasks[1:], processes, plugins):
-            keep(finished)
-    rows = [{"point": point, **_copy(store.get(key))} for point, key in zip(points, keys, strict=True)]
+    items = [
+        Item(row_key(design.scene(point, registry), registry, "map"), "points of the map", (design, point))
+        for point in points
+    ]
+    worth = sum(store.get(item.key) is None for item in items) >= _WORTH
+    executor = local(registry, processes if worth and processes > 1 else 0)
+    done, _ = work_through(row_at, items, store, executor, registry, plugins, on_progress)
+    rows = [{"point": point, **row} for point, row in zip(points, done, strict=True)]
     found = curves(rows)
     amplitude = amplitude_words(design.scene(points[0], registry))
     return Map(design, amplitude, rows, found, words(found, rows), store.fault)
 
 
-def _tasks(missing: Numbered) -> list[Numbered]:
-    """A task for each curve: points that differ in speed only."""
-    tasks: dict[tuple[Any, ...], Numbered] = {}
-    for number, point in missing:
-        tasks.setdefault(tuple(str(value) for key, value in point.items() if key != SPEED), []).append((number, point))
-    return list(tasks.values())
-
-
-def _copy(row: dict[str, Any] | None) -> dict[str, Any]:
-    assert row is not None
-    return dict(row)
+def row_at(given: tuple[Design, dict[str, Any]], registry: Registry) -> dict[str, Any]:
+    """The row of one point of a design."""
+    design, point = given
+    return point_row(design.scene(point, registry), registry)

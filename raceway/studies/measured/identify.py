@@ -31,7 +31,7 @@ _UNLIKE = 0.3
 
 @attrs.frozen(eq=False)
 class Found:
-    """What signals say of the bearing.
+    """The bearing as identified from signals.
 
     Attributes
     ----------

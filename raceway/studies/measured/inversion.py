@@ -18,7 +18,7 @@ from raceway.studies.shaft.rotor import Rotor
 
 
 def invert(line: Rotor, held: Bearing, sensor: complex) -> State:
-    """What the bearing does, from the deflection at the sensor [m], its phase against the unbalance.
+    """State of the bearing from the deflection at the sensor [m], its phase against the unbalance.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def invert(line: Rotor, held: Bearing, sensor: complex) -> State:
 
 
 def with_tilt_of(line: Rotor, state: State, sensor: complex, stiffer: float = 1.0) -> State:
-    """What the bearing does by the sensor's line, with the moment over tilt of a state nearby; costs no run.
+    """State of the bearing by the sensor's line, with the moment over tilt of a state nearby; costs no run.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def with_tilt_of(line: Rotor, state: State, sensor: complex, stiffer: float = 1.
 
 
 def with_moment(line: Rotor, sensor: complex, moment: complex, like: State | Bearing) -> State:
-    """What the bearing does by the sensor's line under a moment that is known [N m]."""
+    """State of the bearing by the sensor's line under a known moment [N m]."""
     force = (sensor - line.at_sensor(0.0, moment)) / line.sensor[1]
     return _state(line, force, moment, like, 0)
 

@@ -21,7 +21,7 @@ _SECOND, _FIRST = 0.6745 * 6.0**0.5, 0.6745 * 2.0**0.5
 
 @attrs.frozen(eq=False)
 class Marks:
-    """Where a probe's voltage rises through the middle of its range.
+    """Times at which a probe's voltage rises through the middle of its range.
 
     Attributes
     ----------

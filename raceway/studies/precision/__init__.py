@@ -1,1 +1,8 @@
-"""Error against run time: which setting is good enough."""
+"""Error against run time: which setting is good enough.
+
+design      settings that are run
+reference   the value that they are held against, with its bound
+study       the runs;  command: ``raceway precision``
+result      errors, fronts, orders
+picture     files of a study;  screen: its table
+"""

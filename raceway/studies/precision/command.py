@@ -10,6 +10,7 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    keeping,
     out_option,
     plugin_files,
     registry_with,
@@ -17,7 +18,6 @@ from raceway.commands.frame import (
     set_keys,
     show,
     show_progress,
-    tell_kept,
 )
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import SceneError
@@ -70,11 +70,8 @@ def precision(
     with show_progress() as progress:
         from raceway.studies.precision.study import precision as study
 
-        try:
+        with keeping("rows", kept):
             found = study(tables, vary, reference, repeats, limit, kept, registry, progress)
-        except KeyboardInterrupt:
-            tell_kept("rows", kept)
-            raise
     content, files = found.as_dict(), list[str]()
     failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
     if failed is None:

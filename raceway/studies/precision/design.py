@@ -1,4 +1,4 @@
-"""Which settings a precision study runs: the axes that the user names, or a design made from the scene.
+"""Settings of a precision study: the axes that the user names, or a design made from the scene.
 
 The default design is a union of small products, one for each question, not the product of all axes:
 

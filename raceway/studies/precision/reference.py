@@ -1,4 +1,4 @@
-"""What the rows of a precision study are held against, with a bound of its own error.
+"""Reference of a precision study, with a bound of its own error.
 
 In this order:
 
@@ -17,9 +17,9 @@ from typing import Any
 import attrs
 
 from raceway.framework.registry import Registry
-from raceway.studies.many.measured_run import measured
+from raceway.studies.many.measured_run import measured_once
 from raceway.studies.many.points import tables_at
-from raceway.studies.many.row_store import RowStore, row_key
+from raceway.studies.many.row_store import RowStore
 from raceway.studies.precision.design import Setting, is_steady, needs_motion, setting_at
 
 #: Steps of the reference over the finest steps of the rows, and its least steps and turns.
@@ -45,7 +45,7 @@ class Reference:
 
     @property
     def size(self) -> float:
-        """What relative errors of the main quantity refer to."""
+        """Size that relative errors of the main quantity refer to."""
         return main_size(self.values)
 
     @property
@@ -85,12 +85,8 @@ class Runner:
         found = setting_at(tables, "reference", {}, self.registry)
         if found.scene is None or found.predicted_s > self.limit_s:
             return None
-        key = row_key(found.scene, self.registry, "reference")
-        row = self.store.get(key)
-        if row is None:
-            self.on_run(f"reference: {', '.join(f'{k} = {v}' for k, v in values.items())}")
-            row = measured(found.scene, self.registry, 1)
-            self.store.put(key, row)
+        self.on_run(f"reference: {', '.join(f'{k} = {v}' for k, v in values.items())}")
+        row, _ = measured_once(found.scene, 1, "reference", self.registry, self.store)
         return row if row["status"] == "completed" else None
 
 

@@ -25,7 +25,7 @@ Row = dict[str, Any]
 
 @attrs.frozen(eq=False, slots=False)
 class Precision:
-    """What a study found.
+    """Findings of a precision study.
 
     Attributes
     ----------

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.file import parse_change
-from raceway.studies.many.measured_run import measured
-from raceway.studies.many.row_store import RowStore, row_key
+from raceway.studies.many.measured_run import measured_once
+from raceway.studies.many.row_store import RowStore
 from raceway.studies.precision.design import Setting, make_design, needs_motion, setting_at
 from raceway.studies.precision.reference import Reference, Runner, find_reference
 from raceway.studies.precision.result import Precision, words_of
@@ -117,10 +117,5 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) ->
         return {**head, **lost}
     if needs_motion(setting.scene) and setting.scene.integrator.method.inertial:
         head["expected_order"] = setting.scene.integrator.method.order
-    key = row_key(setting.scene, registry, repeats)
-    row = store.get(key)
-    if row is not None:
-        return {**head, **row, "reused": True}
-    row = measured(setting.scene, registry, repeats)
-    store.put(key, row)
-    return {**head, **row}
+    row, reused = measured_once(setting.scene, repeats, repeats, registry, store)
+    return {**head, **row, "reused": reused}

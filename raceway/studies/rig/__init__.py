@@ -3,5 +3,6 @@
 sensors         the signals: noise, drift, run-out, changing speed
 as_printed      the article's procedure, and other corrections for the shaft
 error_split     one cause of error at a time
-study           all speeds and loads; figures, page: what is shown of them
+study           all speeds and loads;  command: ``raceway study rig``
+figures, page, screen   its figures, page and table
 """

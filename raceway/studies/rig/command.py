@@ -10,6 +10,7 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    keeping,
     on_scene,
     out_folder,
     plugin_files,
@@ -40,6 +41,7 @@ def rig(
 
     The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
     Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads. Exit code 1 when a point has no motion.
+    Finished points are kept in DIR/rig-rows.jsonl and reused.
 
     \b
     Example:
@@ -53,13 +55,15 @@ def rig(
     folder = writable(out or RESULTS / f"{slug(loaded.title)}-rig")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
+    kept = folder / "rig-rows.jsonl"
     with show_progress() as progress:
         from raceway.pipeline.result import write_json
         from raceway.studies.rig.study import study
 
-        found = study(loaded, own, registry, progress)
+        with keeping("points", kept):
+            found = study(loaded, own, registry, progress, kept)
     content, files = found.as_dict(), list[str]()
-    failed = attempt(lambda: [write_json(content, folder / "rig.json")], files)
+    failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or found.fault
     if pictures and failed is None:
         from raceway.studies.rig.page import write_page
 

@@ -1,4 +1,4 @@
-"""Where an error of K comes from: one cause at a time is switched on, all others off.
+"""Error of K by its causes: one is switched on at a time, all others off.
 
 Signals without noise, drift and run-out, read by order tracking and inverted with the beam that made them, are exact.
 """
@@ -85,7 +85,7 @@ def _disturbed(rig: Rig, held: Bearing, state: State, quiet: Signals) -> list[Ca
 
 
 def _window(line: Rotor, held: Bearing, state: State, clean: Recording) -> list[Cause]:
-    """What a Fourier transform of all samples, whole turns or not, makes of the line."""
+    """The line by a Fourier transform of all samples, whole turns or not."""
     y = clean.y - clean.y.mean()
     lines = 2.0 * np.fft.rfft(y) / len(y)
     found = complex(lines[int(np.argmax(np.abs(lines)))])

@@ -1,4 +1,4 @@
-"""What a person sees of a rig's study and of identified signals.  Prints nothing by itself."""
+"""Tables of a rig's study and of identified signals.  Prints nothing by itself."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def rig_screen(study: Mapping[str, Any], files: Sequence[str]) -> RenderableType
         Text(
             f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
         ),
-        rows_table(_causes(study["rows"]), "Largest error of K by one cause at a time"),
+        rows_table(_causes(study["worst_by_cause"]), "Largest error of K by one cause at a time"),
     ]
     parts += [
         Text(f"failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", style="red")
@@ -41,7 +41,6 @@ def rig_screen(study: Mapping[str, Any], files: Sequence[str]) -> RenderableType
 def _point(row: Mapping[str, Any]) -> dict[str, str]:
     true, found = row["true"], row["identified"]
     ratios = {one["correction"]: one["over_true"] for one in row["printed"]}
-    uncertain = found["identification"]["equivalent_stiffness_error"] / true["equivalent_stiffness"]
     return {
         "r/min": f"{row['speed_rpm']:.0f}",
         "axial N": f"{row['axial_n']:.0f}",
@@ -50,17 +49,12 @@ def _point(row: Mapping[str, Any]) -> dict[str, str]:
         "K N/um": f"{1e-6 * true['equivalent_stiffness']:.2f}",
         **{words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()},
         "found %": f"{100 * found['error']:+.3f}",
-        "+- %": f"{100 * uncertain:.2f}",
+        "+- %": f"{100 * found['relative_uncertainty']:.2f}",
     }
 
 
-def _causes(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
-    worst: dict[tuple[str, str], float] = {}
-    for row in rows:
-        for cause in row["split"]:
-            key = (cause["kind"], cause["what"])
-            worst[key] = max(worst.get(key, 0.0), cause["error"], key=abs)
-    return [{"cause": kind, "what": what, "error %": f"{100 * error:+.3g}"} for (kind, what), error in worst.items()]
+def _causes(causes: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
+    return [{"cause": one["kind"], "what": one["what"], "error %": f"{100 * one['error']:+.3g}"} for one in causes]
 
 
 def identify_screen(found: Mapping[str, Any], files: Sequence[str]) -> RenderableType:

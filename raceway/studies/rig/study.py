@@ -10,11 +10,13 @@ from typing import Any
 
 import attrs
 
-from raceway.errors import ConvergenceError
+from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
 from raceway.scene.tables import Scene
+from raceway.studies.many.engine import Item, local, work_through
+from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.recording import Recording, write_recording
@@ -80,14 +82,20 @@ class Point:
                 }
                 for one in self.readings
             ],
-            "identified": {**self.found.as_dict(), "error": self.found.state.stiffness / true - 1.0},
+            "identified": self._identified(),
             "split": [attrs.asdict(cause) for cause in self.causes],
         }
+
+    def _identified(self) -> dict[str, Any]:
+        found, true = self.found.as_dict(), self.state.stiffness
+        uncertain = found["identification"]["equivalent_stiffness_error"] / true
+        return {**found, "error": self.found.state.stiffness / true - 1.0, "relative_uncertainty": uncertain}
 
 
 @attrs.frozen(eq=False)
 class RigStudy:
-    """All points, with the rig and its critical speeds [r/min] by axial load; ``failed``: points without a motion, and why."""
+    """All points, with the rig and its critical speeds [r/min] by axial load; ``failed``: points without a motion, and
+    why; ``fault``: why points could not be kept."""
 
     title: str
     scene: Scene
@@ -95,6 +103,7 @@ class RigStudy:
     critical: dict[str, float]
     points: list[Point]
     failed: list[dict[str, Any]]
+    fault: RacewayError | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Everything but the signals, as plain tables for JSON."""
@@ -107,8 +116,18 @@ class RigStudy:
                 "rows": [point.as_dict() for point in self.points],
                 "failed": self.failed,
                 "worst": self.worst,
+                "worst_by_cause": self.worst_by_cause,
             }
         )
+
+    @property
+    def worst_by_cause(self) -> list[dict[str, Any]]:
+        """Of each cause alone the error of K that is largest over all points, with its sign."""
+        worst: dict[tuple[str, str], float] = {}
+        for cause in (cause for point in self.points for cause in point.causes):
+            key = (cause.kind, cause.what)
+            worst[key] = max(worst.get(key, 0.0), cause.error, key=abs)
+        return [{"kind": kind, "what": what, "error": error} for (kind, what), error in worst.items()]
 
     @property
     def worst(self) -> dict[str, float]:
@@ -132,8 +151,15 @@ class RigStudy:
         return files
 
 
-def study(scene: Scene, rig: Rig, registry: Registry, on_progress: OnProgress | None = None) -> RigStudy:
+def study(
+    scene: Scene, rig: Rig, registry: Registry, on_progress: OnProgress | None = None, store: Path | None = None
+) -> RigStudy:
     """Simulate the rig and read its signals.
+
+    Parameters
+    ----------
+    on_progress : called as ``on_progress(what, done, total)`` after each point; an exception stops the study
+    store : file that finished points are kept in and taken from
 
     Raises
     ------
@@ -143,30 +169,46 @@ def study(scene: Scene, rig: Rig, registry: Registry, on_progress: OnProgress | 
         No point at which shaft and bearing find a common motion.
     """
     grid = [(axial, speed) for axial in rig.axial_loads for speed in rig.speeds_rpm]
+    kept = RowStore(store)
+    under = {axial: bearing(scene, axial, registry) for axial in rig.axial_loads}
     critical = {"rigid supports": critical_speed(rig, None) * 30.0 / pi}
-    points: list[Point] = []
-    failed: list[dict[str, Any]] = []
-    held = None
-    for done, (axial, rpm) in enumerate(grid):
-        if on_progress is not None:
-            on_progress(f"{rpm:.0f} r/min, {axial:.0f} N", done, len(grid))
-        if held is None or held.scene.load.axial != axial:
-            held = bearing(scene, axial, registry)
-            critical[f"bearings under {axial:g} N"] = critical_speed(rig, held) * 30.0 / pi
+    critical |= {f"bearings under {axial:g} N": critical_speed(rig, held) * 30.0 / pi for axial, held in under.items()}
+    made: dict[int, Point] = {}
+
+    def point(place: int, held: Bearing) -> Point:
+        return _point(rig, held, grid[place][1] * pi / 30.0, rig.signals.seed + 2 * place)
+
+    def row_at(place: int, _registry: Registry) -> dict[str, Any]:
+        """What the bearing answered: nearly all of the time; signals, and what is read from them, follow again from that."""
+        held = under[grid[place][0]].anew()
         try:
-            points.append(_point(rig, held, rpm * pi / 30.0, rig.signals.seed + 2 * done))
+            made[place] = point(place, held)
         except ConvergenceError as why:
-            if len(failed) + 1 == len(grid):
-                raise
-            failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": str(why)})
-    if on_progress is not None:
-        on_progress("done", len(grid), len(grid))
-    return RigStudy(scene.title, scene, rig, critical, points, failed)
+            return {"answers": [], "reason": str(why)}
+        return {"answers": held.given, "reason": ""}
+
+    items = [
+        Item(
+            row_key(scene, registry, ["rig", attrs.asdict(rig), axial, rpm, place]), f"{rpm:.0f} r/min, {axial:.0f} N", place
+        )
+        for place, (axial, rpm) in enumerate(grid)
+    ]
+    rows, _ = work_through(row_at, items, kept, local(registry, 0), registry, on_progress=on_progress)
+    if all(row["reason"] for row in rows):
+        raise ConvergenceError(rows[-1]["reason"])
+    found, failed = [], []
+    for place, row in enumerate(rows):
+        axial, rpm = grid[place]
+        if row["reason"]:
+            failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": row["reason"]})
+        else:
+            found.append(made.get(place) or point(place, under[axial].anew(row["answers"])))
+    return RigStudy(scene.title, scene, rig, critical, found, failed, kept.fault)
 
 
 def _point(rig: Rig, held: Bearing, speed: float, seed: int) -> Point:
     """One speed [rad/s]: the true motion, its signals, and what is read from them."""
-    line, held = rotor(rig, speed), held.anew()
+    line = rotor(rig, speed)
     state = balance(line, held)
     answer = response(rig, held, state, rig.signals)
     signals = record(rig, answer, rig.signals, seed)

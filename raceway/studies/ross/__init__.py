@@ -1,1 +1,8 @@
-"""Coefficients for the rotor program ROSS."""
+"""Coefficients for the rotor program ROSS.
+
+sources        2x2 matrices over y, z: rotating force, fixed directions, tangent
+coefficients   kyy, kyz, ..., cyy, ... over speed and frequency, from a sweep
+file           a file that ROSS reads
+reading        interpolation by ROSS 2
+command        ``raceway export``
+"""

@@ -42,7 +42,7 @@ _LOST = (
 
 @attrs.frozen(eq=False)
 class RossFile:
-    """What is written.
+    """Content of the file.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How ROSS 2 reads a table of coefficients, and how to make it pass through the points."""
+"""Interpolation of a table of coefficients by ROSS 2, and tables that pass through the points there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """What ROSS 2 finds at the points of a table: a cubic smoothing spline with scipy's default bound.
+    """Values by ROSS 2 at the points of a table: a cubic smoothing spline with scipy's default bound.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where a matrix over y, z comes from: a rotating force, forces along fixed directions, the tangent of an equilibrium.
+"""Sources of a matrix over y, z: a rotating force, forces along fixed directions, the tangent of an equilibrium.
 
 Each source gives stiffness and damping (..., 2, 2) [N/m, N s/m], where the damping is resolved (..., 2, 2), what they are in words,
 and notes for the table's reader.

@@ -18,7 +18,7 @@ _MOST, _HALVINGS = 40, 4
 
 @attrs.frozen
 class State:
-    """What the tested bearing does in the rig.
+    """State of the tested bearing in the rig.
 
     Attributes
     ----------

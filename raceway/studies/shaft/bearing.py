@@ -1,7 +1,8 @@
-"""What the scene's bearing does under a turning force and moment, by ``raceway.pipeline.run``."""
+"""Response of the scene's bearing to a turning force and moment, by ``raceway.pipeline.run``."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import pi
 
 import attrs
@@ -25,6 +26,7 @@ class Bearing:
     compliance : (2, 2) of deflection and slope by force and moment, tangent at rest [m/N, 1/N; 1/N, rad/(N m)]
     mass : of the inner ring [kg]; 0 with an integrator that knows no inertia
     last : the last result, if there is one, whose motion the next one continues; see ``anew``
+    given : the answers since ``anew``, four numbers each;  known : answers that a course of the same questions got before
     """
 
     scene: Scene
@@ -32,10 +34,17 @@ class Bearing:
     compliance: np.ndarray
     mass: float
     last: list[Result] = attrs.field(factory=list, repr=False)
+    given: list[list[float]] = attrs.field(factory=list, repr=False)
+    known: list[list[float]] = attrs.field(factory=list, repr=False)
 
-    def anew(self) -> Bearing:
-        """The same bearing without a motion to continue: what is found with it depends on nothing that was found before."""
-        return attrs.evolve(self, last=[])
+    def anew(self, known: Iterable[list[float]] = ()) -> Bearing:
+        """The same bearing without a motion to continue: what is found with it depends on nothing that was found before.
+
+        Parameters
+        ----------
+        known : ``given`` at the end of an earlier course, which the same questions get again without a run
+        """
+        return attrs.evolve(self, last=[], given=[], known=list(known))
 
     @property
     def coupling(self) -> float:
@@ -54,6 +63,9 @@ class Bearing:
         ConvergenceError
             No steady motion.
         """
+        if len(self.given) < len(self.known):
+            self.given.append(self.known[len(self.given)])
+            return np.array(self.given[-1]).view(complex)
         scene = attrs.evolve(self.scene, excitation=shaft_load(speed * 30.0 / pi, force, moment))
         # Loads that are tried one after another belong to one motion of the rig.
         found = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
@@ -63,7 +75,9 @@ class Bearing:
         record = simulation.record
         q = record.displacement
         turning = np.exp(-1j * speed * record.time) / len(record.time)
-        return np.array([turning @ (q[:, 1] + 1j * q[:, 2]), turning @ (q[:, 4] - 1j * q[:, 3])])
+        answer = np.array([turning @ (q[:, 1] + 1j * q[:, 2]), turning @ (q[:, 4] - 1j * q[:, 3])])
+        self.given.append(answer.view(float).tolist())
+        return answer
 
 
 def bearing(scene: Scene, axial: float, registry: Registry) -> Bearing:

@@ -1,4 +1,4 @@
-"""What a whirling shaft passes on to a bearing: a force that turns, and with it a moment."""
+"""Load of a whirling shaft on a bearing: a force that turns, and with it a moment."""
 
 from __future__ import annotations
 

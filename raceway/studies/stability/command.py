@@ -10,6 +10,7 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    keeping,
     out_option,
     plugin_files,
     processes_at_a_time,
@@ -18,7 +19,6 @@ from raceway.commands.frame import (
     set_keys,
     show,
     show_progress,
-    tell_kept,
 )
 from raceway.commands.inputs import changed_tables, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
@@ -70,11 +70,8 @@ def stability(
     with show_progress() as progress:
         from raceway.studies.stability.study import stability as study
 
-        try:
+        with keeping("cases", kept):
             found = study(tables, only, processes, kept, registry, plugins, progress)
-        except KeyboardInterrupt:
-            tell_kept("cases", kept)
-            raise
     content, files = found.as_dict(), list[str]()
     failed = attempt(lambda: found.write(folder), files) or found.fault
     from raceway.studies.stability.screen import stability_screen

@@ -168,7 +168,7 @@ def points_at_rest(case: Case, registry: Registry) -> list[Row]:
 def motion(case: Case, registry: Registry) -> list[Row]:
     """Elastic bodies that a force meets at rest: a balance of energies; a step above the stable limit is refused."""
     from raceway.bodies.model import build_model
-    from raceway.core.ring.start import at_rest
+    from raceway.core.elastic.start import at_rest
     from raceway.core.stepping.energy import drift
     from raceway.core.stepping.record import Schedule
     from raceway.pipeline.settle import settle
@@ -205,7 +205,7 @@ def motion(case: Case, registry: Registry) -> list[Row]:
 def rubbing(case: Case, registry: Registry) -> list[Row]:
     """A force that meets contacts with friction at rest: the balance of energies, and that friction takes part."""
     from raceway.bodies.model import build_model
-    from raceway.core.ring.start import at_rest
+    from raceway.core.elastic.start import at_rest
     from raceway.core.stepping.energy import drift
     from raceway.core.stepping.record import Schedule
     from raceway.integrators.newmark import Newmark
@@ -215,7 +215,8 @@ def rubbing(case: Case, registry: Registry) -> list[Row]:
     a = case.arguments
     model = build_model(scene := scene_at(a["tables"], a["changes"], registry), make_plan(scene))
     still = settle(model)
-    start = at_rest(model.system, still.displacement, still.ball, False)
+    ring: Any = model.system
+    start = at_rest(ring, still.displacement, still.ball, False)
     step, steps = _RUBBING
     energies = integrate(Newmark(tolerance=1e-6), model.system, start, Schedule(step, steps, 1)).energies
     setting = {**a["shown"], "integrator": "newmark", "steps": steps, "step_s": step}

@@ -38,7 +38,9 @@ _TURNS = 50
 def linear(case: Case, registry: Registry) -> list[Row]:
     """An undamped oscillator, its contact out of reach."""
     model = build_model(base := scene_at(case.arguments["tables"], {}, registry), make_plan(base))
-    system = impact_system(2.0, model.system.law, model.system.law_params[:1], clearance=1.0, stiffness=2e8)
+    system = impact_system(
+        2.0, model.system.surrogate.law, model.system.surrogate.law_params[:1], clearance=1.0, stiffness=2e8
+    )
     start = np.array([1e-6, 0.0, 0.0, 0.0, 0.0])
     balls = np.zeros((1, 2))
     first = Motion(start, np.zeros(5), -start * 1e8, balls, balls.copy())
@@ -104,14 +106,14 @@ def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
     method = scene.integrator.method
     period = scene.excitation.period_s
     rest = settle(model)
-    orbit = steady_orbit(model.system, period, rest.displacement, samples=129)
-    limit = min(model.system.critical_time_step(k) for k in orbit.stiffness)
+    orbit = steady_orbit(model.system.surrogate, period, rest.displacement, samples=129)
+    limit = min(model.system.surrogate.critical_time_step(k) for k in orbit.stiffness)
     steps = ceil(period / (SAFETY * limit))
-    opens = bool((_open_share(model.system, orbit)) > 0.0)
+    opens = bool((_open_share(model.system.surrogate, orbit)) > 0.0)
 
     def follow() -> Measured:
         schedule = Schedule(period / steps, steps, _TURNS)
-        record = integrate(method, model.system, from_orbit(model.system, orbit, schedule.dt), schedule)
+        record = integrate(method, model.system.surrogate, from_orbit(model.system.surrogate, orbit, schedule.dt), schedule)
         true = np.array([at_time(orbit.displacement, period, t) for t in record.time[-steps:]])
         size = np.abs(orbit.displacement - orbit.displacement.mean(axis=0)).max(axis=0)[1:3].max()
         return float(np.abs(record.displacement[-steps:, 1:3] - true[:, 1:3]).max() / size), None

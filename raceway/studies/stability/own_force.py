@@ -1,4 +1,4 @@
-"""What a law's own force function says of a bearing: approaches and displacements by numerical inversion, slopes."""
+"""Approaches and displacements of a bearing from a law's own force function, by numerical inversion; slopes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LOADS = (1.0, 5.0)
 
 
 def inverted(function: Callable[[float], float], value: float, first: float) -> float:
-    """Where a function that grows from 0 at 0 takes a value; ``first``: a guess of the size."""
+    """Argument at which a function that grows from 0 at 0 takes a value; ``first``: a guess of the size."""
     low, high = 0.0, first
     while function(high) < value:
         low, high = high, 2.0 * high
@@ -30,7 +30,7 @@ def inverted(function: Callable[[float], float], value: float, first: float) -> 
 
 def force_and_slope(model: Model, pair: int, approach: float) -> tuple[float, float]:
     """Force [N] and stiffness [N/m] of one ball-race pair at rest, by the law's kernel."""
-    system = model.system
+    system = model.system.surrogate
     params, state = (np.ascontiguousarray(each[pair : pair + 1]) for each in (system.law_params, system.law_state))
     force, d_gap, d_rate = np.empty(1), np.empty(1), np.empty(1)
     system.law(np.array([-approach]), np.zeros(1), params, state, state.copy(), 0.0, force, d_gap, d_rate)

@@ -205,7 +205,7 @@ def _default_penalty(tables: dict[str, Any], changes: dict[str, Any], registry: 
 
 def _inner_factor(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
     scene = scene_at(tables, changes, registry)
-    return float(build_model(scene, make_plan(scene)).system.law_params[0, 0])
+    return float(build_model(scene, make_plan(scene)).system.surrogate.law_params[0, 0])
 
 
 def refusal(case: Case, registry: Registry) -> list[Row]:

@@ -1,4 +1,4 @@
-"""What the energy stored in contacts and bodies says of the forces on the ring: a second way to the same numbers."""
+"""Forces on the ring from the energy stored in contacts and bodies: a second way to the same numbers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def axial_force(model: Model, found: Equilibrium) -> float:
     Balls are in equilibrium themselves, so that what follows of them does not count.  Unlike a sum over the balls' loads it
     holds what a compliance that varies with the contact angle pushes along the groove.
     """
-    system, axis = model.system, np.eye(5)[0]
+    system, axis = model.system.surrogate, np.eye(5)[0]
     step = _PART * float(np.max(-system.evaluate(found.displacement, ball=found.ball).gap))
     places = [found.displacement + sign * step * axis for sign in (-1.0, 1.0)]
     states = [system.evaluate(place, ball=found.ball) for place in places]

@@ -6,10 +6,8 @@ cases in processes of their own; ``limits``, ``energy``, ``scenes``, ``surface``
 
 from __future__ import annotations
 
-import hashlib
-import json
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,11 +16,11 @@ import attrs
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
-from raceway.studies.many.processes import processor_time
-from raceway.studies.many.row_store import RowStore, program_key
-from raceway.studies.stability.case import FAILED, Case, Row
+from raceway.studies.many.engine import processor_time
+from raceway.studies.many.row_store import RowStore
+from raceway.studies.stability.case import FAILED, Row
 from raceway.studies.stability.catalogue import catalogue
-from raceway.studies.stability.workers import in_parallel, rows_of
+from raceway.studies.stability.workers import measure
 
 if TYPE_CHECKING:
     from raceway.pipeline.simulate import OnProgress
@@ -112,33 +110,9 @@ def stability(
         cases = tuple(case for case in cases if only in case.name)
         if not cases:
             raise SceneError.at("--only", only, f"no case is called so{nearest(only, names)}; cases: {'; '.join(names)}")
-    kept, program = RowStore(store), program_key(registry)
-    found: dict[int, list[Row]] = {}
-    keys = [_key(case, program) for case in cases]
-    for place, key in enumerate(keys):
-        if (row := kept.get(key)) is not None:
-            found[place] = [Row(**one) for one in row["rows"]]
-    reused = len(found)
-    places = {id(case): place for place, case in enumerate(cases)}
-    waiting = [case for place, case in enumerate(cases) if place not in found]
-    for case, rows in _run(waiting, processes, registry, plugins):
-        place = places[id(case)]
-        found[place] = rows
-        kept.put(keys[place], {"rows": [attrs.asdict(row) for row in rows]})
-        if on_progress is not None:
-            on_progress(case.name, len(found), len(cases))
+    kept = RowStore(store)
+    found, reused = measure(cases, processes, registry, plugins, kept, on_progress)
     title = "Stiff and extreme cases" if tables is None else f"Stiff and extreme cases of {tables.get('title', 'the scene')}"
-    in_order = tuple(row for place in range(len(cases)) for row in found[place])
+    in_order = tuple(row for rows in found for row in rows)
     taken = time.monotonic() - begun, processor_time() - cpu
     return Stability(title, in_order, len(cases), reused, *taken, processes, kept.fault)
-
-
-def _run(cases: list[Case], processes: int, registry: Registry, plugins: Sequence[Path]) -> Iterator[tuple[Case, list[Row]]]:
-    if processes == 0:
-        return ((case, rows_of(case, registry)) for case in cases)
-    return in_parallel(cases, processes, plugins)
-
-
-def _key(case: Case, program: str) -> str:
-    text = json.dumps([attrs.asdict(case), program], sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()[:24]

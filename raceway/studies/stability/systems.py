@@ -104,5 +104,5 @@ def still(scene: Scene) -> Still:
 
     model = build_model(scene, make_plan(scene))
     equilibrium = settle(model)
-    system = attrs.evolve(model.system, force=no_force, force_params=np.zeros(1))
+    system = attrs.evolve(model.system.surrogate, force=no_force, force_params=np.zeros(1))
     return Still(model, system, equilibrium, system.critical_time_step(equilibrium.stiffness))

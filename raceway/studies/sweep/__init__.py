@@ -1,10 +1,9 @@
 """One scene at thousands of points: labelled results in a store that survives whatever stops the sweep.
 
 design      the points: a grid or a list;  survey: mistakes, plug-ins and files in them, before anything is computed
-identity    versions and plug-ins that decide the numbers
 work        one chain of points, computed wherever an executor wants it;  variables: what is kept of a point
 store       states and values on disk;  dataset: the store as xarray data set, NetCDF and CSV
-engine      from a design to a finished store
+engine      from a design to a finished store, through ``raceway.studies.many.engine``
 command     ``raceway sweep``;  store_command: ``raceway plot``;  screen: what a sweep prints
 selection   the part of a store that is drawn or exported;  plotting: how it is laid out;  picture: drawn
 

@@ -36,8 +36,10 @@ if TYPE_CHECKING:
 @click.option("--list", "listed", type=click.Path(path_type=Path), metavar="FILE", help="Points: .csv, .json or .toml.")
 @click.option("--design", type=click.Path(path_type=Path), metavar="FILE.toml", help="A table [grid], or tables [[points]].")
 @set_keys
-@click.option("--executor", default="serial", show_default=True, metavar="NAME", help="serial, joblib, dask, or a plug-in.")
-@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Processes of joblib or dask [2].")
+@click.option(
+    "--executor", default="serial", show_default=True, metavar="NAME", help="serial, processes, joblib, dask, or a plug-in."
+)
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Processes of these [2].")
 @click.option("--scheduler", metavar="ADDRESS", help="A running dask scheduler, tcp://HOST:8786.")
 @out_option(f"{RESULTS}/TITLE-sweep", metavar="STORE")
 @click.option("--resume", is_flag=True, help="Go on with a store: compute what is not finished.")

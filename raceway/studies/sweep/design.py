@@ -28,7 +28,7 @@ _FORM = 'must be a TOML file with a table [grid], for instance "load.axial" = [4
 
 @attrs.frozen
 class Design:
-    """What is swept.
+    """Points of a sweep.
 
     Attributes
     ----------

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
 import attrs
 
-from raceway.errors import PluginError, RacewayError
-from raceway.framework.contracts import Lost, Refused
+from raceway.errors import RacewayError
+from raceway.framework.contracts import Lost
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.planning.wall_time import START_S
+from raceway.studies.many.engine import answers
+from raceway.studies.many.identity import differences, identity
+from raceway.studies.many.work import Work, registry_of
 from raceway.studies.sweep.design import Design
-from raceway.studies.sweep.identity import differences, identity
 from raceway.studies.sweep.store import Store, exists, open_store, written
 from raceway.studies.sweep.survey import Survey, survey
-from raceway.studies.sweep.work import Work, registry_of, unfinished_row
+from raceway.studies.sweep.work import Chain, unfinished_row
 
 #: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
 _LONGEST, _CHAIN_S = 16, 1.0
@@ -115,7 +117,8 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
         A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
     """
     design = prepared.design
-    work = Work(prepared.tables, prepared.facts["identity"], prepared.plugins)
+    wanted = prepared.facts["identity"]
+    work = Work(Chain(prepared.tables, wanted["program"]), prepared.plugins, wanted)
     with written(prepared.store, prepared.facts) as store:
         store.wait_again(["running", *(["failed"] if retry_failed else [])])
         lost = store.repair()
@@ -130,32 +133,23 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
                 left = [n for n in chain if n in waiting]
                 store.mark(left, "running")
                 # Each begins from the one before it: those before the last that waits are computed too, for the same bits.
-                yield number, [(n, design.point(n)) for n in chain[: chain.index(left[-1]) + 1]]
+                yield number, [[(n, design.point(n)) for n in chain[: chain.index(left[-1]) + 1]]]
 
-        answers = executor.compute(work, batches())
         try:
-            for number, answer in answers:
-                left = [n for n in chains[number] if n in waiting]
-                rows = [row for row in _rows(answer, left) if row["number"] in waiting]
-                store.put(rows)
-                done += len(rows)
-                if on_progress is not None:
-                    on_progress("points", done, total)
+            with closing(answers(executor, work, batches())) as found:
+                for number, answer in found:
+                    if isinstance(answer, Lost):
+                        rows = [unfinished_row(n, answer.reason) for n in chains[number] if n in waiting]
+                    else:
+                        rows = [row for row in answer[0] if row["number"] in waiting]
+                    store.put(rows)
+                    done += len(rows)
+                    if on_progress is not None:
+                        on_progress("points", done, total)
         finally:
-            close = getattr(answers, "close", None)
-            if close is not None:
-                close()
             with suppress(RacewayError):  # a full disk was reported already; the next sweep does it
                 store.wait_again(["running"])
     return open_store(prepared.store)
-
-
-def _rows(answer: Any, numbers: list[int]) -> list[dict[str, Any]]:
-    if isinstance(answer, Refused):
-        raise PluginError(f"worker {answer.worker} cannot compute these points: {answer.reason}")
-    if isinstance(answer, Lost):
-        return [unfinished_row(n, answer.reason) for n in numbers]
-    return answer
 
 
 def _refuse_other(there: Store, facts: Mapping[str, Any], store: Path) -> None:

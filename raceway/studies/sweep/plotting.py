@@ -1,4 +1,4 @@
-"""What of a sweep is drawn how: the quantity, the axes for x, colour and panels, the kind of picture."""
+"""Layout of a sweep's pictures: the quantity, the axes for x, colour and panels, the kind of picture."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ class Store:
         return self.design.axes
 
     def status(self) -> dict[str, int]:
-        """How many points are in each state, and ``total``."""
+        """Number of points in each state, and ``total``."""
         with self._told(), self._lock:
             found = dict(self._connection.execute("SELECT state, COUNT(*) FROM points GROUP BY state").fetchall())
         return {**{state: found.get(state, 0) for state in STATES}, "total": self.design.size}

@@ -13,17 +13,17 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
 from raceway.scene.tables import TABLES, Scene
+from raceway.studies.many.identity import plugins_of
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.row_store import files_of
 from raceway.studies.sweep.design import Design
-from raceway.studies.sweep.identity import plugins_of
 
 _MOST_MISTAKES = 10
 
 
 @attrs.frozen
 class Survey:
-    """What a sweep needs.
+    """Requirements of a sweep.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a sweep keeps of each point: names, units, words, and where they come from in a result."""
+"""Variables that a sweep keeps of each point: names, units, words, and their places in a result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the bearing cases are computed: each through a scene, as a user would write it.
+"""Computation of the bearing cases: each through a scene, as a user would write it.
 
 Numbers are in the unit of the source.
 """

@@ -1,4 +1,4 @@
-"""What ``raceway verify`` prints."""
+"""Table of ``raceway verify``."""
 
 from __future__ import annotations
 

@@ -1,1 +1,12 @@
-"""Pictures of a bearing."""
+"""Pictures of a bearing.
+
+states        states of a result that are drawn
+surfaces      triangles of rings, balls and grooves
+bearing       rings, balls, arrows and contact ellipses of one state
+scene         the bearing, drawn by pyvista
+contacts      the most loaded ball in section
+animation     a turn as a GIF
+page          the page with WebGL
+study         the files of one result;  command: ``raceway view``
+mesh_command  ``raceway mesh``;  mesh_picture, mesh_screen: its picture and table
+"""

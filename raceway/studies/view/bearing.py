@@ -1,4 +1,4 @@
-"""What is drawn of a bearing in one state: rings, balls by their load, arrows, contact ellipses by their pressure."""
+"""Picture of a bearing in one state: rings, balls by their load, arrows, contact ellipses by their pressure."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import click
@@ -24,20 +24,33 @@ from raceway.commands.frame import (
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.sources import blamed
 from raceway.plugins.system_libraries import refuse_pictures
+
+if TYPE_CHECKING:
+    from raceway.framework.registry import Entry
 
 
 @click.command(short_help="Mesh the bodies of a scene: counts, quality, files.")
 @on_scene
 @out_folder
+@click.option(
+    "--format", "form", default="vtu", show_default=True, metavar="NAME", help="Format of the files; plug-ins bring more."
+)
 @click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
 @programs
 @plugin_files
 @common
 def mesh(
-    scene: Path, changes: tuple[str, ...], out: Path | None, picture: bool, plugins: tuple[Path, ...], as_json: bool
+    scene: Path,
+    changes: tuple[str, ...],
+    out: Path | None,
+    form: str,
+    picture: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
 ) -> int:
-    """Build the meshes of a scene; say their counts, quality, memory and time; write a VTU file for each body.
+    """Build the meshes of a scene; say their counts, quality, memory and time; write a file for each body.
 
     A scene without a table [mesh] gets the mesher `structured` with its defaults.
 
@@ -49,6 +62,7 @@ def mesh(
     loaded = load(scene, changes, registry)
     folder = writable(out or RESULTS / slug(loaded.title))
     tell_faults(registry)
+    written = registry.find("format", form)
     if picture and find_spec("pyvista"):
         refuse_pictures(", or leave out --picture")
     with ProgressBar("meshing") as progress:
@@ -67,7 +81,7 @@ def mesh(
         progress("judging the cells", 0, 0)
         content: dict[str, Any] = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
         files: list[str] = []
-        failed = attempt(lambda: _write(registry.find("format", "vtu").plugin(), meshes, folder, progress), files)
+        failed = attempt(lambda: _write(written, meshes, folder, progress), files)
         if picture and failed is None:
             progress("drawing", 0, 0)
             failed = attempt(lambda: [_draw(meshes, content, folder)], files)
@@ -82,7 +96,7 @@ def mesh(
     return 0
 
 
-def _write(form: Any, meshes: dict[str, Any], folder: Path, progress: ProgressBar) -> list[Path]:
+def _write(form: Entry, meshes: dict[str, Any], folder: Path, progress: ProgressBar) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -90,8 +104,10 @@ def _write(form: Any, meshes: dict[str, Any], folder: Path, progress: ProgressBa
     paths = []
     for done, (name, body) in enumerate(meshes.items()):
         progress(f"writing {name}", done, len(meshes))
-        path = folder / f"{slug(name)}.vtu"
-        form.write(path, body)
+        with blamed(str(form), "write()"):
+            writer: Any = form.plugin()
+            path = folder / f"{slug(name)}{writer.suffixes[0]}"
+            writer.write(path, body)
         paths.append(path)
     return paths
 

@@ -1,4 +1,4 @@
-"""What a person sees of meshes.  Prints nothing by itself."""
+"""Tables of meshes.  Prints nothing by itself."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def _stage(bearing: Bearing, state: State) -> str:
 
 
 def _scene(bearing: Bearing, state: State, top: float, peak: float) -> dict[str, Any]:
-    """What the script draws."""
+    """Content that the script draws."""
     z, centres = len(state.azimuth), bearing.centres(state)
     shapes = {"ball": _packed(ball(bearing.diameter, 20, 32))}
     parts: list[dict[str, Any]] = []

@@ -23,7 +23,7 @@ from raceway.studies.view.states import at_peak, at_rest, last_turn
 
 @attrs.frozen
 class Wanted:
-    """What to draw besides the PNG files.
+    """Drawings besides the PNG files.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What all contacts of an elastic system share: forces and tangents from gaps, memory, friction, bounds of steps."""
+"""Forces and tangents of a contact from gaps, memory and friction, with bounds of steps: common to all kinds of contacts."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _STIFFER = 1.02
 
 
 class Contact(ABC):
-    """Places at which forces act between two bodies: points of a surface, or whole contacts.
+    """Places at which forces act between two bodies: points of a surface, or contact resultants.
 
     Parameters
     ----------
-    place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for whole contacts
+    place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for resultants
     counts : (pairs,) places of each pair of surfaces;  surfaces : (pairs, 8), see ``raceway.core.elastic.contacts.gap``
     law, params, state_size : kernel of signature ``LAW``, (n, k) its parameters, columns of its memory
-    damping : normal damping, pressure per gap rate [N s/m3]; of whole contacts [N s/m]
+    damping : normal damping, pressure per gap rate [N s/m3]; of resultants [N s/m]
     friction : Friction | None
 
     Attributes
@@ -36,7 +36,7 @@ class Contact(ABC):
     A p n: forces on the nodes are f = -B^T F and the tangent is B^T D B with 3 x 3 blocks D.  No momentum is lost.
     """
 
-    #: Whether each place is a whole contact: few of them, and each on many nodes.
+    #: Whether each place is a contact resultant: few of them, and each on many nodes.
     whole = False
 
     def __init__(
@@ -163,7 +163,7 @@ class Contact(ABC):
         return np.minimum.reduceat(self.gap, np.r_[0, np.cumsum(self.counts)[:-1]])
 
     def energy(self) -> float:
-        """What the law and sticking points store at the last gaps [J]; meant for laws without memory."""
+        """Energy stored by the law and by sticking points at the last gaps [J]; meant for laws without memory."""
         n = len(self.gap)
         out = np.empty(n)
         stored_energy(self.law, self.params, self.memory, self._trial.copy(), self.gap, np.zeros((6, n)), out)
@@ -171,7 +171,7 @@ class Contact(ABC):
         return float(self.area @ out) + stored
 
     def friction_energy(self) -> float:
-        """What friction has taken up to the last commit [J]."""
+        """Work of friction up to the last commit [J]."""
         return 0.0 if self.friction is None else float(self.area @ self.friction.dissipated)
 
     def stiffened(self) -> bool:

@@ -1,4 +1,4 @@
-"""Where on a meshed surface a point lies: the facet that it projects onto, and the weights of its four nodes."""
+"""Facets under points of a meshed surface, and the weights of their four nodes."""
 
 from __future__ import annotations
 

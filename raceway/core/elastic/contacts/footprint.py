@@ -1,10 +1,10 @@
-"""Where a whole contact acts on a meshed body, and how the body's surface moves there.
+"""Footprint of a contact resultant on a mesh: nodal weights of its force, and the motion of the surface there.
 
 Notes
 -----
-Along the normal the contact presses on an ellipse of its own, far wider than Hertz's, so that a mesh gives way less under it than
-a contact does: its compliance can be taken off a law without using it up.  Across it
-the surface moves as its surroundings do, as a rigid body taken to the centre of curvature: a ball that turns, and a groove that
+The normal force is spread over an ellipse far wider than Hertz's, so that the local compliance of the mesh is smaller than the
+contact's and can be subtracted from it.  The tangential displacement of the surface is that of its surroundings, moved as a rigid body to
+the centre of curvature: a ball that turns, and a groove that
 tilts about the centre of its own arc, leave the line between the two centres where it is.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from raceway.core.elastic.contacts.facets import Facets
 
-#: Rings of the ellipse, points on each, and points on the circle that tells the surroundings' motion.
+#: Rings of the ellipse, points on each, and points on the circle that gives the motion of the surroundings.
 _RINGS, _ANGLES, _AROUND = 6, 12, 8
 
 

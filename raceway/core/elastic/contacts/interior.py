@@ -1,4 +1,4 @@
-"""Where inside of a meshed body a point lies: the cell that holds it, and the weights of its eight nodes."""
+"""Cells around points inside of a mesh, and the weights of their eight nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What contacts at points come to: peak pressures, and how far the penalty lets surfaces overlap."""
+"""Peak pressures, approach, and penetration of the penalty at contacts at points."""
 
 from __future__ import annotations
 

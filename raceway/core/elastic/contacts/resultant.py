@@ -1,4 +1,4 @@
-"""Whole contacts on a mesh: one force each, by a law whose compliance replaces that of the mesh below it."""
+"""Contact resultants on a mesh: one force each, by a law whose compliance replaces that of the mesh below it."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class ResultantContact(Contact):
         return shallow
 
     def energy(self) -> float:
-        """What the law stores at the last gaps, less what the meshes do in its place [J]."""
+        """Energy stored by the law at the last gaps, less the local energy of the meshes [J]."""
         return super().energy() - 0.5 * float(self.local @ self._carried**2)
 
 

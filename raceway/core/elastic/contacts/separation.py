@@ -1,8 +1,8 @@
-"""What a mesh's own compliance under a contact is: what the calibrated law takes off, because Hertz's formula has it already.
+"""Local compliance of a mesh under a contact: the part that Hertz's formula contains, and that the calibrated law replaces.
 
 Notes
 -----
-Under the force of a footprint the mesh gives way by s at the surface, which depends on the cells there.  Below it, the mesh's
+Under the force of a footprint the surface of the mesh deflects by s, which depends on the cells there.  Below it, the mesh's
 displacement u(z) and that of a half-space h(z) differ by a nearly constant amount, the structural compliance c of the body
 (``raceway.core.condensed.structural``).  Of s, the part s - c is local: to be replaced by Hertz's.
 

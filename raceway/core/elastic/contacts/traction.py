@@ -1,4 +1,4 @@
-"""What every kind of friction at the places of a contact offers."""
+"""Duties of friction at the places of a contact."""
 
 from __future__ import annotations
 

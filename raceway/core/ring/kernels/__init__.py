@@ -26,7 +26,11 @@ outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
 rigid_tangential   the same with gyroscopic moments or friction: no potential
-condensed_*        the same three kernels on elastic rings and balls: see ``structural`` and ``between``
+condensed   each of these on elastic rings and balls
+structural         contacts and structural compliances in series;  structural_rows: rows of ``work`` for them
+between            balls that act on each other through elastic rings
+section            one ball's contribution to the ring
+layout, columns    constants of a model, columns of ``ball``, rows of ``work``
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """
 

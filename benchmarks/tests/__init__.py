@@ -1,0 +1,1 @@
+"""Tests of what measures: reports, documents, faults, fuzzing, comparisons with other programs."""

@@ -1,0 +1,70 @@
+"""The fuzz: some of its scenes are checked here, and it sees the faults that it looks for."""
+
+from __future__ import annotations
+
+import math
+import signal
+import subprocess
+from collections import Counter
+
+import attrs
+import numpy as np
+import pytest
+
+from benchmarks.evidence import _fuzz, fuzz
+from benchmarks.evidence._fuzz import Watch, check, ran
+from benchmarks.evidence._fuzz_scenes import fill, wild
+from benchmarks.evidence._random_scenes import Chance
+from raceway import load_scene
+from raceway.errors import ConvergenceError
+from validation.command_line import MINIMAL
+
+
+def test_checked_scenes_end_in_a_plan_or_a_message(tmp_path):
+    fill(tmp_path)
+    ends = Counter(check(wild(Chance(seed), tmp_path))[2] for seed in range(200))
+    # All ends are met, so that none of them is the test's own doing.
+    assert min(ends[word] for word in ("planned", "refused", "foreseen")) >= 5, ends
+    assert not (tmp_path / "PWNED").exists()
+
+
+def test_a_scene_is_the_same_in_every_process(tmp_path):
+    fill(tmp_path)
+    assert [repr(wild(Chance(k), tmp_path)) for k in range(20)] == [repr(wild(Chance(k), tmp_path)) for k in range(20)]
+
+
+@pytest.mark.parametrize(("raised", "word"), [(KeyError("x"), "traceback"), (ConvergenceError("residual nan N"), "nan"),
+                                              (ConvergenceError(" "), "traceback"), (ConvergenceError("no solution"), None)])  # fmt: skip
+def test_what_a_run_raises_is_judged(monkeypatch, raised, word):
+    def fails(scene):
+        raise raised
+
+    monkeypatch.setattr(_fuzz, "run", fails)
+    faults = ran(load_scene(MINIMAL))[1]
+    assert [fault[0] for fault in faults] == ([] if word is None else [word])
+
+
+def test_a_number_that_is_none_is_seen(monkeypatch):
+    scene = load_scene(MINIMAL)
+    good = _fuzz.run(scene)
+    assert ran(scene) == ("finished", [])
+    wrong = attrs.evolve(good, equilibrium=attrs.evolve(good.equilibrium, displacement=np.full(5, math.nan)))
+    monkeypatch.setattr(_fuzz, "run", lambda scene: wrong)
+    assert ran(scene)[1][0][0] == "nan"
+
+
+def test_files_and_processes_are_seen_while_the_watch_is_on(tmp_path):
+    watch = Watch()
+    (tmp_path / "before").write_text("")
+    watch.on = True
+    (tmp_path / "file").write_text("")
+    subprocess.run(["true"], check=True)
+    watch.on = False
+    (tmp_path / "after").write_text("")
+    told = " ".join(watch.seen)
+    assert "subprocess.Popen" in told and "file" in told and "before" not in told and "after" not in told
+
+
+def test_the_signal_tells_a_hang_from_a_crash():
+    assert fuzz._word(-signal.SIGPROF) == fuzz._word(-signal.SIGALRM) == "hang"
+    assert fuzz._word(-signal.SIGSEGV) == fuzz._word(1) == "died"

@@ -1,0 +1,244 @@
+"""What the plan leaves out is neither imported, allocated nor compiled, and the answer is the same with it."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import attrs
+import pytest
+
+from benchmarks import leave_out
+from raceway import load_scene
+from raceway.pipeline.run import run as compute
+from raceway.planning.plan import make_plan
+from raceway.planning.recording import recorded_per_turn
+from validation.command_line import ARTICLE, invoke, python
+
+#: A run in a process of its own: plan, modules, shapes of arrays, compiled kernels with their signatures.
+RUN = """
+import json, sys
+from raceway import load_scene
+from raceway.pipeline.run import run
+result = run(load_scene(sys.argv[1], sys.argv[2:]))
+from raceway.core.jit import Kernel, clock
+modules = {name: module for name, module in sys.modules.items() if name.startswith("raceway.")}
+kernels = {
+    f"{kernel.__module__}:{kernel.__name__}": len(kernel.signatures)
+    for module in modules.values() for kernel in vars(module).values() if isinstance(kernel, Kernel)
+}
+system, record = result.model.system.surrogate, None if result.simulation is None else result.simulation.whole
+shapes = {name: list(getattr(system, name).shape) for name in ("table", "law_params", "law_state", "scalars")}
+if record is not None:
+    shapes |= {name: list(getattr(record, name).shape) for name in ("displacement", "gap", "ball")}
+print(json.dumps({"plan": result.model.plan.as_dict(), "loaded": sorted(sys.modules), "kernels": kernels, "shapes": shapes, "made": clock["compiled"] + clock["loaded"]}))
+"""
+
+
+def run(*changes):
+    done = python("-c", RUN, ARTICLE, *changes)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+SCENES = {
+    "inertial balls, Newmark": (),
+    "weightless balls, explicit": ("kinematics.spin_speed_rpm=0", "integrator.kind=central_difference"),
+    "friction": ("contact.friction=0.1", "integrator.turns=2"),
+    "friction under a growing force": ("contact.friction=0.1", "integrator.turns=3", "integrator.start=ramp"),
+    "equilibria with friction": ("contact.friction=0.1", "integrator.kind=quasi_static", "integrator.turns=1"),
+    "equilibria, penalty": ("contact.kind=penalty", "integrator.kind=quasi_static"),
+    "steady orbit": ("integrator.kind=periodic",),
+    "equilibrium only": ("identifier.kind=tangent",),
+    "condensed bodies": ("bodies.kind=condensed", "kinematics.spin_speed_rpm=0", "integrator.turns=1"),
+    "run-up": (
+        'excitation={kind = "run_up", first_speed_rpm = 6e3, speed_rpm = 12e3, duration_s = 0.02, unbalance = 3.2e-4}',
+        'identifier={kind = "order_tracking", window_turns = 2.0}',
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
+    changes = SCENES[name]
+    scene = load_scene(ARTICLE, changes)
+    plan = make_plan(scene)
+    compute(scene)  # compiles what is not in the cache yet: a process of its own has a time limit
+    found = run(*changes)
+    expected = json.loads(json.dumps(plan.as_dict()))
+    for one in (found["plan"], expected):
+        one.pop("predicted_wall_s")  # each process times the machine
+    assert found["plan"] == expected
+    for module in plan.modules:
+        assert (module.module in found["loaded"]) == module.needed, module
+        here = {kernel: made for kernel, made in found["kernels"].items() if kernel.partition(":")[0] == module.module}
+        assert module.needed or not here, here
+        # A kernel that another one calls is read from the cache with that one: rigid bodies within condensed ones, roots in a loop.
+        held = ("raceway.core.ring.root", "raceway.core.schemes.static.compiled")
+        within = scene.bodies.name == "condensed" or module.module in held
+        assert not here or any(here.values()) or within, here
+    # One compiled version of a kernel serves every scene, and what no scene uses has none.
+    assert set(found["kernels"].values()) <= {0, 1}
+    around = 0 if scene.bodies.name == "rigid" else found["made"] - sum(found["kernels"].values())
+    assert found["made"] == sum(found["kernels"].values()) + around and around <= 2
+    _check_shapes(found["shapes"], scene, plan)
+    names = {kernel.partition(":")[2] for kernel, made in found["kernels"].items() if made}
+    if plan.balls != "tangential":
+        assert not names & {"find_root", "quasi_static_tangential", "rigid_tangential", "gyroscopic_moment"}
+    assert ("square_or_linear" in names) == (scene.contact.kind == "penalty")
+    assert ("three_halves_or_linear" in names) == (scene.contact.kind == "hertz")
+
+
+#: Coarse rings and balls with a force a contact, for one turn of 8 steps.
+ELASTIC = (
+    "bodies.kind=elastic",
+    'mesh={kind = "structured", element_size = 3.2e-3, nodes_per_semi_axis = 0, azimuth_cells = 24}',
+    "kinematics.spin_speed_rpm=0",
+    "integrator.turns=1",
+    "integrator.steps_per_turn=8",
+)
+
+
+def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrates_them():
+    scene = load_scene(ARTICLE, ELASTIC)
+    compute(scene)  # as above
+    found = run(*ELASTIC)
+    assert found["plan"] == json.loads(json.dumps(make_plan(scene).as_dict()))
+    for module in make_plan(scene).modules:
+        assert (module.module in found["loaded"]) == module.needed, module
+    assert {"raceway.bodies.condensed.compliances", "raceway.core.revolution"} <= set(found["loaded"])
+    assert "raceway.bodies.condensed.build" not in found["loaded"]
+    assert {"raceway.core.elastic.contacts.resultant", "raceway.core.contact.sphere"} <= set(found["loaded"])
+    assert set(found["kernels"].values()) <= {0, 1}
+
+
+def _check_shapes(shapes, scene, plan):
+    from raceway.core.ring.kernels.layout import COLUMNS, SCALARS
+
+    z = scene.bearing.ball_count
+    # Positions, slips of what rubs, structural approaches of what deforms.
+    columns = (
+        2
+        + 2 * (plan.balls == "tangential")
+        + 2 * (scene.bodies.name == "condensed")
+        + 2 * plan.keeps("effect of balls on each other through the rings")
+    )
+    # Compliances of bodies and between balls stand behind the scalars.
+    assert shapes["table"] == [z, COLUMNS]
+    assert (shapes["scalars"] == [SCALARS]) == (scene.bodies.name == "rigid")
+    assert shapes["law_params"][0] == 2 * z and shapes["law_state"] == [2 * z, 0]
+    if plan.time_step_s is None:
+        assert "gap" not in shapes
+        return
+    rows = shapes["displacement"][0]
+    assert shapes["gap"] == [rows, 2 * z] and shapes["ball"] == [rows, z, columns]
+    per_turn = recorded_per_turn(plan.predicted_steps // plan.turns, plan.turns)
+    assert rows == plan.turns * per_turn
+
+
+def test_every_part_of_a_scene_is_decided_with_a_reason():
+    parts = (
+        "tilts", "centrifugal force", "friction", "gyroscopic moments of the balls", "gyroscopic moments of ring and rotor",
+        "orbiting balls", "elastic rings and balls", "time integration", "contact damping", "second row", "pictures",
+        "other mirror half", "a compliance for each ball and contact", "stress recovery", "history of every step",
+    )  # fmt: skip
+    for changes in (
+        (),
+        ("supports.tilt=free", "contact.friction=0.1", "rotor.polar_inertia=1e-3", "identifier.kind=tangent"),
+        ("bodies.kind=condensed",),
+        ("bodies.kind=condensed", "contact.discretisation=nodal", "mesh.kind=structured"),
+        (
+            "bodies.kind=elastic",
+            "contact.discretisation=nodal",
+            "mesh.kind=structured",
+            "mesh.element_size=3.2e-3",
+            "mesh.nodes_per_semi_axis=1",
+            "mesh.growth=3.0",
+        ),
+    ):
+        plan = make_plan(load_scene(ARTICLE, changes))
+        decided = [*plan.kept, *plan.left_out]
+        assert all(part.why for part in decided) and all(module.why for module in plan.modules)
+        for words in parts:
+            assert sum(part.part.startswith(words) for part in decided) == 1, words
+    condensed = make_plan(load_scene(ARTICLE, ("bodies.kind=condensed",)))
+    left_out = {part.part for part in condensed.left_out}
+    assert {"other mirror half", "stress recovery", "a compliance for each ball and contact"} <= left_out
+    fine = make_plan(load_scene(ARTICLE, ("integrator.steps_per_turn=2880",)))
+    assert "history of every step" in {part.part for part in fine.left_out}
+
+
+def test_a_part_that_is_forced_in_is_kept_and_says_so():
+    scene = load_scene(ARTICLE)
+    plan, forced = make_plan(scene), make_plan(scene, ("friction",))
+    assert plan.balls == "inertial" and forced.balls == "tangential"
+    assert next(part.why for part in forced.kept if part.part == "friction") == "forced"
+    assert "friction" in {part.part for part in plan.left_out}
+
+
+@pytest.mark.parametrize(
+    "rule", ["tangential", "ball_inertia", "orbiting", "turns", "integration", "pitch", "mirror", "stresses"]
+)
+def test_answers_are_equal_with_a_part_and_without(rule, monkeypatch):
+    monkeypatch.setattr(leave_out, "_REPEATS", 1)  # times are the benchmark's
+    found = leave_out.RULES[rule]()
+    assert found.difference <= found.bound <= 1e-6
+
+
+def test_there_are_at_least_eight_rules_and_unknown_ones_are_refused(capsys):
+    assert len(leave_out.RULES) >= 8
+    assert leave_out.main(["nothing"]) == 2
+    assert "no rule is called nothing" in capsys.readouterr().err
+
+
+def test_planning_takes_less_than_20_ms():
+    # Processor time, the fastest of some: what other programs do does not count.
+    begun = time.process_time()
+    assert leave_out.planning() < 0.02
+    assert time.process_time() - begun < 5.0
+
+
+def test_the_command_shows_modules():
+    content = json.loads(invoke("plan", ARTICLE, "--json").stdout)
+    needed = {one["module"]: one["needed"] for one in content["modules"]}
+    assert needed["raceway.core.ring.kernels.rigid_inertial"] and not needed["raceway.core.ring.kernels.rigid_tangential"]
+    assert not any(needed[name] for name in ("matplotlib", "gmsh", "meshio", "pyvista"))
+    shown = invoke("plan", ARTICLE).stdout
+    assert "Modules not imported" in shown and "rigid_tangential" in shown
+
+
+def test_a_saving_counts_above_the_noise_only():
+    def rule(difference=0.0, cpu=0.010, forced=0.020, size=10, size_forced=10, spread=0.0):
+        return leave_out.Rule("r", "", difference, 1e-10, "", cpu, forced, size, size_forced, spread)
+
+    assert rule().holds and rule().saves
+    assert not rule(difference=1.0).holds and not rule(difference=1.0).saves
+    # 0.8 % faster, or faster by less than times spread, or by microseconds: equal answers, and nothing saved.
+    for noise in (rule(cpu=0.0379, forced=0.0382), rule(spread=0.011), rule(cpu=9e-6, forced=23e-6)):
+        assert noise.holds and not noise.saves
+    assert rule(cpu=0.020, size=2**20, size_forced=2**21).saves
+    # Dearer than with the part: the rule is no good.
+    assert not rule(cpu=0.030).holds
+
+
+def test_a_rule_whose_answers_can_hardly_differ_holds_with_a_saving_only():
+    rule = leave_out.Rule("r", "", 0.0, 1e-10, "", 0.010, 0.020, 10, 10, must_save=True)
+    assert rule.holds
+    assert not attrs.evolve(rule, cpu_s=0.020).holds and not attrs.evolve(rule, difference=1.0).holds
+
+
+def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
+    assert leave_out.RULES["integration"]().holds
+    monkeypatch.setattr("raceway.planning.decisions.uses_record", lambda scene: True)
+    assert not leave_out.RULES["integration"]().holds
+
+
+def test_compliances_that_are_kept_are_made_anew_by_the_rule_that_measures_them(monkeypatch):
+    from raceway.bodies.condensed import compliances
+
+    made = []
+    whole = compliances._elastic_bodies
+    monkeypatch.setattr(compliances, "_elastic_bodies", lambda *words: made.append(1) or whole(*words))
+    monkeypatch.setattr(leave_out, "compared", lambda rule, scene, planned, forced, **more: (planned(), forced()))
+    once, each = leave_out.compliances()
+    assert len(made) == 1 + len(each) and (once == each).all()

@@ -1,0 +1,282 @@
+"""A ring of five coordinates on its balls, however their forces are computed."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol, Self
+
+import attrs
+import numpy as np
+
+from raceway.core.ring.kernels.layout import (
+    CAGE,
+    CENTRIFUGAL,
+    DIAMETER,
+    FRICTION,
+    GYROSCOPIC,
+    OFFSET_INNER,
+    OFFSET_OUTER,
+    REST_RADIAL,
+    SIDE,
+    TILT_ARM,
+    place,
+    stop,
+)
+
+if TYPE_CHECKING:
+    from raceway.core.ring.system import System
+    from raceway.core.stepping.protocol import SteppedSystem
+
+#: Relative residual that an equilibrium is solved to.
+TOLERANCE = 1e-11
+COORDINATES = ("x", "y", "z", "tilt_y", "tilt_z")
+
+
+@attrs.frozen(eq=False)
+class Evaluation:
+    """Contact forces at one state.
+
+    Attributes
+    ----------
+    force : (5,) internal force of the contacts [N, N m]
+    stiffness, damping : (5, 5) its derivatives by displacement and velocity
+    gap, contact_force : (2 Z,) inner races first, then outer [m, N]
+    ball : (Z, 2 to 8) positions of the balls in their meridian planes, slips, structural approaches and displacements [m]
+    memory : (2 Z, m) what the law would remember
+    """
+
+    force: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    ball: np.ndarray
+    memory: np.ndarray
+
+
+class Spin(Protocol):
+    """A speed that changes, with what of a ring follows it: ``raceway.core.ring.changing_speed``."""
+
+    @property
+    def reference(self) -> float: ...
+    @property
+    def growth(self) -> float: ...
+    @property
+    def shift(self) -> Callable[[np.ndarray], np.ndarray] | None: ...
+    def speed(self, time: np.ndarray) -> np.ndarray: ...
+    def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray: ...
+    def at(self, ring: Any, t: float) -> Any: ...
+    def constants(self, ring: Any, speed: float) -> Any: ...
+
+
+@attrs.define(eq=False, kw_only=True)
+class Ring(ABC):
+    """M q'' + C q' + K q + f(q, q') = load + force(t) for the ring's reference point.
+
+    Attributes
+    ----------
+    scalars, table : constants of geometry and balls, see ``raceway.core.ring.kernels``
+    mass, damping, stiffness : (5, 5) linear parts
+    free : (5,) 1 for unknowns, 0 for coordinates that are held
+    load : (5,) constant load [N, N m]
+    force : compiled ``FORCE``, the excitation;  force_params : (k,)
+    law_state : (2 Z, m) committed memory of the contacts
+    spin : how the speed changes that constants belong to; None for a steady one
+    """
+
+    scalars: np.ndarray
+    table: np.ndarray
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    free: np.ndarray
+    load: np.ndarray
+    force: Any
+    force_params: np.ndarray
+    law_state: np.ndarray
+    spin: Spin | None = None
+
+    @property
+    @abstractmethod
+    def conservative(self) -> bool:
+        """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
+
+    @property
+    @abstractmethod
+    def ball_columns(self) -> int:
+        """Columns of ``ball`` (Z, k): places, slips, what elasticity adds."""
+
+    @property
+    @abstractmethod
+    def compiled(self) -> System | None:
+        """The same ring for compiled loops; None where it is stepped from Python."""
+
+    @property
+    @abstractmethod
+    def surrogate(self) -> System:
+        """A compiled ring on Hertz's contacts near this one, which gives first guesses and orbits to start on; itself where it is one."""
+
+    @abstractmethod
+    def evaluate(
+        self,
+        q: np.ndarray,
+        v: np.ndarray | None = None,
+        ball: np.ndarray | None = None,
+        ball_rate: np.ndarray | None = None,
+        t: float = 0.0,
+        *,
+        dt: float = 0.0,
+        ball_gain: float = 0.0,
+        memory: np.ndarray | None = None,
+    ) -> Evaluation:
+        """Contact forces and tangents at displacement q (5,) and velocity v (5,).
+
+        Parameters
+        ----------
+        ball : (Z, ``ball_columns``) a first guess, and the slips that were committed last
+        ball_rate, ball_gain : the rate of a ball is ball_gain * ball + ball_rate [m/s]
+        dt : step since ``memory`` (2 Z, m) was committed [s]; None for ``law_state``
+
+        Raises
+        ------
+        ConvergenceError
+            When the balls find no equilibrium between the races.
+        PluginError
+            An array of another shape: a compiled kernel would write beyond it.
+        """
+
+    @abstractmethod
+    def settle(
+        self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Equilibrium under ``load`` from a first guess q (5,): displacement, balls (Z, k), iterations.
+
+        Raises
+        ------
+        ConvergenceError
+            With the last state and its residual.
+        """
+
+    def stepped(self) -> SteppedSystem:
+        """What loops in Python step."""
+        from raceway.core.ring.stepped import SteppedBearing
+
+        return SteppedBearing(self)
+
+    def of_balls(self, chosen: slice, table: np.ndarray) -> Self:
+        """A copy with some of the balls, which have the table (n, COLUMNS)."""
+        return attrs.evolve(self, table=table, law_state=self.law_state[self.contacts_of(chosen)].copy())
+
+    def contacts_of(self, balls: slice) -> np.ndarray:
+        """Rows of the contacts of some balls: inner races first."""
+        every = np.arange(self.ball_count)[balls]
+        return np.concatenate([every, self.ball_count + every])
+
+    @property
+    def rated_columns(self) -> list[int]:
+        """Columns of ``ball`` that have rates: positions and what elasticity adds, not slips."""
+        return [0, 1]
+
+    def groove_displacement(self, ball: np.ndarray) -> np.ndarray:
+        """(..., Z, 2) motion (axial, radial) of the inner groove centres against the outer ones by elastic rings [m]."""
+        return np.zeros((*ball.shape[:-1], 2))
+
+    def at_speed(self, t: float) -> Self:
+        """With the speed of a time: itself where the speed is steady."""
+        if self.spin is None:
+            return self
+        found: Self = self.spin.at(self, t)
+        return found
+
+    @property
+    def ball_count(self) -> int:
+        return self.table.shape[0]
+
+    @property
+    def arm(self) -> float:
+        """Arm of the tilts [m]."""
+        return float(self.scalars[TILT_ARM])
+
+    def outer_force(self, t: float) -> np.ndarray:
+        """(5,) the excitation at a time, without ramp."""
+        out = np.zeros(5)
+        self.force(float(t), self.force_params, out)
+        return out
+
+    def stopped(self, t: float) -> Self:
+        """A copy whose orbiting balls stand still where they are at a time."""
+        scalars, table = self.scalars.copy(), self.table.copy()
+        stop(float(t), scalars, table)
+        return attrs.evolve(self, scalars=scalars, table=table)
+
+    def without(self, *entries: int) -> Self:
+        """A copy with some ``scalars`` (FRICTION, GYROSCOPIC, CAGE of ``raceway.core.ring.kernels.layout``) set to zero."""
+        scalars = self.scalars.copy()
+        scalars[list(entries)] = 0.0
+        return attrs.evolve(self, scalars=scalars)
+
+    def as_mounted(self, growth: float) -> Self:
+        """A copy at standstill whose inner raceway has not grown by ``growth`` [m]: the state in which bearings are mounted."""
+        scalars, table = self.scalars.copy(), self.table.copy()
+        scalars[[GYROSCOPIC, CAGE]] = 0.0
+        scalars[REST_RADIAL] -= growth
+        table[:, CENTRIFUGAL] = 0.0
+        return attrs.evolve(self, scalars=scalars, table=table)
+
+    def centre_vectors(
+        self, q: np.ndarray, t: np.ndarray | float = 0.0, ball: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """(Z, 2) vector (axial, radial) from the outer to the inner groove centre of every ball, and its azimuth's
+        direction (Z, 2) as cosine and sine; ``ball`` (Z, k): with what elastic rings add there.  Of several states q (n, 5)
+        at times t (n,) everything has a first axis n."""
+        states, still = np.ascontiguousarray(q, dtype=float).reshape(-1, 5), np.zeros(5)
+        times = np.broadcast_to(np.asarray(t, dtype=float), len(states))
+        work = np.zeros((3 * len(states), 2 * self.ball_count))
+        for k, state in enumerate(states):
+            place(float(times[k]), state, still, self.scalars, self.table, work, 3 * k, 3 * k + 1, 3 * k + 2)
+        parts = work.reshape(*np.shape(q)[:-1], 3, 2, -1).swapaxes(-1, -2)
+        moved = 0.0 if ball is None else self.groove_displacement(ball)
+        return parts[..., 1, :, :] + moved, parts[..., 0, :, :].copy()
+
+    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
+        """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
+        e, direction = self.centre_vectors(q, t, ball)
+        inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
+        outer = np.arctan2(ball[:, 0], ball[:, 1])
+        turned = self.table[:, SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
+        groove = self.scalars[OFFSET_INNER] + 0.5 * self.scalars[DIAMETER]
+        return np.column_stack([self.scalars[OFFSET_INNER] * inner - groove * turned, self.scalars[OFFSET_OUTER] * outer])
+
+    def at_standstill(self) -> Self:
+        """Without friction and with balls that do not orbit: for periodic motions that a transient may start on."""
+        return self.without(FRICTION, CAGE)
+
+    def reduced(self, matrix: np.ndarray) -> np.ndarray:
+        """The part of a (5, 5) matrix that belongs to the unknowns."""
+        chosen = self.free > 0.0
+        return matrix[np.ix_(chosen, chosen)]
+
+    def acceleration(self, q: np.ndarray, v: np.ndarray, outer: np.ndarray, now: Evaluation) -> np.ndarray:
+        """(5,) acceleration from the balance of forces at one state."""
+        chosen = self.free > 0.0
+        rest = self.load + outer - now.force - self.damping @ v - self.stiffness @ q
+        a = np.zeros(5)
+        a[chosen] = np.linalg.solve(self.reduced(self.mass), rest[chosen])
+        return a
+
+    def natural_frequencies(self, tangent: np.ndarray) -> np.ndarray:
+        """Undamped natural frequencies [rad/s], ascending, with a contact tangent (5, 5)."""
+        mass = self.reduced(self.mass)
+        root = np.linalg.inv(np.linalg.cholesky(mass))
+        squares = np.linalg.eigvalsh(root @ self.reduced(0.5 * (tangent + tangent.T) + self.stiffness) @ root.T)
+        return np.sqrt(np.maximum(squares, 0.0))
+
+    def critical_time_step(self, tangent: np.ndarray) -> float:
+        """2 / (largest natural frequency) [s]: the stable limit of central differences."""
+        highest = self.natural_frequencies(tangent)[-1]
+        return 2.0 / highest if highest > 0.0 else float("inf")
+
+    def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""
+        return now.stiffness

@@ -1,0 +1,79 @@
+"""The engine of studies: rows in order by any executor, kept, resumed; what takes its process down is not kept."""
+
+import os
+
+import pytest
+
+from raceway import scene_from_dict
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.registry import Registry, default_registry
+from raceway.plugins.executors.processes import Processes
+from raceway.plugins.executors.serial import Serial
+from raceway.studies.many.engine import Item, work_through
+from raceway.studies.many.row_store import RowStore
+
+REGISTRY = default_registry()
+ITEMS = [Item(f"key {number}", f"number {number}", number) for number in range(6)]
+
+
+def squared(number, registry):
+    assert isinstance(registry, Registry)
+    return {"square": number**2, "process": os.getpid()}
+
+
+def deadly(number, registry):
+    if number == 3:
+        os._exit(11)
+    return squared(number, registry)
+
+
+@pytest.mark.parametrize("executor", [Serial(), Processes(workers=2)])
+def test_rows_are_in_order_and_kept_ones_are_not_computed_again(executor, tmp_path):
+    store = tmp_path / "rows.jsonl"
+    told = []
+    found, reused = work_through(
+        squared, ITEMS[::2], RowStore(store), executor, REGISTRY, on_progress=lambda *words: told.append(words)
+    )
+    assert [row["square"] for row in found] == [0, 4, 16] and reused == 0
+    assert [words[1:] for words in told] == [(1, 3), (2, 3), (3, 3)]
+    assert all((row["process"] == os.getpid()) == isinstance(executor, Serial) for row in found)
+    again, reused = work_through(squared, ITEMS, RowStore(store), executor, REGISTRY)
+    assert [row["square"] for row in again] == [0, 1, 4, 9, 16, 25] and reused == 3
+    assert again[::2] == found
+
+
+def test_what_takes_its_process_down_is_told_and_tried_again_next_time(tmp_path):
+    store, executor = tmp_path / "rows.jsonl", Processes(workers=1)
+    with pytest.raises(RacewayError, match=r"number 3: its process died \(exit code 11\).*what is finished is kept"):
+        work_through(deadly, ITEMS, RowStore(store), executor, REGISTRY)
+    kept = set(RowStore(store).rows)
+    assert kept and kept <= {item.key for item in ITEMS} - {"key 3"}
+    rows, _ = work_through(deadly, ITEMS, RowStore(store), executor, REGISTRY, lost=lambda _item, why: {"lost": why})
+    assert "exit code 11" in rows[3]["lost"] and rows[5]["square"] == 25
+    assert "key 3" not in RowStore(store).rows
+
+
+def test_an_interruption_keeps_what_is_finished_and_leaves_no_process(tmp_path):
+    def stop(_name, done, _total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    store = tmp_path / "rows.jsonl"
+    with pytest.raises(KeyboardInterrupt):
+        work_through(squared, ITEMS, RowStore(store), Processes(workers=2), REGISTRY, on_progress=stop)
+    rows = RowStore(store).rows
+    assert len(rows) == 2
+    for row in rows.values():
+        with pytest.raises(ProcessLookupError):
+            os.kill(row["process"], 0)
+
+
+def test_parts_of_scenes_are_shared_by_what_they_say_and_not_by_what_is_equal():
+    tables, parts = {"bearing": {"preset": "B7206C"}, "integrator": {"turns": 1}}, {}
+    first = scene_from_dict(tables, REGISTRY, parts)
+    second = scene_from_dict({**tables, "load": {"axial": 400.0}}, REGISTRY, parts)
+    assert second.bearing is first.bearing and second.integrator is first.integrator
+    assert (first.load.axial, second.load.axial) == (0.0, 400.0)
+    for turns in (1.0, True):
+        with pytest.raises(SceneError, match="whole number"):
+            scene_from_dict({**tables, "integrator": {"turns": turns}}, REGISTRY, parts)

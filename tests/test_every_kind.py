@@ -1,0 +1,196 @@
+"""A foreign plug-in of every kind is reached from the command line; what it does wrong is told by its name."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from raceway.errors import PluginError
+from raceway.framework.contracts import KINDS
+from raceway.framework.registry import Registry
+from tests.test_docs import FILES
+from validation.command_line import MINIMAL, install, raceway
+
+ROOT = Path(__file__).parents[1]
+#: The plug-ins of docs/plugins.md by kind.
+OWN = {
+    "contact_law": "power_law.py",
+    "excitation": "pulse.py",
+    "integrator": "damped.py",
+    "identifier": "three_harmonics.py",
+    "mesher": "one_cell.py",
+    "format": "json_mesh.py",
+    "report": "one_line.py",
+    "executor": "backwards.py",
+}
+
+REPORT = '''
+from pathlib import Path
+
+import attrs
+
+from raceway import RacewayError, hookimpl
+
+
+@attrs.frozen
+class {cls}:
+    """A report of a test."""
+
+    name = "{name}"
+
+    def write(self, result, folder):
+        {body}
+
+
+@hookimpl
+def raceway_reports():
+    return [{cls}]
+'''
+
+
+@pytest.fixture
+def files(tmp_path):
+    """``--plugin FILE`` for plug-ins of the page, by kind."""
+
+    def given(*kinds):
+        words = []
+        for kind in kinds:
+            path = tmp_path / OWN[kind]
+            path.write_text(FILES[OWN[kind]], encoding="utf-8")
+            words += ["--plugin", path]
+        return words
+
+    return given
+
+
+def report(folder, name, body, cls="Own"):
+    path = folder / f"{name}_{cls}.py"
+    path.write_text(REPORT.format(name=name, cls=cls, body=body), encoding="utf-8")
+    return path
+
+
+def one_message(found, code=2):
+    """The one error of a command that failed."""
+    assert found.returncode == code, found.stdout + found.stderr
+    assert found.stderr.count("error: ") == 1 and "Traceback" not in found.stderr, found.stderr
+    return " ".join(found.stderr.split())
+
+
+def test_the_kinds_are_all_here():
+    assert set(OWN) == set(KINDS)
+
+
+def test_a_run_uses_law_excitation_integrator_identifier_and_report(files, tmp_path):
+    """The report is installed, the others are files."""
+    site = tmp_path / "site"
+    site.mkdir()
+    install(site, "lines", FILES[OWN["report"]])
+    words = [
+        "contact.kind=power", "excitation.kind=pulse", "excitation.peak=200.0", "integrator.kind=damped", "integrator.turns=2",
+        "identifier.kind=three_harmonics",
+    ]  # fmt: skip
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        '[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[excitation]\nkind = "pulse"\nspeed_rpm = 12000\n'
+    )
+    changes = [word for change in words for word in ("--set", change)]
+    kinds = ("contact_law", "excitation", "integrator", "identifier")
+    out, path = tmp_path / "out", os.pathsep.join([str(site), str(ROOT)])
+    found = raceway("run", scene, *changes, *files(*kinds), "--report", "one_line", "--out", out, PYTHONPATH=path)
+    assert found.returncode == 0, found.stderr
+    result = json.loads((out / "result.json").read_text())
+    used = {p["kind"]: p["distribution"] for p in result["environment"]["plugins"]}
+    assert {kind: used[kind] for kind in kinds} == {kind: OWN[kind] for kind in kinds}
+    told = (out / "stiffness.txt").read_text()
+    assert float(told.split()[0]) == pytest.approx(result["identification"]["equivalent_stiffness"], rel=1e-5)
+    assert f"written: {out / 'stiffness.txt'}" in found.stdout
+
+
+def test_meshes_are_made_written_and_read_by_foreign_plugins(files, tmp_path):
+    made, again = tmp_path / "made", tmp_path / "again"
+    plugins = files("mesher", "format")
+    words = ("--set", "mesh.kind=one_cell", "--format", "json_mesh")
+    found = raceway("mesh", MINIMAL, *plugins, *words, "--out", made, "--json")
+    assert found.returncode == 0, found.stderr
+    assert json.loads(found.stdout)["files"] == [str(made / "inner_ring.mesh.json")]
+    words = ("--set", "mesh.kind=file", "--set", f"mesh.inner_ring={made / 'inner_ring.mesh.json'}", "--format", "json_mesh")
+    found = raceway("mesh", MINIMAL, *plugins, *words, "--out", again)
+    assert found.returncode == 0, found.stderr
+    first, second = (json.loads((folder / "inner_ring.mesh.json").read_text()) for folder in (made, again))
+    assert sorted(first["points"]) == sorted(second["points"])  # the mesher renumbers
+
+
+def test_a_sweep_uses_a_foreign_executor(files, tmp_path):
+    words = ("--executor", "backwards", "--workers", 2, "--grid", "load.axial=900,1000", "--set", "identifier.kind=tangent")
+    found = raceway("sweep", MINIMAL, *files("executor"), *words, "--out", tmp_path / "store", "--json")
+    assert found.returncode == 0, found.stderr
+    assert json.loads(found.stdout)["states"]["done"] == 2
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [("raise ValueError('no ink')", "write() raises ValueError: no ink"), ("raise RacewayError('no ink')", "no ink"),
+     ("return None", "write() raises TypeError"), ("raise SystemExit(3)", "write() raises SystemExit: 3")],
+)  # fmt: skip
+def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body, words):
+    """The other report is written, too."""
+    bad = report(tmp_path, "bad", body)
+    good = report(tmp_path, "good", "p = Path(folder) / 'good.txt'; p.write_text('good'); return [p]", "Good")
+    out = tmp_path / "out"
+    names = ("--plugin", bad, "--plugin", good, "--report", "bad", "--report", "good")
+    found = raceway("run", MINIMAL, "--set", "identifier.kind=tangent", *names, "--out", out)
+    told = one_message(found)
+    assert f"report 'bad' of {bad.name}: {words}" in told and "The result is saved" in told
+    assert json.loads((out / "result.json").read_text())["title"] and (out / "good.txt").read_text() == "good"
+    assert "tangent kyy" in found.stdout
+
+
+def test_json_holds_the_result_and_the_reports_failure(tmp_path):
+    bad = report(tmp_path, "bad", "print('a word'); raise ValueError('no ink')")
+    words = ("--set", "identifier.kind=tangent", "--plugin", bad, "--report", "bad", "--json")
+    found = raceway("run", MINIMAL, *words, "--out", tmp_path / "out")
+    content = json.loads(found.stdout)
+    assert found.returncode == 2 and "report 'bad'" in content["errors"][0]["message"] and content["equilibrium"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (
+            ("run", MINIMAL, "--report", "picturs"),
+            "no report named 'picturs' (did you mean 'pictures'?); installed: pictures",
+        ),
+        (("mesh", MINIMAL, "--format", "vtk"), "installed: abaqus, msh, vtu"),
+        (("sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"), "installed: dask, joblib, serial"),
+        (("check", MINIMAL, "--set", "mesh.kind=moon"), "installed: file, gmsh, structured"),
+    ],
+)
+def test_an_unknown_name_lists_what_is_installed_and_computes_nothing(tmp_path, words, told):
+    out = () if words[0] == "check" else ("--out", tmp_path / "out")
+    assert told in one_message(raceway(*words, *out))
+    assert not (tmp_path / "out").exists()
+
+
+def test_two_reports_of_one_name_are_refused_before_the_run(tmp_path):
+    twins = [report(tmp_path, "twin", "return []", cls) for cls in ("One", "Two")]
+    words = [word for path in twins for word in ("--plugin", path)]
+    found = raceway("run", MINIMAL, *words, "--report", "twin", "--out", tmp_path / "out")
+    told = one_message(found)
+    assert "two plug-ins claim the name 'twin' as report: `One` of twin_One.py and `Two` of twin_Two.py" in told
+    assert not (tmp_path / "out").exists()
+
+
+def test_two_formats_of_one_ending_are_refused_by_name(tmp_path):
+    registry = Registry(third_party=False)
+    assert registry.format_of("ring.VTU").name == "vtu"
+    code = FILES[OWN["format"]]
+    for name, ending in (("one", ".mesh.json"), ("two", ".mesh.json"), ("three", ".json")):
+        path = tmp_path / f"{name}.py"
+        path.write_text(code.replace("json_mesh", name).replace(".mesh.json", ending), encoding="utf-8")
+        registry.load_file(path)
+    assert registry.format_of("a.json").name == "three"
+    with pytest.raises(PluginError, match=r"format 'one' of one.py and format 'two' of two.py both claim the ending"):
+        registry.format_of("a.mesh.json")
+    with pytest.raises(PluginError, match=r"no format has the ending '.stl'; there are .inp, .json, .mesh.json, .msh, .vtu"):
+        registry.format_of("a.stl")

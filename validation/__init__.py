@@ -1,0 +1,8 @@
+"""What tests and measurements share; imports the package, neither of them.
+
+reference     the same physics by independent code: rings, contacts, elastic bodies, friction
+scenes, tables, several, random choice of scenes, models built from them
+equilibria, tangent, orders, expected_values, identified_stiffness, error_estimate, series_errors: numbers with their true values
+block, cubes, groove, single, squeezed, hexahedron: small bodies and contacts
+command_line, browser, cluster, sessions, harm, article_study: commands, pages, workers, processes, damaged files
+"""

@@ -1,0 +1,53 @@
+"""Every page that the program writes, made as cheaply as it comes: name -> a function that writes it into a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from raceway.framework.registry import Registry
+from validation.command_line import ARTICLE, EXAMPLES, invoke
+
+
+def _command(file: str, *words: Any) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        found = invoke(*words, "--out", folder)
+        assert found.exit_code == 0, found.output
+        return folder / file
+
+    return write
+
+
+def _article(folder: Path) -> Path:
+    """The page of the article's study around invented curves, which costs no run; its figures are all there."""
+    from raceway.studies.article.figures import pictures
+    from raceway.studies.article.report import page
+    from validation.article_study import curves, study
+
+    found = study(curves(lambda setting, load, w: 1e8 * (1.0 + 0.3 * w**2) * (load / 1000.0) ** 0.3, ("rigid", "condensed")))
+    return page(found, pictures(found), "raceway study article").write(folder / "article.html")
+
+
+_POINT = ("rig.speeds_rpm=[13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.25")
+PAGES: dict[str, Callable[[Path], Path]] = {
+    "view": _command("view.html", "view", ARTICLE, "--html", "--animate", "--frames", "2"),
+    "study map": _command(
+        "map.html",
+        "study",
+        "map",
+        "--vary",
+        "load.axial=400,2000",
+        "--vary",
+        "excitation.speed_rpm=10000,15000,60000",
+        "--vary",
+        "bearing.contact_angle_deg=15",
+    ),
+    "study article": _article,
+    "study rig": _command(
+        "rig.html", "study", "rig", EXAMPLES / "test_rig.toml", *(w for p in _POINT for w in ("--set", p))
+    ),
+}
+assert {name for name in PAGES if name.startswith("study")} == {
+    f"study {name}" for name in Registry(third_party=False).names("study")
+}, "a study has no page here"
