@@ -177,6 +177,12 @@ class BodiesSuite(Suite):
             require(
                 (np.isnan(angle) == (part == 0.0)).all(), f"{word} angles are nan where a contact is open, and only there"
             )
+        q, ball, forces = (np.repeat(each[None], 3, axis=0) for each in (found.displacement, found.ball, force))
+        several = model.bearing.contact_angles(model, q, ball, forces, np.zeros(3))
+        shapes = [np.shape(angle) for angle in several]
+        require(shapes == [(3, z)] * 2, f"the angles of three states have the shapes {shapes}, not (3, {z})")
+        over = np.shape(model.bearing.over_edges(model, *several, forces))
+        require(over == (3,), f"over_edges() of three states has the shape {over}, not (3,)")
         return _carried(model, found)
 
     @duty("contact_ellipse, ball_columns, edge_warnings, report, warnings, mesh_error, contact_error: shapes and types")
