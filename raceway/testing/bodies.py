@@ -13,7 +13,6 @@ import numpy as np
 from raceway.bodies.bearing import Bearing
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
-from raceway.core.ring.start import at_rest, static_orbit
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.errors import Mistake, RacewayError, SceneError
@@ -211,7 +210,7 @@ class BodiesSuite(Suite):
         system, compiled = model.system, model.traits.compiled
         schedule, worst = Schedule(_OF_LIMIT * system.critical_time_step(found.stiffness), _STEPS, 1), 0.0
         for method in (Newmark(), CentralDifference(), QuasiStatic()):
-            begin = at_rest if method.inertial else static_orbit
+            begin = model.bearing.at_rest if method.inertial else model.bearing.at_equilibrium
             start = begin(system, found.displacement, found.ball, False)
             record = integrate(method, system, start, schedule)
             moved = record.displacement - found.displacement

@@ -9,6 +9,7 @@ import attrs
 
 from raceway.bodies.condensed.plan import seat_faults, section_cost, section_faults
 from raceway.bodies.mesh_plan import unrefined
+from raceway.bodies.modules import REDUCED, RIGID, of_balls
 from raceway.bodies.patches.plan import MOTION, patch_cost, patch_faults
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
@@ -36,6 +37,7 @@ class Condensed:
     """Elastic rings and balls, reduced to the compliances that their contacts feel."""
 
     name: ClassVar[str] = "condensed"
+    modules: ClassVar[tuple[str, ...]] = (*RIGID, *REDUCED)
 
     def faults(self, scene: Scene) -> list[Mistake]:
         """What condensed rings need: dimensions of bodies of revolution, the elements of the structured mesher, seats that hold."""
@@ -103,6 +105,10 @@ class Condensed:
         seconds = patches.setup_s + 3.0 * patches.equilibrium_s + (MOTION * patches.step_s if scene.excitation else 0.0)
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0
         return Cost(START_S + seconds + _WITH_HALF * runs(scene, motion) * steps * patches.step_s)
+
+    def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
+        """Kernels of the balls, and what reduces the bodies."""
+        return of_balls(balls) | dict.fromkeys(REDUCED, "elastic rings and balls, reduced")
 
     def build(self, scene: Scene, plan: Plan) -> Bearing:
         """See ``raceway.bodies.condensed.build`` and ``raceway.bodies.patches.build``."""
