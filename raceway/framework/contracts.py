@@ -287,7 +287,7 @@ class BodiesKind(Protocol):
     6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
     7. ``imports(scene, balls)``: module -> reason, of the optional modules that a run on these bodies imports; ``modules``: all of
        them, whatever the scene.
-    8. ``build(scene, plan)``: a ``raceway.bodies.bearing.Bearing``: arrays and kernels, nothing settled yet.
+    8. ``build(scene, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
     9. The fields of the class are the keys of the table [bodies] beside ``kind``.
     9. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
        for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.

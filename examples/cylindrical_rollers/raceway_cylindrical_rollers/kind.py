@@ -14,7 +14,7 @@ from raceway.framework.options import positive
 from raceway.planning.wall_time import START_S, Times, compiled_motion
 
 if TYPE_CHECKING:
-    from raceway.bodies.bearing import Bearing
+    from raceway.bodies.model import Bearing
     from raceway.planning.decisions import Balls, Motion
     from raceway.planning.parts import Decisions
     from raceway.planning.plan import Plan

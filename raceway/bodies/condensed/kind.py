@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.bodies.condensed.plan import seat_faults, section_cost, section_faults
+from raceway.bodies.condensed.plan import BETWEEN_BALLS, seat_faults, section_cost, section_faults
 from raceway.bodies.mesh_plan import unrefined
 from raceway.bodies.modules import REDUCED, RIGID, of_balls
 from raceway.bodies.patches.plan import MOTION, patch_cost, patch_faults
@@ -20,7 +20,7 @@ from raceway.planning.wall_time import START_S, Times, compiled_motion, runs
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
-    from raceway.bodies.bearing import Bearing
+    from raceway.bodies.model import Bearing
     from raceway.planning.plan import Plan
 
 _TIMES = Times({"weightless": 10.0e-6, "inertial": 11.0e-6, "tangential": 22.0e-6}, sample=14.0e-6, search=2.5)
@@ -28,8 +28,6 @@ _TIMES = Times({"weightless": 10.0e-6, "inertial": 11.0e-6, "tangential": 22.0e-
 _BETWEEN_S = 40.0e-6
 #: Steps of a run and its second one with half as many.
 _WITH_HALF = 1.5
-#: The part by which balls feel each other.
-BETWEEN_BALLS = "effect of balls on each other through the rings"
 
 
 @attrs.frozen

@@ -19,7 +19,7 @@ from raceway.planning.wall_time import START_S
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
-    from raceway.bodies.bearing import Bearing
+    from raceway.bodies.model import Bearing
     from raceway.planning.plan import Plan
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, excitation, law_params, linear_parts, make_basis
-from raceway.bodies.bearing import Bearing, Told
 from raceway.bodies.contact_error import against_hertz
+from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse

@@ -16,7 +16,7 @@ from raceway.planning.wall_time import START_S, Times, compiled_motion
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
-    from raceway.bodies.bearing import Bearing
+    from raceway.bodies.model import Bearing
     from raceway.planning.plan import Plan
 
 _TIMES = Times({"weightless": 2.3e-6, "inertial": 3.3e-6, "tangential": 16.0e-6}, sample=8.0e-6, search=1.0)
