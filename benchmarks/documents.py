@@ -49,7 +49,7 @@ _ORDER = (
     ("rotor", None),
     ("load", None),
     ("excitation", "excitation"),
-    ("bodies", None),
+    ("bodies", "bodies"),
     ("mesh", "mesher"),
     ("contact", "contact_law"),
     ("kinematics", None),

@@ -82,6 +82,12 @@ def crooked(self, *args, **keys):
     return tuple(angle + 0.2 for angle in RigidBearing.contact_angles(self, *args, **keys))
 
 
+def momentary(self, model, q, ball, force, t=0.0):
+    """Of the first of several states alone."""
+    one = (part.reshape(-1, *part.shape[-order:])[0] for part, order in ((q, 1), (ball, 2), (force, 1)))
+    return RigidBearing.contact_angles(self, model, *one)
+
+
 def drifting(self, scene, plan):
     bearing = Rigid.build(self, scene, plan)
     bearing.system.law_params[:] *= 1.0 + 1e-9 * next(TIMES)
@@ -90,6 +96,18 @@ def drifting(self, scene, plan):
 
 def deaf(self, scene, plan):
     return Rigid.build(self, attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, radial_expansion=0.0)), plan)
+
+
+def dry(self, scene, plan):
+    return Rigid.build(self, attrs.evolve(scene, contact=attrs.evolve(scene.contact, friction=0.0)), without(plan))
+
+
+def without(plan):
+    return plan if plan.gyroscopic else attrs.evolve(plan, balls="inertial" if plan.centrifugal else "weightless")
+
+
+def still(self, scene, plan):
+    return Rigid.build(self, attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, orbiting=False)), plan)
 
 
 def single(self, scene, plan):
@@ -124,12 +142,15 @@ BROKEN = [
     (of_system("Skewed", stiffness_at=stiff(1.0, 1e-4)), "tangent", "K - K\\^T is"),
     (of_system("Pulling", evaluate=pulling), "contacts", "a contact pulls with -"),
     (of_bearing("Crooked", contact_angles=crooked), "contacts", "of them unbalanced"),
+    (of_bearing("Momentary", contact_angles=momentary), "contacts", "the angles of three states"),
     (of_bearing("Flat", contact_ellipse=lambda *_: (np.ones(7),) * 3), "told", "begins at 0 without a load"),
     (of_bearing("Mute", mesh_error=lambda *_: 0.1), "told", "mesh_error\\(\\) returns 0.1"),
     (of_bearing("Wide", ball_columns=lambda *_: {"width_m": np.ones(3)}), "told", "not \\(Z,\\)"),
     (of_system("Divided", evaluate=another), "steps", "newmark: drivers differ by"),
     (made("Drifting", build=drifting), "repeats", "`displacement` differs"),
     (made("Deaf", build=deaf), "refused_or_computed", "an expanded inner ring: changes nothing"),
+    (made("Dry", build=dry), "refused_or_computed", "friction: changes nothing"),
+    (made("Still", build=still), "refused_or_computed", "orbiting balls: changes nothing"),
     (made("Single", build=single), "refused_or_computed", "a pair of rows: neither refused by faults\\(\\) nor computed"),
     (of_bearing("Obscure", report=lambda *_: {"what": object()}), "run", "TypeError"),
 ]  # fmt: skip

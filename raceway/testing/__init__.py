@@ -5,6 +5,7 @@ contact_law, excitation, integrator, identifier, bodies, mesher, format, report,
 steady         duties of integrators that solve for the steady motion
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
 scenes         a small scene and its result;  bearings: scenes and bearings that kinds of bodies are tried on
+asked          what else a scene may ask of bodies, and how a bearing shows it
 drivers        one driver of a scheme by itself
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
 child          duties in child processes with limits of time and memory

@@ -17,6 +17,7 @@ from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
 from raceway.scene.tables import TABLES, Scene
+from raceway.testing.asked import Changes
 from raceway.testing.suite import ConformityError
 
 #: For kinds that give no scene of their own.
@@ -27,19 +28,6 @@ _USUAL = {
     "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
     "integrator": {"kind": "newmark", "turns": 2, "steps_per_turn": 90},
     "kinematics": {"ball_inertia": False},
-}
-#: What else a scene may ask for: bodies run it, or say that they do not.
-OTHERS: dict[str, dict[str, dict[str, Any]]] = {
-    "free tilts": {"supports": {"tilt": "free"}, "rotor": {"mass": 1.0, "transverse_inertia": 1e-3}},
-    "a held axial displacement": {"supports": {"axial": "displacement"}},
-    "inertia of the balls": {"kinematics": {"ball_inertia": True}},
-    "gyroscopic moments": {"kinematics": {"ball_inertia": True, "gyroscopic": "outer_race"}},
-    "orbiting balls": {"kinematics": {"orbiting": True}},
-    "friction": {"contact": {"friction": 0.05}},
-    "a pair of rows": {"bearing": {"arrangement": "DB", "row_distance": 0.02}},
-    "surface points": {"contact": {"discretisation": "nodal"}},
-    "a soft seat": {"supports": {"outer_seat": 1e13}},
-    "an expanded inner ring": {"kinematics": {"radial_expansion": 1e-6}},
 }
 
 
@@ -73,7 +61,7 @@ def tables_of(bodies: Any) -> dict[str, Any]:
     return dict(_USUAL if own is None else own())
 
 
-def scene_of(bodies: Any, changes: dict[str, dict[str, Any]] | None = None, registry: Registry | None = None) -> Scene:
+def scene_of(bodies: Any, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
     """The scene with these bodies; ``changes`` : keys by table."""
     registry = registry or registry_with(bodies)
     tables = {name: table for name, table in tables_of(bodies).items() if name != "bodies"}

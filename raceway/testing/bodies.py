@@ -26,7 +26,8 @@ from raceway.planning.decisions import decide_balls, decide_motion, decide_tilts
 from raceway.planning.parts import Decisions
 from raceway.planning.plan import make_plan
 from raceway.scene.tables import Scene
-from raceway.testing.bearings import OTHERS, is_key, registry_with, scene_of, settled, unbalanced
+from raceway.testing.asked import OTHERS, PLAIN
+from raceway.testing.bearings import is_key, registry_with, scene_of, settled, unbalanced
 from raceway.testing.drivers import FromPython, has_both
 from raceway.testing.suite import ConformityError, Suite, check_class, duty, require
 
@@ -76,7 +77,7 @@ class BodiesSuite(Suite):
     def test_faults(self, bodies: Any) -> str:
         registry, refused = registry_with(bodies), []
         with _nothing_built():
-            for word, changes in {"its example": {}, **OTHERS}.items():
+            for word, changes in {"its example": {}, **{word: one.changes for word, one in OTHERS.items()}}.items():
                 scene = scene_of(bodies, changes, registry)
                 found = bodies.faults(scene)
                 require(isinstance(found, list), f"{word}: faults() returns {type(found).__name__}, not a list")
@@ -231,9 +232,9 @@ class BodiesSuite(Suite):
     @duty("what else a scene asks for is refused by the plan, or computed: nothing is left out in silence")
     def test_refused_or_computed(self, bodies: Any) -> str:
         registry, computed = registry_with(bodies), []
-        plain = settled(scene_of(bodies, _MASSLESS, registry))[1].displacement
-        for word, changes in OTHERS.items():
-            scene = scene_of(bodies, changes, registry)
+        plain = settled(scene_of(bodies, PLAIN, registry))[1].displacement
+        for word, asked in OTHERS.items():
+            scene = scene_of(bodies, asked.changes, registry)
             if _refusal(scene) is None and bodies.traits(scene).resultants:
                 computed.append(word)
                 self._computes(word, scene, plain)
@@ -246,9 +247,7 @@ class BodiesSuite(Suite):
             raise ConformityError(f"{word}: neither refused by faults() nor computed: {why}") from why
         left = unbalanced(model, found.displacement, found.ball)
         require(left < _BALANCE, f"{word}: {left:.2g} of the loads is left")
-        if word in _MOVES:
-            moved = float(np.abs(found.displacement - plain).max())
-            require(moved > 0.0, f"{word}: changes nothing: refuse it by faults()")
+        require(OTHERS[word].shows(model, found, plain), f"{word}: changes nothing: refuse it by faults()")
 
     @duty("a whole run ends with a stiffness, an error table and a result.json that names the kind")
     def test_run(self, bodies: Any) -> str:
@@ -259,12 +258,6 @@ class BodiesSuite(Suite):
         stiffness = told["identification"]["equivalent_stiffness"]
         require(stiffness is not None and stiffness > 0.0, f"the stiffness is {stiffness} N/m")
         return f"K = {stiffness:.4g} N/m"
-
-
-#: What ``_MOVES`` is compared with.
-_MASSLESS = {"kinematics": {"ball_inertia": False}}
-#: Of ``OTHERS``, what moves the ring of every bearing.
-_MOVES = ("inertia of the balls", "an expanded inner ring", "a soft seat")
 
 
 def _carried(model: Model, found: Equilibrium) -> str:

@@ -42,11 +42,10 @@ class RollerBearing(Bearing):
     clearance: float
 
     def contact_angles(
-        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: float = 0.0
+        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
     ) -> tuple[np.ndarray, np.ndarray]:
         """Zero where a contact is loaded."""
-        angle = np.where(force > 0.0, 0.0, np.nan)
-        inner, outer = np.split(angle, 2)
+        inner, outer = np.split(np.where(force > 0.0, 0.0, np.nan), 2, axis=-1)
         return inner, outer
 
     def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -62,17 +61,21 @@ class RollerBearing(Bearing):
         return pressure, np.where(load > 0.0, 0.5 * self.length, 0.0), half
 
     def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
-        """A contact wider than half a roller."""
-        z, diameter = model.system.ball_count, self.basis.geometry.ball_diameter
-        for race, load in enumerate((force[:z], force[z:])):
-            if 2.0 * self.contact_ellipse(model, race, load)[2].max() >= 0.5 * diameter:
-                raise ConvergenceError(
-                    f"{load.max():.3g} N a roller make a contact wider than half a roller: check the units", state
-                )
+        """A contact as wide as half a roller."""
+        if self.over_edges(model, force, force, force[None]).any():
+            raise ConvergenceError(
+                f"{force.max():.3g} N a roller make a contact as wide as half a roller: check the units", state
+            )
 
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
         """None: the length is the effective one, inside the edges."""
         return []
+
+    def over_edges(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """(n,) whether a contact of a state is as wide as half a roller; forces (n, 2 Z)."""
+        loads = np.split(force, 2, axis=-1)
+        wide = (2.0 * self.contact_ellipse(model, race, load)[2].max(axis=-1) for race, load in enumerate(loads))
+        return np.maximum(*wide) >= 0.5 * self.basis.geometry.ball_diameter
 
     @property
     def largest_motion(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
@@ -36,6 +36,18 @@ class Condensed:
 
     name: ClassVar[str] = "condensed"
     modules: ClassVar[tuple[str, ...]] = (*RIGID, *REDUCED)
+
+    @classmethod
+    def example_scene(cls) -> dict[str, Any]:
+        """A B7206C on sections so coarse that they take a moment."""
+        return {
+            "bearing": {"preset": "B7206C"},
+            "mesh": {"kind": "structured", "element_size": 2.5e-3, "nodes_per_semi_axis": 1},
+            "load": {"axial": 1000.0, "radial": [200.0, 0.0]},
+            "kinematics": {"ball_inertia": False},
+            "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
+            "integrator": {"kind": "newmark", "turns": 2, "steps_per_turn": 90},
+        }
 
     def faults(self, scene: Scene) -> list[Mistake]:
         """What condensed rings need: dimensions of bodies of revolution, the elements of the structured mesher, seats that hold."""

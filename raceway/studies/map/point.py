@@ -36,11 +36,9 @@ def point_row(scene: Scene, registry: Registry) -> dict[str, Any]:
         return {"status": "refused", "reason": "nothing moves: the map needs an excitation and an identifier of its motion"}
     inner, outer, least = _reaches(result)
     loads = record.record.contact_force
-    z = result.model.system.ball_count
-    peaks = [
-        float(e.peak_pressure(part.max()))
-        for e, part in ((result.model.inner, loads[:, :z]), (result.model.outer, loads[:, z:]))
-    ]
+    model, z = result.model, result.model.system.ball_count
+    most = np.array([[loads[:, :z].max()], [loads[:, z:].max()]])
+    peaks = [float(model.bearing.contact_ellipse(model, race, load)[0][0]) for race, load in enumerate(most)]
     return {
         "status": "completed",
         "reason": "",

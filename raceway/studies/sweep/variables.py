@@ -87,6 +87,6 @@ def _loads(result: Result) -> dict[str, Any]:
     return {
         "axial_displacement": result.equilibrium.displacement[0],
         "peak_ball_load": inner.max(),
-        "p0": max(model.inner.peak_pressure(inner).max(), model.outer.peak_pressure(outer).max()),
+        "p0": max(model.bearing.contact_ellipse(model, race, load)[0].max() for race, load in enumerate((inner, outer))),
         "min_ball_load": inner.min(),
     }

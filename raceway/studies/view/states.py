@@ -15,7 +15,7 @@ from raceway.pipeline.result import Result, equilibrium_table
 from raceway.studies.view.bearing import State
 
 if TYPE_CHECKING:
-    from raceway.core.contact.hertz import Ellipse
+    from raceway.bodies.model import Model
 
 #: The largest motion in an animation over the ball diameter.
 _LARGEST = 0.12
@@ -88,9 +88,7 @@ def last_turn(result: Result, frames: int) -> Turn:
         load, t = record.contact_force[k], float(record.time[k])
         now = attrs.evolve(model, system=model.system.at_speed(t))
         angle = np.concatenate(now.bearing.contact_angles(now, record.displacement[k], record.ball[k], load, t))
-        halves, peaks = zip(
-            *(_ellipse(e, part) for e, part in ((model.inner, load[:z]), (model.outer, load[z:]))), strict=True
-        )
+        halves, peaks = zip(*(_ellipse(now, race, part) for race, part in enumerate((load[:z], load[z:]))), strict=True)
         motion = factor * (record.displacement[k] - result.equilibrium.displacement)
         direction = now.system.centre_vectors(record.displacement[k], t)[1]
         azimuth = np.arctan2(direction[:, 1], direction[:, 0])
@@ -99,9 +97,10 @@ def last_turn(result: Result, frames: int) -> Turn:
     return Turn(states, factor, turn[:, 1:3], record.force[chosen, 1:3], angle)
 
 
-def _ellipse(ellipse: Ellipse, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Semi-axes (n, 2) [m] and largest pressure (n,) [Pa]."""
-    return np.column_stack(ellipse.semi_axes(load)), ellipse.peak_pressure(load)
+    pressure, major, minor = model.bearing.contact_ellipse(model, race, load)
+    return np.column_stack([major, minor]), pressure
 
 
 def _round_down(value: float) -> float:
