@@ -52,7 +52,7 @@ def twice(_self, _scene, parts):
         parts.leave_out("elastic rings and balls", "only contacts deform")
 
 
-def adrift(self, _near=None, _on_residual=None):
+def adrift(self, near=None, on_residual=None):
     q, ball, iterations = self.system.settle(self.guess)
     return q + 1e-8, ball, iterations
 

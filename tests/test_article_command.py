@@ -18,6 +18,7 @@ from raceway.studies.article import study as driver
 from raceway.studies.article.curves import ROTATING
 from raceway.studies.article.design import ARTICLE, FRICTIONS, Setting, article_tables, design, shaft_tilt_stiffness
 from raceway.studies.article.figures import pictures
+from raceway.studies.article.files import write
 from raceway.studies.article.panel import Picture
 from raceway.studies.article.report import page
 from validation.article_study import curves, row, study
@@ -174,7 +175,7 @@ def test_runs_of_scan_and_rig_that_fail_are_listed_and_leave_an_empty_cell(tmp_p
     found.scan[400.0][1] = row(15000.0, 400.0, None, "failed", "no motion, says the scan")
     found = attrs.evolve(found, rig=(*found.rig[1:], {**found.rig[0], **row(11000.0, 400.0, None, "refused", "not so")}))
     assert [one["reason"] for one in found.failed] == ["not so", "no motion, says the scan"]
-    found.write(tmp_path, pictures=False)
+    write(found, tmp_path, False)
     with (tmp_path / "tilt-stiffness.csv").open(encoding="utf-8") as file:
         assert [line["k_ratio"] == "" for line in csv.DictReader(file)] == [True] + [False] * 50
     for path in tmp_path.glob("*.csv"):

@@ -13,11 +13,12 @@ from scipy.linalg import expm
 
 from raceway import scene_from_dict
 from raceway.core.periodic.branch import Branch
-from raceway.core.periodic.collocation import Problem, solve
+from raceway.core.periodic.collocation import solve
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
 from raceway.core.periodic.first_guess import guess, response
 from raceway.core.periodic.from_rest import from_rest
 from raceway.core.periodic.neighbour import Recorded, neighbour_of
+from raceway.core.periodic.problem import Problem
 from raceway.core.periodic.rates import stiff
 from raceway.core.periodic.sampling import motion_at, record
 from raceway.core.periodic.search import find

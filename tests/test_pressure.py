@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from raceway.bodies.pressure import approach_at, contact_ellipse
+from raceway.bodies.pressure import approach_at
 from raceway.pipeline.run import run
 from raceway.scene.file import scene_from_dict
 
@@ -32,9 +32,9 @@ def test_hertz_keeps_hertz_and_open_contacts_have_none():
     loads = np.array([0.0, 10.0, 250.0])
     for kind in ("hertz", "penalty"):
         model = result(kind=kind).model
-        pressure, a, b = contact_ellipse(model, 0, loads)
+        pressure, a, b = model.bearing.contact_ellipse(model, 0, loads)
         assert pressure[0] == a[0] == b[0] == 0.0 and (np.diff(pressure) > 0.0).all()
-        assert approach_at(model, 0, loads)[0] == 0.0
+        assert approach_at(model.system, model.geometry.ball_diameter, 0, loads)[0] == 0.0
     ball = found.as_dict()["equilibrium"]["balls"][0]
     load = ball["load_inner_n"]
     assert ball["peak_pressure_inner_pa"] == pytest.approx(float(found.model.inner.peak_pressure(load)), rel=1e-12)

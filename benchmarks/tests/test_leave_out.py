@@ -27,7 +27,8 @@ kernels = {
     f"{kernel.__module__}:{kernel.__name__}": len(kernel.signatures)
     for module in modules.values() for kernel in vars(module).values() if isinstance(kernel, Kernel)
 }
-system, record = result.model.system.surrogate, None if result.simulation is None else result.simulation.whole
+from raceway.core.ring.surrogate import surrogate
+system, record = surrogate(result.model.system), None if result.simulation is None else result.simulation.whole
 shapes = {name: list(getattr(system, name).shape) for name in ("table", "law_params", "law_state", "scalars")}
 if record is not None:
     shapes |= {name: list(getattr(record, name).shape) for name in ("displacement", "gap", "ball")}

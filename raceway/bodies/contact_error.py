@@ -18,9 +18,8 @@ from raceway.bodies.pressure import law_of_pair
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from raceway.bodies.bearing import Told
     from raceway.bodies.equilibrium import Equilibrium
-    from raceway.bodies.model import Model
+    from raceway.bodies.model import Model, Told
 
 #: Differences from Hertz's approach below this are rounding, of an equilibrium solved to 1e-11.
 _ROUNDING = 1e-8
@@ -35,7 +34,7 @@ def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
     approach = -equilibrium.gap
     off = float(np.abs(approach[loaded] / hertz[loaded] - 1.0).max())
     slope = np.concatenate([
-        law_of_pair(model, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
+        law_of_pair(model.system, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
     ])  # fmt: skip
     stiffness = float(np.abs(slope[loaded] * hertz[loaded] / (1.5 * force[loaded]) - 1.0).max())
     if max(off, stiffness) < _ROUNDING:

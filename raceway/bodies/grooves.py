@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from raceway.bodies.basis import Basis
+from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError
 from raceway.scene.inner_ring import load_at_edge, shoulder_height
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Model
+from raceway.scene.tables import Scene
 
 
 def contact_angles(
-    model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
+    system: Ring, placed: bool, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing.  Of several states: (n, Z)."""
-    z = model.system.ball_count
-    centre = model.system.centre_vectors(q, t, ball)[0]
+    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing.  Of several states: (n, Z).
+
+    Parameters
+    ----------
+    placed : whether ``ball[..., :2]`` are the balls' places; else they lie between the groove centres
+    """
+    z = system.ball_count
+    centre = system.centre_vectors(q, t, ball)[0]
     axial, radial = centre[..., 0], centre[..., 1]
-    if not model.bearing.has_places(model.plan.balls):
+    if not placed:
         inner = outer = np.arctan2(axial, radial)
     else:
         inner = np.arctan2(axial - ball[..., 0], radial - ball[..., 1])
@@ -28,18 +31,18 @@ def contact_angles(
     return np.where(force[..., :z] > 0, inner, np.nan), np.where(force[..., z:] > 0, outer, np.nan)
 
 
-def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+def beyond_the_groove(scene: Scene, basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
     """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
-    d, depth, edge = model.geometry.ball_diameter, shoulder_height(model.scene), groove_edge(model)
+    d, depth, edge = basis.geometry.ball_diameter, shoulder_height(scene), groove_edge(scene)
     found = []
-    overs = ellipse_ends(model, inner, outer, force)
+    overs = ellipse_ends(basis, inner, outer, force)
     for race, ellipse, angle, over in zip(
-        ("inner", "outer"), (model.inner, model.outer), (inner, outer), overs, strict=True
+        ("inner", "outer"), (basis.inner, basis.outer), (inner, outer), overs, strict=True
     ):
         reach = np.nanmax(over, initial=0.0)
         if reach > edge:
             begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
-            assumed = "" if model.scene.bearing.shoulder_height else ", assumed 0.2 D"
+            assumed = "" if scene.bearing.shoulder_height else ", assumed 0.2 D"
             found.append(
                 f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
                 f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
@@ -48,21 +51,21 @@ def beyond_the_groove(model: Model, inner: np.ndarray, outer: np.ndarray, force:
     return found
 
 
-def groove_edge(model: Model) -> float:
+def groove_edge(scene: Scene) -> float:
     """Angle from the groove's bottom to its edge, seen from the ball's centre [rad]."""
-    return float(np.arccos(1.0 - shoulder_height(model.scene) / (0.5 * model.geometry.ball_diameter)))
+    return float(np.arccos(1.0 - shoulder_height(scene) / (0.5 * scene.bearing.ball_diameter)))
 
 
-def ellipse_ends(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def ellipse_ends(basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Angle (..., Z) of the far end of each contact ellipse, inner and outer; angles (..., Z), forces (..., 2 Z)."""
-    z, radius = model.system.ball_count, 0.5 * model.geometry.ball_diameter
+    z, radius = force.shape[-1] // 2, 0.5 * basis.geometry.ball_diameter
     return (
-        np.abs(inner) + model.inner.semi_axes(force[..., :z])[0] / radius,
-        np.abs(outer) + model.outer.semi_axes(force[..., z:])[0] / radius,
+        np.abs(inner) + basis.inner.semi_axes(force[..., :z])[0] / radius,
+        np.abs(outer) + basis.outer.semi_axes(force[..., z:])[0] / radius,
     )
 
 
-def refuse_impossible_ellipses(model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
+def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
     """Loads (2 Z,) [N] that no ball can carry: a contact ellipse longer than half its circumference.
 
     Raises
@@ -70,8 +73,8 @@ def refuse_impossible_ellipses(model: Model, force: np.ndarray, state: dict[str,
     ConvergenceError
         With ``state``, the solution that says so.
     """
-    z, radius = model.system.ball_count, 0.5 * model.geometry.ball_diameter
-    for race, ellipse, load in (("inner", model.inner, force[:z]), ("outer", model.outer, force[z:])):
+    z, radius = len(force) // 2, 0.5 * basis.geometry.ball_diameter
+    for race, ellipse, load in (("inner", basis.inner, force[:z]), ("outer", basis.outer, force[z:])):
         half = ellipse.semi_axes(load)[0] / radius
         if half.max(initial=0.0) >= 0.5 * np.pi:
             raise ConvergenceError(

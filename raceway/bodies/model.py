@@ -1,21 +1,160 @@
-"""From scene and plan to arrays and kernels."""
+"""A bearing that was built, whatever its bodies are made of, and the model that a run computes with."""
 
 from __future__ import annotations
 
-from typing import Any
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis
-from raceway.bodies.bearing import Bearing
+from raceway.bodies.grooves import beyond_the_groove, contact_angles, ellipse_ends, groove_edge, refuse_impossible_ellipses
+from raceway.bodies.pressure import contact_ellipse
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
+from raceway.core.ring.friction import friction_energy
+from raceway.core.ring.orbit import Orbit
 from raceway.core.ring.ring import Ring
+from raceway.core.ring.start import at_rest, from_orbit, static_orbit
+from raceway.core.ring.surrogate import compiled
+from raceway.core.stepping.record import Motion, Record
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
+
+if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+
+#: A number and how it was found, or None and why there is none.
+Told = tuple[float | None, str]
+
+
+@attrs.frozen(eq=False)
+class Bearing(ABC):
+    """A bearing of one kind of bodies.
+
+    Attributes
+    ----------
+    basis : geometry and contacts that do not depend on loads
+    system : the ring on its balls
+    guess : (5,) first guess of the equilibrium, with a held axial displacement
+    """
+
+    basis: Basis
+    system: Ring
+    guess: np.ndarray
+
+    def settle(
+        self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Displacement (5,), balls (Z, k) and iterations at the equilibrium under the constant loads.
+
+        Parameters
+        ----------
+        near : (5,) equilibrium of a similar bearing;  on_residual : called with the residual of each iteration; both for bodies
+            whose equilibria take long
+
+        Raises
+        ------
+        ConvergenceError
+            None was found.
+        """
+        return self.system.settle(self.guess)
+
+    def orbiting(self, system: Ring) -> Ring:
+        """The ring whose steady orbit a motion may start on: without friction, its balls at their azimuths."""
+        return system.at_standstill()
+
+    def on_orbit(self, system: Ring, orbit: Orbit, dt: float) -> Motion:
+        """The start on a steady orbit, moving with it."""
+        return from_orbit(system, orbit, dt)
+
+    def at_rest(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+        """The start at rest in an equilibrium; without a ramp the excitation acts at once."""
+        return at_rest(system, q, ball, ramped)
+
+    def at_equilibrium(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+        """The start of a series of equilibria, without a ramp under the excitation's force at time zero."""
+        return static_orbit(system, q, ball, ramped)
+
+    def friction_lost(self, system: Ring, record: Record) -> float:
+        """Energy that friction has taken at the end of a record [J]."""
+        ring = compiled(system)
+        return 0.0 if ring is None else float(friction_energy(ring, record).lost[-1])
+
+    @property
+    def foreseen(self) -> Ring | None:
+        """A system that shows in milliseconds what nothing holds; None where the own equilibrium does."""
+        return None
+
+    def has_places(self, balls: str) -> bool:
+        """Whether ``ball[:, :2]`` are the balls' places; False where they lie between the groove centres.
+
+        Parameters
+        ----------
+        balls : the plan's "weightless", "inertial" or "tangential"
+        """
+        return balls != "weightless"
+
+    def contact_angles(
+        self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Inner and outer contact angles (Z,) [rad] under contact forces (2 Z,); nan where a contact carries nothing.
+
+        Of several states (n, 5), (n, Z, k), (n, 2 Z) at times (n,): (n, Z).
+        """
+        return contact_angles(model.system, self.has_places(model.plan.balls), q, ball, force, t)
+
+    def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Peak pressure [Pa] and semi-axes [m] (n,) of the contacts of a race (0 inner, 1 outer) at loads (n,) [N]."""
+        return contact_ellipse(model.scene, self.basis, model.system, race, load)
+
+    def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
+        """Loads (2 Z,) that no contact can carry.
+
+        Raises
+        ------
+        ConvergenceError
+            With ``state``, the solution that says so.
+        """
+        refuse_impossible_ellipses(self.basis, force, state)
+
+    def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+        """A sentence for each race whose contacts run over its edge; angles (Z,), forces (2 Z,)."""
+        return beyond_the_groove(model.scene, self.basis, inner, outer, force)
+
+    def over_edges(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """(n,) whether any contact of a state may run over its edge; angles (n, Z), forces (n, 2 Z)."""
+        ends = ellipse_ends(self.basis, inner, outer, force)
+        return np.asarray(np.logical_or(*(end > groove_edge(model.scene) for end in ends)).any(axis=-1))
+
+    @property
+    def largest_motion(self) -> float:
+        """Displacement [m] beyond which no ball stays in its groove."""
+        return self.basis.geometry.centre_distance
+
+    def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
+        """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,)."""
+        return {}
+
+    def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+        """The table ``model`` of result.json; empty where there is nothing to tell."""
+        return {}
+
+    def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
+        """What a user should know of the bodies at the equilibrium."""
+        return []
+
+    @abstractmethod
+    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Relative error of the stiffness or displacement by the bodies' meshes."""
+
+    @abstractmethod
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Relative error of loaded contacts by their law or its calibration; some contact is loaded."""
 
 
 @attrs.frozen(eq=False)
@@ -90,6 +229,6 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     bearing = scene.bodies.build(scene, plan)
     if not isinstance(bearing, Bearing):
         raise PluginError(
-            f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.bearing.Bearing"
+            f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"
         )
     return Model(scene, plan, bearing, bearing.system)

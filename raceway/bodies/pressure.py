@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from raceway.bodies.basis import Basis
 from raceway.core.contact.hertz import Ellipse
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Model
+from raceway.core.ring.ring import Ring
+from raceway.core.ring.surrogate import surrogate
+from raceway.scene.tables import Scene
 
 #: Halvings of an interval of approaches: to the last bit.
 _HALVINGS = 80
 
 
-def law_of_pair(model: Model, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Force (n,) [N] and stiffness (n,) [N/m] of the law at rest, for contacts of one race (0 inner, 1 outer).
 
     Parameters
     ----------
     approach : (n,) [m]
     """
-    system, n = model.system.surrogate, len(approach)
+    system, n = surrogate(ring), len(approach)
     row = race * system.ball_count
     params, state = (np.repeat(each[row : row + 1], n, axis=0) for each in (system.law_params, system.law_state))
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
@@ -30,20 +29,22 @@ def law_of_pair(model: Model, race: int, approach: np.ndarray) -> tuple[np.ndarr
     return force, -d_gap
 
 
-def approach_at(model: Model, race: int, load: np.ndarray) -> np.ndarray:
+def approach_at(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.ndarray:
     """(n,) approach [m] at which the law gives a load (n,) [N], by bisection; 0 where there is none."""
     load = np.asarray(load, dtype=float)
-    low, high = np.zeros_like(load), np.full_like(load, 1e-3 * model.geometry.ball_diameter)
-    while (short := law_of_pair(model, race, high)[0] < load).any():
+    low, high = np.zeros_like(load), np.full_like(load, 1e-3 * diameter)
+    while (short := law_of_pair(ring, race, high)[0] < load).any():
         high = np.where(short, 2.0 * high, high)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        below = law_of_pair(model, race, middle)[0] < load
+        below = law_of_pair(ring, race, middle)[0] < load
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return np.where(load > 0.0, high, 0.0)
 
 
-def contact_ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def contact_ellipse(
+    scene: Scene, basis: Basis, ring: Ring, race: int, load: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Peak pressure (n,) [Pa] and semi-axes a, b (n,) [m] of the contacts of a race at loads (n,) [N].
 
     Notes
@@ -52,11 +53,11 @@ def contact_ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarr
     A x^2 + B y^2 <= delta is F = pi / sqrt(A B) int_0^delta p dg.  So the peak pressure is p(delta) = sqrt(A B) / pi dF/ddelta,
     and the semi-axes are sqrt(delta / A), sqrt(delta / B).
     """
-    ellipse: Ellipse = (model.inner, model.outer)[race]
-    contact = model.scene.contact
-    if not model.traits.resultants or not getattr(contact.law, "foundation", False):
+    ellipse: Ellipse = (basis.inner, basis.outer)[race]
+    contact = scene.contact
+    if not scene.bodies.traits(scene).resultants or not getattr(contact.law, "foundation", False):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
-    approach = approach_at(model, race, load)
-    slope = law_of_pair(model, race, approach)[1]
+    approach = approach_at(ring, basis.geometry.ball_diameter, race, load)
+    slope = law_of_pair(ring, race, approach)[1]
     return np.sqrt(a * b) / np.pi * slope, np.sqrt(approach / a), np.sqrt(approach / b)

@@ -285,13 +285,16 @@ class BodiesKind(Protocol):
     4. ``decide(scene, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.parts``).
     5. ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
     6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
-    7. ``build(scene, plan)``: a ``raceway.bodies.bearing.Bearing``: arrays and kernels, nothing settled yet.
-    8. The fields of the class are the keys of the table [bodies] beside ``kind``.
-    9. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
-       for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
+    7. ``imports(scene, balls)``: module -> reason, of the optional modules that a run on these bodies imports; ``modules``: all of
+       them, whatever the scene.
+    8. ``build(scene, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
+    9. The fields of the class are the keys of the table [bodies] beside ``kind``.
+    10. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
+        for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
     """
 
     name: ClassVar[str]
+    modules: ClassVar[tuple[str, ...]]
 
     def faults(self, scene: Any) -> list[Any]: ...
     def traits(self, scene: Any) -> Traits: ...
@@ -299,6 +302,7 @@ class BodiesKind(Protocol):
     def decide(self, scene: Any, parts: Any) -> None: ...
     def unused(self, scene: Any) -> list[tuple[str, str]]: ...
     def cost(self, scene: Any, balls: Any, motion: Any, parts: Any) -> Cost: ...
+    def imports(self, scene: Any, balls: Any) -> Mapping[str, str]: ...
     def build(self, scene: Any, plan: Any) -> Any: ...
 
 
@@ -331,7 +335,10 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
     "mesher": ("raceway_meshers", ("mesh",)),
     "format": ("raceway_formats", ("suffixes", "read", "write")),
-    "bodies": ("raceway_bodies", ("faults", "traits", "stable_step", "decide", "unused", "cost", "build")),
+    "bodies": (
+        "raceway_bodies",
+        ("modules", "faults", "traits", "stable_step", "decide", "unused", "cost", "imports", "build"),
+    ),
     "report": ("raceway_reports", ("write",)),
     "executor": ("raceway_executors", ("compute",)),
     "study": ("raceway_studies", ("help", "command")),

@@ -14,6 +14,7 @@ from raceway.bodies.model import Model, build_model
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import GYROSCOPIC
+from raceway.core.ring.surrogate import compiled
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line, lines
 from raceway.core.stepping.energy import drift, friction_lost, largest_share
@@ -263,8 +264,8 @@ def _drift(model: Model, simulation: Simulation) -> float | None:
     steady = simulation.start.kind != "ramp" and not model.scene.kinematics.orbiting and model.system.spin is None
     if not (potential and steady and model.scene.integrator.method.inertial):
         return None
-    compiled = model.system.compiled
-    return None if compiled is None else energy_balance(compiled, simulation.whole).drift
+    ring = compiled(model.system)
+    return None if ring is None else energy_balance(ring, simulation.whole).drift
 
 
 def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.ring import Ring
+from raceway.core.ring.surrogate import compiled
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.planning.steady_orbits import searches_orbits
 
@@ -78,11 +79,11 @@ def _on_orbit(model: Model, equilibrium: Equilibrium, system: Ring, period: floa
     """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
     q = equilibrium.displacement
     try:
-        compiled = system.compiled
-        if searches_orbits(model.scene) and compiled is not None:
+        ring = compiled(system)
+        if searches_orbits(model.scene) and ring is not None:
             from raceway.core.periodic.beginning import beginning
 
-            found = beginning(compiled, period, q, watch)
+            found = beginning(ring, period, q, watch)
             if found is not None and not found.told:
                 return Start("orbit", found.orbit)
             if found is not None:

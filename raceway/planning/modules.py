@@ -13,17 +13,12 @@ from typing import Any
 
 import attrs
 
+from raceway.framework.registry import default_registry
+from raceway.planning.decisions import Balls
 from raceway.planning.steady_orbits import compares_with_steady_motion, has_orbits, remembers_its_start, searches_orbits
 from raceway.scene.tables import Scene
 
-_BODIES = "raceway.core.ring.kernels"
 _LOOPS = "raceway.core.schemes."
-#: Kernels of the bodies by what their balls need.
-_BALLS = {
-    "weightless": "balls follow the ring at once",
-    "inertial": "balls with centrifugal force",
-    "tangential": "friction or gyroscopic moments of the balls",
-}
 #: Libraries and who imports them.
 _MESHING = {
     "gmsh": ("gmsh",),
@@ -41,36 +36,25 @@ class Module:
     why: str
 
 
-def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bool) -> tuple[Module, ...]:
+def optional_modules(scene: Scene, balls: Balls, integrates: bool) -> tuple[Module, ...]:
     """Every optional module with its decision.
 
     Parameters
     ----------
-    balls : "weightless", "inertial" or "tangential", as planned;  centrifugal : whether they have that force
-    integrates : whether an integrator takes part
+    balls : as planned;  integrates : whether an integrator takes part
     """
     found: list[Module] = []
 
     def decide(needed: bool, module: str, why: str, why_not: str) -> None:
         found.append(Module(module, needed, why if needed else why_not))
 
-    kind = scene.bodies.name
-    # Friction and gyroscopic moments are added to an equilibrium without them.
-    base = "inertial" if centrifugal else "weightless"
-    for word, what in _BALLS.items():
-        here = word in (balls, base)
-        # Condensed and elastic bodies have a model of rigid rings beside them.
-        decide(here, f"{_BODIES}.rigid_{word}", what, f"the balls are {balls}")
-    no_potential = "forces on the balls have no potential"
-    decide(balls == "tangential", "raceway.core.ring.root", no_potential, f"the balls are {balls}")
+    imported = scene.bodies.imports(scene, balls)
+    known: list[Any] = [entry.plugin for entry in default_registry().all() if entry.kind == "bodies"]
+    for module in dict.fromkeys((*scene.bodies.modules, *(module for kind in known for module in kind.modules))):
+        why_not = f"bodies.kind is {scene.bodies.name}, the balls are {balls.kind}"
+        decide(module in imported, module, imported.get(module, ""), why_not)
     for module in imported_by(scene.contact.law, "kernel"):
         decide(True, module, f"contact.kind is {scene.contact.kind}", "")
-    calibrates = kind == "elastic" and scene.contact.discretisation == "resultant"
-    why = "calibrates the contact resultants" if calibrates else "elastic rings and balls, reduced"
-    for part in ("condensed", "revolution"):
-        decide(kind == "condensed" or calibrates, f"raceway.core.{part}", why, f"bodies.kind is {kind}")
-    decide(kind == "elastic", "raceway.core.elastic", "every node moves", f"bodies.kind is {kind}")
-    decide(kind != "rigid", "raceway.core.hexahedron", "finite elements of the bodies", "no body is meshed")
     if scene.excitation is not None:
         for module in imported_by(scene.excitation, "kernel"):
             decide(True, module, f"the excitation is {scene.excitation.name}", "")
@@ -78,13 +62,13 @@ def optional_modules(scene: Scene, balls: str, centrifugal: bool, integrates: bo
     unused = "nothing is integrated" if not integrates else f"the integrator is {method}"
     for module in _loops(scene):
         rubs = module.endswith(".tangential")
-        needed = integrates and (not rubs or balls == "tangential")
-        decide(needed, module, f"takes the steps of {method}", f"{unused}, the balls are {balls}" if rubs else unused)
+        needed = integrates and (not rubs or balls.kind == "tangential")
+        decide(needed, module, f"takes the steps of {method}", f"{unused}, the balls are {balls.kind}" if rubs else unused)
     searched = method == "periodic" or searches_orbits(scene) or compares_with_steady_motion(scene)
     searched = searched or (remembers_its_start(scene) and has_orbits(scene))
     unused = unused if not integrates else f"{unused}, no steady orbit is searched for"
     decide(integrates and searched, "raceway.core.periodic", "steady orbits and their multipliers", unused)
-    mesher = getattr(scene.mesh, "name", None) if kind != "rigid" else None
+    mesher = None if scene.mesh is None else scene.mesh.name
     for library, meshers in _MESHING.items():
         decide(mesher in meshers, library, f"mesh.kind is {mesher}", "no mesh of another program is read or made")
     for library in _PICTURES:

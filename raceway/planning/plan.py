@@ -112,7 +112,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         predicted_work_s=cost.seconds,
         predicted_once_s=cost.once,
         mesh=cost.mesh,
-        modules=optional_modules(scene, balls.kind, balls.centrifugal, motion.recorded),
+        modules=optional_modules(scene, balls, motion.recorded),
     )
 
 

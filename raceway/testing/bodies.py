@@ -10,9 +10,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.bearing import Bearing
 from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model
+from raceway.bodies.model import Bearing, Model
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.errors import Mistake, RacewayError, SceneError
@@ -122,7 +121,7 @@ class BodiesSuite(Suite):
         scene = scene_of(bodies)
         bearing = bodies.build(scene, make_plan(scene))
         require(
-            isinstance(bearing, Bearing), f"build() returns {type(bearing).__name__}, not a raceway.bodies.bearing.Bearing"
+            isinstance(bearing, Bearing), f"build() returns {type(bearing).__name__}, not a raceway.bodies.model.Bearing"
         )
         require(np.shape(bearing.guess) == (5,), f"`guess` has the shape {np.shape(bearing.guess)}, not (5,)")
         z = scene.bearing.ball_count * len(scene.bearing.rows)

@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts, made_by, make_basis
-from raceway.bodies.bearing import Bearing, Told
+from raceway.bodies.model import Bearing, Told
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW

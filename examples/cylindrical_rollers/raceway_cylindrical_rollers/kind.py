@@ -14,7 +14,7 @@ from raceway.framework.options import positive
 from raceway.planning.wall_time import START_S, Times, compiled_motion
 
 if TYPE_CHECKING:
-    from raceway.bodies.bearing import Bearing
+    from raceway.bodies.model import Bearing
     from raceway.planning.decisions import Balls, Motion
     from raceway.planning.parts import Decisions
     from raceway.planning.plan import Plan
@@ -31,6 +31,7 @@ class CylindricalRollers:
     """Rigid rings on Z cylindrical rollers in line contact: radial loads, no axial and no tilt stiffness."""
 
     name: ClassVar[str] = "cylindrical_rollers"
+    modules: ClassVar[tuple[str, ...]] = ()
 
     roller_length: float = option(unit="m", help="effective length L of the line contacts", rule=positive())
 
@@ -125,6 +126,10 @@ class CylindricalRollers:
     def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """The motion's."""
         return Cost(START_S + compiled_motion(scene, balls, motion, _TIMES))
+
+    def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
+        """No optional module of the core."""
+        return {}
 
     def build(self, scene: Scene, plan: Plan) -> Bearing:
         """See ``raceway_cylindrical_rollers.build``."""

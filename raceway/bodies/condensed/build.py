@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.bearing import Bearing, Told
 from raceway.bodies.condensed.calibration_error import calibration_error
 from raceway.bodies.condensed.compliances import elastic_bodies, element_sizes, typical_load
 from raceway.bodies.condensed.inertia import inertia_table
-from raceway.bodies.condensed.kind import BETWEEN_BALLS
+from raceway.bodies.condensed.plan import BETWEEN_BALLS
 from raceway.bodies.contact_error import untold
+from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid import build as rigid
 from raceway.bodies.rigid.build import RigidBearing
@@ -20,6 +20,7 @@ from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
 from raceway.core.condensed.structural import ring_section
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
 from raceway.planning.plan import Plan
@@ -38,12 +39,12 @@ _NOTHING = 1e-6
 
 def build(scene: Scene, plan: Plan) -> CondensedBearing:
     """The bearing of a scene with condensed bodies and contact resultants."""
-    stiff = rigid.build(scene, plan)
+    stiff = rigid.build(scene, plan, wrapped=True)
     bodies = elastic_bodies(scene, stiff.basis)
     _refuse_stiff_law(scene, stiff, bodies)
     _refuse_dashpots(scene, plan, bodies)
     angles = _angles(scene, stiff) if plan.keeps(BETWEEN_BALLS) else None
-    system = elastic_system(stiff.system.surrogate, bodies, angles)
+    system = elastic_system(surrogate(stiff.system), bodies, angles)
     system.table[:, ring.SHIFT] = 0.0
     guess = place_ring(scene, stiff.basis, system)
     return CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
@@ -66,7 +67,7 @@ class CondensedBearing(Bearing):
 
     def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
         """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""
-        system: System = self.rigid.system.surrogate
+        system: System = surrogate(self.rigid.system)
         q, ball, _ = system.settle(self.rigid.guess)
         stiffness = system.evaluate(q, ball=ball).stiffness
         angle = float(np.nanmean(equilibrium.angle_inner))
@@ -103,7 +104,7 @@ class CondensedBearing(Bearing):
         """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
         scene = model.scene
         coarse = elastic_bodies(scene, self.rigid.basis, _COARSER)
-        system = elastic_system(self.rigid.system.surrogate, coarse, self.angles)
+        system = elastic_system(surrogate(self.rigid.system), coarse, self.angles)
         system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
         try:
             q, ball, _ = attrs.evolve(system, load=model.system.load).settle(equilibrium.displacement)
@@ -144,7 +145,7 @@ def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | No
 
 def _angles(scene: Scene, stiff: RigidBearing) -> np.ndarray:
     """(Z,) contact angles with rigid rings: the free one where a ball carries nothing; their mean for balls that orbit."""
-    system: System = stiff.system.surrogate
+    system: System = surrogate(stiff.system)
     angles = np.full(system.ball_count, scene.bearing.contact_angle)
     try:
         q, ball, _ = system.settle(stiff.guess)
@@ -163,7 +164,7 @@ def _refuse_stiff_law(scene: Scene, stiff: RigidBearing, bodies: ElasticBodies) 
     taken = min(bodies.at(scene.bearing.contact_angle))
     if taken >= 0.0:
         return
-    basis, system = stiff.basis, stiff.system.surrogate
+    basis, system = stiff.basis, surrogate(stiff.system)
     for load in (1.0, 5.0):
         ellipse = basis.inner
         gap = -ellipse.approach(load * basis.ball_load) * np.ones(2 * system.ball_count)

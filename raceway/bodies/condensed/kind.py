@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.bodies.condensed.plan import seat_faults, section_cost, section_faults
+from raceway.bodies.condensed.plan import BETWEEN_BALLS, seat_faults, section_cost, section_faults
 from raceway.bodies.mesh_plan import unrefined
+from raceway.bodies.modules import REDUCED, RIGID, of_balls
 from raceway.bodies.patches.plan import MOTION, patch_cost, patch_faults
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
@@ -19,7 +20,7 @@ from raceway.planning.wall_time import START_S, Times, compiled_motion, runs
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
-    from raceway.bodies.bearing import Bearing
+    from raceway.bodies.model import Bearing
     from raceway.planning.plan import Plan
 
 _TIMES = Times({"weightless": 10.0e-6, "inertial": 11.0e-6, "tangential": 22.0e-6}, sample=14.0e-6, search=2.5)
@@ -27,8 +28,6 @@ _TIMES = Times({"weightless": 10.0e-6, "inertial": 11.0e-6, "tangential": 22.0e-
 _BETWEEN_S = 40.0e-6
 #: Steps of a run and its second one with half as many.
 _WITH_HALF = 1.5
-#: The part by which balls feel each other.
-BETWEEN_BALLS = "effect of balls on each other through the rings"
 
 
 @attrs.frozen
@@ -36,6 +35,7 @@ class Condensed:
     """Elastic rings and balls, reduced to the compliances that their contacts feel."""
 
     name: ClassVar[str] = "condensed"
+    modules: ClassVar[tuple[str, ...]] = (*RIGID, *REDUCED)
 
     @classmethod
     def example_scene(cls) -> dict[str, Any]:
@@ -115,6 +115,10 @@ class Condensed:
         seconds = patches.setup_s + 3.0 * patches.equilibrium_s + (MOTION * patches.step_s if scene.excitation else 0.0)
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0
         return Cost(START_S + seconds + _WITH_HALF * runs(scene, motion) * steps * patches.step_s)
+
+    def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
+        """Kernels of the balls, and what reduces the bodies."""
+        return of_balls(balls) | dict.fromkeys(REDUCED, "elastic rings and balls, reduced")
 
     def build(self, scene: Scene, plan: Plan) -> Bearing:
         """See ``raceway.bodies.condensed.build`` and ``raceway.bodies.patches.build``."""

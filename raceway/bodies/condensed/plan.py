@@ -9,6 +9,8 @@ import attrs
 from raceway.errors import Mistake
 from raceway.scene.tables import Scene
 
+#: The part by which balls feel each other.
+BETWEEN_BALLS = "effect of balls on each other through the rings"
 #: Bytes and seconds of processor time for both rings, by nodes of a section, measured on one core of a small server: the
 #: factor of a harmonic, and some seventy of those; balls and a coarser mesh for the error included.
 _BYTES_PER_NODE = 25_000

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.bodies.bearing import Told
 from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.report import ElasticBodies
+from raceway.bodies.model import Told
 from raceway.core.elastic.contacts.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
 
 if TYPE_CHECKING:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.bearing import Bearing
 from raceway.bodies.elastic.locking import locking
+from raceway.bodies.model import Bearing
 from raceway.core.elastic import start
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.ring import ElasticRing
 from raceway.core.ring.orbit import Orbit
 from raceway.core.ring.ring import COORDINATES, Ring
+from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion
 
@@ -40,7 +41,7 @@ class ElasticBodies(Bearing):
     @property
     def foreseen(self) -> System:
         """The same ring with rigid bodies: elastic ones would iterate for minutes."""
-        return self.system.surrogate
+        return surrogate(self.system)
 
     def settle(
         self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
@@ -51,7 +52,7 @@ class ElasticBodies(Bearing):
 
     def orbiting(self, system: Ring) -> Ring:
         """The rigid one: periodic motions of all nodes would take hours."""
-        return system.surrogate.at_standstill()
+        return surrogate(system).at_standstill()
 
     def on_orbit(self, system: Ring, orbit: Orbit, dt: float) -> Motion:
         """Near the orbit of rigid bodies."""

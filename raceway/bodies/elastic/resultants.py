@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.bearing import Told
 from raceway.bodies.condensed.calibration_error import calibration_error
 from raceway.bodies.contact_error import untold
 from raceway.bodies.elastic.report import ElasticBodies
+from raceway.bodies.model import Told
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium

@@ -29,6 +29,7 @@ from raceway.core.patches.system import PatchSystem
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.ring import Ring
+from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError
@@ -81,7 +82,7 @@ def _system(scene: Scene, basis: Basis, like: Ring, reach: Reach, nodes: float, 
     pool = Pool(make(reach), laws, _widening(basis, reach, make), scene.contact.friction)
     mass = basis.geometry.ball_mass(scene.bearing.balls.density) if scene.kinematics.ball_inertia else 0.0
     fields = {f.name: getattr(like, f.name) for f in attrs.fields(Ring)}
-    return PatchSystem(**{**fields, "table": like.table.copy()}, rigid=like.surrogate, pool=pool, ball_mass=mass), spacing
+    return PatchSystem(**{**fields, "table": like.table.copy()}, rigid=surrogate(like), pool=pool, ball_mass=mass), spacing
 
 
 def _semi_axes(ellipse: Any, load: float) -> tuple[float, float]:

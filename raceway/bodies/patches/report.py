@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.bearing import Bearing, Told
 from raceway.bodies.condensed.inertia import inertia_table
 from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.locking import locking
+from raceway.bodies.model import Bearing, Told
 from raceway.core.patches.contact import Pressed
 from raceway.core.patches.field import PressureField, pressure_field
 from raceway.core.patches.patch import Spacing

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, excitation, law_params, linear_parts, make_basis
-from raceway.bodies.bearing import Bearing, Told
 from raceway.bodies.contact_error import against_hertz
+from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
@@ -39,12 +39,18 @@ class RigidBearing(Bearing):
         return against_hertz(model, equilibrium)
 
 
-def build(scene: Scene, plan: Plan) -> RigidBearing:
-    """The bearing of a scene with rigid bodies."""
+def build(scene: Scene, plan: Plan, wrapped: bool = False) -> RigidBearing:
+    """The bearing of a scene with rigid bodies.
+
+    Parameters
+    ----------
+    wrapped : another kernel is compiled around this one, which an address would keep out of the cache
+    """
     basis = make_basis(scene)
     system = rigid_system(scene, plan, basis)
     probe(scene, basis, system)
-    system = by_address(system)
+    if not wrapped:
+        system = by_address(system)
     return RigidBearing(basis, system, place_ring(scene, basis, system))
 
 

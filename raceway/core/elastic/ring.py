@@ -10,7 +10,8 @@ import numpy as np
 
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.ring.ring import Evaluation, Ring
+from raceway.core.ring.ring import Evaluation
+from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 
@@ -19,31 +20,19 @@ _TOLERANCE, _LINEAR = 1e-7, 1e-4
 
 
 @attrs.define(eq=False, kw_only=True)
-class ElasticRing(Ring):
+class ElasticRing(SteppedRing):
     """All nodes of rings and balls; the ring's reference point is what the rest of the program sees.
 
     Attributes
     ----------
-    rigid : the same ring with rigid bodies and Hertz's contacts
     bodies : ElasticBearing
     held_by : axial load [N] whose displacement, where it acts alone on the mounted bearing, is held; None: the axial motion is free
     """
 
-    rigid: System
     bodies: ElasticBearing
     held_by: float | None = None
     _y: np.ndarray | None = attrs.field(init=False, default=None)
     _stiffness: np.ndarray | None = attrs.field(init=False, default=None)
-
-    @property
-    def compiled(self) -> None:
-        """All nodes are stepped from Python."""
-        return None
-
-    @property
-    def surrogate(self) -> System:
-        """The rigid ring under this one's loads: it gives first guesses and the orbit that a motion starts near."""
-        return attrs.evolve(self.rigid, **{f.name: getattr(self, f.name) for f in attrs.fields(Ring)})
 
     @property
     def conservative(self) -> bool:

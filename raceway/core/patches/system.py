@@ -29,8 +29,8 @@ from raceway.core.ring.kernels.layout import (
     TILT_ARM,
     place,
 )
-from raceway.core.ring.ring import TOLERANCE, Evaluation, Ring
-from raceway.core.ring.system import System
+from raceway.core.ring.ring import TOLERANCE, Evaluation
+from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
 
@@ -40,12 +40,11 @@ _BALLS = 1e-11
 
 
 @attrs.define(eq=False, kw_only=True)
-class PatchSystem(Ring):
+class PatchSystem(SteppedRing):
     """M q'' + C q' + K q + f(q, q') = load + force(t), f from pressures at surface points of finite elements.
 
     Attributes
     ----------
-    rigid : the same ring with rigid bodies and Hertz's contacts
     pool : patches and solvers, shared by all copies of this system
     ball_mass : of one ball [kg]; 0 leaves out its inertia in steps of time
 
@@ -56,19 +55,8 @@ class PatchSystem(Ring):
     [m/s]; number of the patches; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
     """
 
-    rigid: System
     pool: Pool
     ball_mass: float = 0.0
-
-    @property
-    def compiled(self) -> None:
-        """Points come and go: no compiled loop follows them."""
-        return None
-
-    @property
-    def surrogate(self) -> System:
-        """The rigid ring under this one's loads."""
-        return attrs.evolve(self.rigid, **{f.name: getattr(self, f.name) for f in attrs.fields(Ring)})
 
     def of_balls(self, chosen: slice, table: np.ndarray) -> PatchSystem:
         """With the rigid ring of these balls."""

@@ -14,9 +14,10 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Problem, solve
+from raceway.core.periodic.collocation import solve
 from raceway.core.periodic.direct import HIGHEST, highest_order, mesh_of, problem_of
 from raceway.core.periodic.neighbour import Recorded
+from raceway.core.periodic.problem import Problem
 from raceway.core.periodic.refinement import refine
 from raceway.core.periodic.sampling import states
 from raceway.core.periodic.search import Found, can_follow, find, found_by

@@ -21,8 +21,9 @@ from collections.abc import Callable, Iterator
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved, gap
+from raceway.core.periodic.collocation import Solved, gap
 from raceway.core.periodic.floquet import Floquet, floquet
+from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.rates import renew, stiff
 from raceway.core.periodic.refinement import divided, estimate, resampled
 from raceway.core.periodic.sweep import condense, imbalances, spread

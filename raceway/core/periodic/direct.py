@@ -8,8 +8,9 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.branch import between
-from raceway.core.periodic.collocation import Path, Problem, Solved, solve
+from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.first_guess import guess, standing
+from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.symmetry import one_pitch, one_turn
 from raceway.core.ring.system import System

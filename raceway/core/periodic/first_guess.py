@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem
+from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.sweep import forces
 
 #: Samples a turn of the force: enough for eight harmonics.

@@ -9,9 +9,10 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.branch import Branch, Point, towards
-from raceway.core.periodic.collocation import Path, Problem, Solved, solve
+from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.direct import ROUGH
 from raceway.core.periodic.first_guess import response, standing
+from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.core.periodic.sampling import half_a_turn_later
 from raceway.core.periodic.sweep import forces

@@ -15,8 +15,9 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved
+from raceway.core.periodic.collocation import Solved
 from raceway.core.periodic.first_guess import guess, standing
+from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.sampling import motion_at
 
 #: Nonlinear part over the motion's size, up to which a neighbour is followed.  A Duffing oscillator has one motion only as

@@ -20,7 +20,7 @@ from raceway.core.periodic.sweep import contacts, differentiate
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
-    from raceway.core.periodic.collocation import Path, Problem
+    from raceway.core.periodic.problem import Path, Problem
     from raceway.core.periodic.rule import Rule
 
 #: Lag times the largest entry of D above which the rates are solved for: a fifth leaves seven sweeps for 1e-5.

@@ -15,7 +15,8 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved, solve
+from raceway.core.periodic.collocation import Solved, solve
+from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.rates import between
 from raceway.core.periodic.rule import integrals
 from raceway.core.periodic.sweep import carry, try_between

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved
+from raceway.core.periodic.collocation import Solved
+from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.rule import integrals
 from raceway.core.periodic.sweep import contacts, forces
 from raceway.core.periodic.symmetry import rotations

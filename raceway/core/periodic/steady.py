@@ -16,6 +16,7 @@ from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.ring import Ring
+from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import SceneError
@@ -48,7 +49,7 @@ def steady(
         No such motion found.
     """
     refuse(ring, schedule)
-    system = by_address(ring.surrogate)
+    system = by_address(surrogate(ring))
     speed = 2.0 * np.pi / (schedule.dt * schedule.steps_per_turn)
     q, tangent = _equilibrium(system.without(CAGE), start)
     problem = problem_of(system, speed, q, symmetric)
@@ -90,7 +91,7 @@ def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]
 
 def refuse(system: Ring, schedule: Schedule) -> None:
     """Raise ``SceneError`` for what has no motion that repeats itself every turn, or none that depends on the force alone."""
-    if system.compiled is None:
+    if compiled(system) is None:
         why = "bodies that are stepped from Python have no compiled forces to linearise thousands of states with. Use 'newmark'"
         raise SceneError.at("integrator.kind", "periodic", why)
     if system.law_state.shape[1] > 0:

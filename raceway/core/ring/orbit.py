@@ -21,6 +21,7 @@ from numba import int64
 from raceway.core.jit import jit
 from raceway.core.ring.kernels.columns import work_rows
 from raceway.core.ring.ring import Ring
+from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
 from raceway.errors import ConvergenceError
 
@@ -102,10 +103,10 @@ def steady_orbit(
     ConvergenceError
         With the last residual.
     """
-    if system.compiled is None:
+    if compiled(system) is None:
         samples = min(samples, _SAMPLES_PYTHON)
         # The nearest start is the surrogate's orbit, moved to this system's equilibrium.
-        near = steady_orbit(system.surrogate, period, start, samples, inertial)
+        near = steady_orbit(surrogate(system), period, start, samples, inertial)
         at_rest = near.displacement - near.displacement.mean(axis=0) + start
         return _solve(system, period, at_rest, samples, inertial, max(tolerance, _TOLERANCE_PYTHON))
     if inertial:
@@ -142,14 +143,14 @@ def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertia
     linear[diagonal, :, diagonal, :] += stiffness
     residual, worst, iterations = np.inf, np.inf, 0
     step = np.zeros_like(q)
-    compiled = system.compiled
+    ring = compiled(system)
     damping_factor = 1.0
     for iterations in range(1, 61):
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
-        if compiled is not None:
-            done = evaluate_many(*compiled.model, system.law_state, times, q, v, ball, rate, f, K, C)
+        if ring is not None:
+            done = evaluate_many(*ring.model, system.law_state, times, q, v, ball, rate, f, K, C)
         else:
             done = _evaluate_each(system, times, q, v, ball, f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force

@@ -25,7 +25,6 @@ from raceway.core.ring.kernels.layout import (
 )
 
 if TYPE_CHECKING:
-    from raceway.core.ring.system import System
     from raceway.core.stepping.protocol import SteppedSystem
 
 #: Relative residual that an equilibrium is solved to.
@@ -106,16 +105,6 @@ class Ring(ABC):
     @abstractmethod
     def ball_columns(self) -> int:
         """Columns of ``ball`` (Z, k): places, slips, what elasticity adds."""
-
-    @property
-    @abstractmethod
-    def compiled(self) -> System | None:
-        """The same ring for compiled loops; None where it is stepped from Python."""
-
-    @property
-    @abstractmethod
-    def surrogate(self) -> System:
-        """A compiled ring on Hertz's contacts near this one, which gives first guesses and orbits to start on; itself where it is one."""
 
     @abstractmethod
     def evaluate(

@@ -38,16 +38,6 @@ class System(Ring):
     law_params: np.ndarray
 
     @property
-    def compiled(self) -> System:
-        """This one."""
-        return self
-
-    @property
-    def surrogate(self) -> System:
-        """This one."""
-        return self
-
-    @property
     def conservative(self) -> bool:
         """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
         return self.base_kernel is self.kernel

@@ -71,16 +71,17 @@ def integrate(
         A scheme without the driver, which a plan refuses before.
     """
     from raceway.core.ring.ring import Ring
+    from raceway.core.ring.surrogate import compiled
     from raceway.core.stepping.recorder import Recorder
 
     scheme: Scheme = integrator.scheme
-    compiled = system.compiled if isinstance(system, Ring) else None
-    if compiled is not None and scheme.compiled is not None:
-        return scheme.compiled(compiled, start, schedule, on_chunk)
+    ring = compiled(system) if isinstance(system, Ring) else None
+    if ring is not None and scheme.compiled is not None:
+        return scheme.compiled(ring, start, schedule, on_chunk)
     if scheme.stepped is None:
         name = getattr(integrator, "name", type(integrator).__name__)
         raise PluginError(
-            f"integrator '{name}' has no driver `{missing_driver(scheme, compiled is not None)}`, which these bodies need"
+            f"integrator '{name}' has no driver `{missing_driver(scheme, ring is not None)}`, which these bodies need"
         )
     stepper: SteppedSystem = system.stepped() if isinstance(system, Ring) else system
     recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)

@@ -18,6 +18,7 @@ import attrs
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
+from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 
@@ -56,8 +57,8 @@ def finer_value(
         return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
 
     models = [one for one, _ in motions]
-    if model.system.compiled is not None:
+    if compiled(model.system) is not None:
         return identified(models, count)
-    models = [attrs.evolve(one, system=one.system.surrogate) for one in models]
+    models = [attrs.evolve(one, system=surrogate(one.system)) for one in models]
     steps = motions[-1][1].whole.schedule.steps_per_turn
     return value + identified(models, count) - identified(models, steps)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 #: Time that a script and its mesh may take [s].
 LIMIT_S = 600.0
-_ARRAYS, _REFUSED = "mesh.npz", "refused.json"
+ARRAYS, REFUSED = "mesh.npz", "refused.json"
 
 
 def is_script(path: str) -> bool:
@@ -56,7 +56,7 @@ def mesh_of_script(mesher: Any, body: str, path: str, copies: int) -> HexMesh:
         place = Path(path).resolve()
         asked = {"path": str(place), "method": mesher.method, "element_size": mesher.element_size, "scale": mesher.scale}
         _executed({**asked, "copies": copies, "folder": folder}, place.name, folder)
-        refused, arrays = Path(folder) / _REFUSED, Path(folder) / _ARRAYS
+        refused, arrays = Path(folder) / REFUSED, Path(folder) / ARRAYS
         if refused.is_file():
             found = json.loads(refused.read_text(encoding="utf-8"))
             error = MeshError(found["message"])
@@ -69,7 +69,7 @@ def mesh_of_script(mesher: Any, body: str, path: str, copies: int) -> HexMesh:
 
 def _executed(asked: dict[str, Any], name: str, folder: str) -> None:
     """Let a child execute a script; the child and whatever it started end with this call."""
-    words = [sys.executable, "-P", "-m", __name__]
+    words = [sys.executable, "-P", "-m", f"{__name__}_child"]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     child = subprocess.Popen(
         words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -92,28 +92,3 @@ def _read(path: Path) -> HexMesh:
         names = [str(name) for name in kept["names"]]
         facets = {name: kept[f"facets_{number}"] for number, name in enumerate(names)}
         return HexMesh(kept["points"], kept["cells"], {}, facets)
-
-
-def main() -> None:
-    """The child: execute and mesh the script that standard input names, leave arrays or the refusal in the folder."""
-    from raceway.plugins.meshers.gmsh import Gmsh
-
-    asked = json.load(sys.stdin)
-    folder, path, copies = Path(asked.pop("folder")), asked.pop("path"), asked.pop("copies")
-    try:
-        mesh = Gmsh(ball=path, **asked).execute(path, copies)
-    except MeshError as why:
-        mistake = why.mistake and [why.mistake.path, why.mistake.value, why.mistake.message]
-        (folder / _REFUSED).write_text(json.dumps({"message": str(why), "mistake": mistake}), encoding="utf-8")
-        return
-    arrays: dict[str, Any] = {
-        "points": mesh.points,
-        "cells": mesh.cells,
-        "names": np.array(list(mesh.facet_sets), dtype=np.str_),
-    }
-    arrays |= {f"facets_{number}": members for number, members in enumerate(mesh.facet_sets.values())}
-    np.savez(folder / _ARRAYS, **arrays)
-
-
-if __name__ == "__main__":
-    main()

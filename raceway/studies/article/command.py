@@ -93,6 +93,7 @@ def article(
     tell_faults(registry)
     kept = folder / "article-rows.jsonl"
     with show_progress() as progress:
+        from raceway.studies.article.files import write
         from raceway.studies.article.study import article as study
 
         kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
@@ -100,7 +101,7 @@ def article(
             found = study(tables, speeds, axial, shaft, kinds, friction, processes, kept, registry, plugins, progress)
         progress("writing", 0, 0)
         content, files = found.as_dict(), list[str]()
-        failed = attempt(lambda: found.write(folder, pictures, command), files) or found.fault
+        failed = attempt(lambda: write(found, folder, pictures, command), files) or found.fault
     if failed is None and all(row["status"] == "failed" for row in content["rows"]):
         failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")
     from raceway.studies.article.screen import article_screen

@@ -108,22 +108,6 @@ class Article:
         )  # fmt: skip
         return content
 
-    def write(self, folder: Path, pictures: bool = True, command: str = "raceway study article") -> list[Path]:
-        """article.html with its figures as PNG files, article.json and CSV files; without pictures no page.
-
-        Parameters
-        ----------
-        command : what makes it again, for the page's foot
-
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or a folder or disk that cannot be written.
-        """
-        from raceway.studies.article.files import write
-
-        return write(self, folder, pictures, command)
-
 
 def article(
     tables: Mapping[str, Any] | None = None,

@@ -12,6 +12,7 @@ from raceway.bodies.model import build_model
 from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.ring.orbit import Orbit, at_time, steady_orbit
 from raceway.core.ring.start import from_orbit
+from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
@@ -39,7 +40,7 @@ def linear(case: Case, registry: Registry) -> list[Row]:
     """An undamped oscillator, its contact out of reach."""
     model = build_model(base := scene_at(case.arguments["tables"], {}, registry), make_plan(base))
     system = impact_system(
-        2.0, model.system.surrogate.law, model.system.surrogate.law_params[:1], clearance=1.0, stiffness=2e8
+        2.0, surrogate(model.system).law, surrogate(model.system).law_params[:1], clearance=1.0, stiffness=2e8
     )
     start = np.array([1e-6, 0.0, 0.0, 0.0, 0.0])
     balls = np.zeros((1, 2))
@@ -106,14 +107,16 @@ def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
     method = scene.integrator.method
     period = scene.excitation.period_s
     rest = settle(model)
-    orbit = steady_orbit(model.system.surrogate, period, rest.displacement, samples=129)
-    limit = min(model.system.surrogate.critical_time_step(k) for k in orbit.stiffness)
+    orbit = steady_orbit(surrogate(model.system), period, rest.displacement, samples=129)
+    limit = min(surrogate(model.system).critical_time_step(k) for k in orbit.stiffness)
     steps = ceil(period / (SAFETY * limit))
-    opens = bool((_open_share(model.system.surrogate, orbit)) > 0.0)
+    opens = bool((_open_share(surrogate(model.system), orbit)) > 0.0)
 
     def follow() -> Measured:
         schedule = Schedule(period / steps, steps, _TURNS)
-        record = integrate(method, model.system.surrogate, from_orbit(model.system.surrogate, orbit, schedule.dt), schedule)
+        record = integrate(
+            method, surrogate(model.system), from_orbit(surrogate(model.system), orbit, schedule.dt), schedule
+        )
         true = np.array([at_time(orbit.displacement, period, t) for t in record.time[-steps:]])
         size = np.abs(orbit.displacement - orbit.displacement.mean(axis=0)).max(axis=0)[1:3].max()
         return float(np.abs(record.displacement[-steps:, 1:3] - true[:, 1:3]).max() / size), None

@@ -8,6 +8,7 @@ from math import sin, sqrt
 import numpy as np
 
 from raceway.bodies.model import Model
+from raceway.core.ring.surrogate import surrogate
 
 #: Halvings of an interval: to the last bit of a double from any first one.
 _HALVINGS = 200
@@ -30,7 +31,7 @@ def inverted(function: Callable[[float], float], value: float, first: float) -> 
 
 def force_and_slope(model: Model, pair: int, approach: float) -> tuple[float, float]:
     """Force [N] and stiffness [N/m] of one ball-race pair at rest, by the law's kernel."""
-    system = model.system.surrogate
+    system = surrogate(model.system)
     params, state = (np.ascontiguousarray(each[pair : pair + 1]) for each in (system.law_params, system.law_state))
     force, d_gap, d_rate = np.empty(1), np.empty(1), np.empty(1)
     system.law(np.array([-approach]), np.zeros(1), params, state, state.copy(), 0.0, force, d_gap, d_rate)

@@ -8,6 +8,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.start import at_rest
+from raceway.core.ring.surrogate import surrogate
 from raceway.core.stepping.record import Record, Schedule
 
 #: Step of the difference over the deepest penetration: its error is the square of that.
@@ -22,7 +23,7 @@ def axial_force(model: Model, found: Equilibrium) -> float:
     Balls are in equilibrium themselves, so that what follows of them does not count.  Unlike a sum over the balls' loads it
     holds what a compliance that varies with the contact angle pushes along the groove.
     """
-    system, axis = model.system.surrogate, np.eye(5)[0]
+    system, axis = surrogate(model.system), np.eye(5)[0]
     step = _PART * float(np.max(-system.evaluate(found.displacement, ball=found.ball).gap))
     places = [found.displacement + sign * step * axis for sign in (-1.0, 1.0)]
     states = [system.evaluate(place, ball=found.ball) for place in places]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.core.ring.surrogate import surrogate
 from raceway.framework.registry import Entry, Registry
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
@@ -104,5 +105,5 @@ def still(scene: Scene) -> Still:
 
     model = build_model(scene, make_plan(scene))
     equilibrium = settle(model)
-    system = attrs.evolve(model.system.surrogate, force=no_force, force_params=np.zeros(1))
+    system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
     return Still(model, system, equilibrium, system.critical_time_step(equilibrium.stiffness))

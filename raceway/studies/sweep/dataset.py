@@ -6,7 +6,7 @@ import csv
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
 from raceway.storage.files import scratch_file, write_whole
 from raceway.studies.many.axes import is_number
-from raceway.studies.sweep.store import Store
 from raceway.studies.sweep.survey import key_facts
 from raceway.studies.sweep.variables import ARRAYS, DOF, NUMBERS
 
@@ -26,7 +25,22 @@ if TYPE_CHECKING:
 RESULTS, TABLE = "results.nc", "results.csv"
 
 
-def dataset(store: Store, registry: Registry | None = None) -> xarray.Dataset:
+class Rows(Protocol):
+    """A store as it is read."""
+
+    design: Any
+    facts: Any
+    path: Path
+
+    @property
+    def title(self) -> str: ...
+    @property
+    def scene(self) -> dict[str, Any]: ...
+    def rows(self) -> Iterator[dict[str, Any]]: ...
+    def to_xarray(self) -> xarray.Dataset: ...
+
+
+def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
     """The data set of a store: states, and the variables that its scenes have.
 
     Raises
@@ -59,7 +73,7 @@ def dataset(store: Store, registry: Registry | None = None) -> xarray.Dataset:
     return xarray.Dataset(variables, _coordinates(store, registry or default_registry()), attributes)
 
 
-def _columns(store: Store) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
+def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
     """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,)."""
     size, found = store.design.size, dict[str, np.ndarray]()
     status, warnings = np.full(size, "waiting", dtype=object), np.full(size, np.nan)
@@ -75,7 +89,7 @@ def _columns(store: Store) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarra
     return {name: found[name] for name in order if name in found}, status, warnings
 
 
-def _coordinates(store: Store, registry: Registry) -> dict[str, Any]:
+def _coordinates(store: Rows, registry: Registry) -> dict[str, Any]:
     design = store.design
     try:
         scene: Scene | None = scene_from_dict(store.scene, registry)
@@ -99,7 +113,7 @@ def _labels(values: Any) -> np.ndarray:
     return np.array([value if isinstance(value, str) else json.dumps(value) for value in values], dtype=object)
 
 
-def write_netcdf(store: Store) -> Path:
+def write_netcdf(store: Rows) -> Path:
     """``results.nc`` in the store, whole or not at all.
 
     Raises
@@ -118,7 +132,7 @@ def write_netcdf(store: Store) -> Path:
     return write_whole(content, store.path / RESULTS)
 
 
-def write_csv(store: Store, path: Path) -> Path:
+def write_csv(store: Rows, path: Path) -> Path:
     """All points and their numbers as CSV, a line each.
 
     Raises
@@ -131,7 +145,7 @@ def write_csv(store: Store, path: Path) -> Path:
     return path
 
 
-def _lines(store: Store) -> Iterator[list[Any]]:
+def _lines(store: Rows) -> Iterator[list[Any]]:
     keys = store.design.keys
     places: dict[str, list[tuple[str, ...]]] = {
         "displacement": [(name,) for name in DOF],

@@ -43,4 +43,4 @@ class OneStep:
         """Steps of any system."""
         from raceway.core.schemes.one_step.stepped import implicit
 
-        implicit(system, recorder, self)
+        implicit(system, recorder, (self.alpha_m, self.alpha_f, self.beta, self.gamma), self.tolerance)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.schemes.one_step.scheme import OneStep
 from raceway.core.stepping.protocol import State, SteppedSystem
 from raceway.core.stepping.recorder import Recorder
 from raceway.errors import ConvergenceError
 
+#: alpha_m, alpha_f, beta, gamma.
+Numbers = tuple[float, float, float, float]
 NEWTON_LIMIT = 40
 HALVINGS = 8
 #: Iterations after which a step that does not shrink the residual is shortened too: contacts may change to and fro.
@@ -17,15 +18,15 @@ PATIENCE = 10
 NOTHING = 1e-30
 
 
-def implicit(system: SteppedSystem, recorder: Recorder, scheme: OneStep) -> None:
+def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolerance: float) -> None:
     """Take all steps of the recorder's schedule."""
     for step in range(1, recorder.schedule.steps + 1):
-        recorder.accept(_step(system, recorder, recorder.time_of(step), scheme))
+        recorder.accept(_step(system, recorder, recorder.time_of(step), numbers, tolerance))
 
 
-def _step(system: SteppedSystem, recorder: Recorder, t: float, scheme: OneStep) -> State:
+def _step(system: SteppedSystem, recorder: Recorder, t: float, numbers: Numbers, tolerance: float) -> State:
     """The state at time t, one step on."""
-    am, af, beta, gamma, tolerance = scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma, scheme.tolerance
+    am, af, beta, gamma = numbers
     before, dt = recorder.state, recorder.schedule.dt
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
     predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
