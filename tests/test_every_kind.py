@@ -23,6 +23,8 @@ OWN = {
     "format": "json_mesh.py",
     "report": "one_line.py",
     "executor": "backwards.py",
+    "bodies": "radial_balls.py",
+    "study": "hardening.py",
 }
 
 REPORT = '''
@@ -121,6 +123,20 @@ def test_meshes_are_made_written_and_read_by_foreign_plugins(files, tmp_path):
     assert sorted(first["points"]) == sorted(second["points"])  # the mesher renumbers
 
 
+def test_a_run_has_foreign_bodies(files, tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        '[bearing]\npreset = "B7206C"\n[bodies]\nkind = "radial_balls"\n[supports]\naxial = "displacement"\n'
+        "[load]\nradial = [1500.0, 100.0]\n[kinematics]\nball_inertia = false\n"
+        '[excitation]\nkind = "bidirectional"\nspeed_rpm = 9000\nunbalance = 1e-4\n[integrator]\nturns = 2\n'
+    )
+    found = raceway("run", scene, *files("bodies"), "--out", tmp_path / "out")
+    assert found.returncode == 0, found.stderr
+    result = json.loads((tmp_path / "out" / "result.json").read_text())
+    used = {p["kind"]: p["distribution"] for p in result["environment"]["plugins"]}
+    assert used["bodies"] == OWN["bodies"] and result["scene"]["bodies"]["kind"] == "radial_balls"
+
+
 def test_a_sweep_uses_a_foreign_executor(files, tmp_path):
     words = ("--executor", "backwards", "--workers", 2, "--grid", "load.axial=900,1000", "--set", "identifier.kind=tangent")
     found = raceway("sweep", MINIMAL, *files("executor"), *words, "--out", tmp_path / "store", "--json")
@@ -162,7 +178,7 @@ def test_json_holds_the_result_and_the_reports_failure(tmp_path):
             "no report named 'picturs' (did you mean 'pictures'?); installed: pictures",
         ),
         (("mesh", MINIMAL, "--format", "vtk"), "installed: abaqus, msh, vtu"),
-        (("sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"), "installed: dask, joblib, serial"),
+        (("sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"), "installed: dask, joblib, processes, serial"),
         (("check", MINIMAL, "--set", "mesh.kind=moon"), "installed: file, gmsh, structured"),
     ],
 )

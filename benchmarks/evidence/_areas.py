@@ -9,11 +9,12 @@ from __future__ import annotations
 #: Places in the package by area: folders, or modules without their suffix.
 AREAS = {
     "rigid": """
-        bodies/__init__ bodies/basis bodies/model bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
-        core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/root
+        bodies/__init__ bodies/basis bodies/contact_error bodies/equilibrium bodies/grooves bodies/model
+        bodies/modules bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
+        core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/ring core/ring/root
         core/ring/system data/bearings bodies/pressure pipeline/settle scene/inner_ring""",
     "motion": """
-        core/excitations core/schemes/advance core/ring/changing_speed core/ring/energy core/ring/friction core/ring/loops core/ring/orbit
+        core/excitations core/schemes/advance core/ring/changing_speed core/ring/energy core/ring/friction core/schemes core/ring/surrogate core/ring/orbit
         core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__
         pipeline/motion pipeline/run pipeline/simulate pipeline/starting plugins/excitations plugins/identifiers""",
     "periodic": "core/periodic integrators/periodic pipeline/error/steady_motion",
@@ -24,8 +25,8 @@ AREAS = {
     "revolution": "core/revolution storage/array_cache",
     "elastic": "bodies/elastic core/elastic core/ring/stepped core/stepping",
     "solids": "core/hexahedron core/linear core/ring/address",
-    "mesh": "bodies/mesh_fit bodies/meshing core/mesh data/meshes plugins/formats plugins/meshers",
-    "kernels": "core/jit core/kernel core/signatures storage/kernel_files",
+    "mesh": "bodies/mesh_fit bodies/mesh_plan bodies/meshing core/mesh data/meshes plugins/formats plugins/meshers",
+    "kernels": "core/jit core/signatures framework/plugin_kernel storage/kernel_files",
     "plan": "framework/probe pipeline/allowance planning",
     "scene": """
         framework/options planning/implausible planning/unused scene/__init__ scene/catalogue scene/file scene/requires scene/structure

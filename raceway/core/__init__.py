@@ -2,10 +2,10 @@
 
 jit            the one decorator for compiled kernels
 signatures     types of the kernels that are passed as function pointers
-kernel         linear algebra inside kernels; inspection of foreign kernels
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping
 contact_laws, excitations   compiled kernels of the built-in plug-ins
-ring           the compiled bearing: five coordinates of the inner ring, balls condensed out; time loops
+ring           the compiled bearing: five coordinates of the inner ring, balls condensed out
+schemes        one-step, explicit and static methods: compiled loops and loops in Python
 stepping       time integration of systems that are stepped from Python; records
 periodic       steady motions by collocation and continuation, with their Floquet multipliers
 signals        dynamic stiffness from the spectral lines of a motion

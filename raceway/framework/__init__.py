@@ -5,6 +5,7 @@ hookspecs   hooks that a plug-in may implement
 options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
 sources     entry points and one-off files
+plugin_kernel   compiled kernel of a plug-in, by its declared signature
 probe       trial calls of a plug-in's kernel before a run
 orphans     end of worker processes
 """

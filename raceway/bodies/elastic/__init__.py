@@ -1,6 +1,7 @@
 """Rings and balls whose every node is a degree of freedom.
 
-build        the system of a scene
+kind         the plug-in;  plan: size and time of its meshes, scenes that it refuses
+build        the bearing of a scene
 report       its results: reactions, energies, mesh, balance of forces
 points       results of contacts at surface points: pressures, overlap
 resultants   results of contacts with one calibrated resultant each

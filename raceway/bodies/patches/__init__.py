@@ -1,5 +1,6 @@
 """Condensed rings and balls whose contacts are pressures at surface points.
 
-build    the system of a scene
+plan     number of points, memory and time
+build    the bearing of a scene
 report   its results: pressures, resolution of the points, effect of elasticity
 """

@@ -1,4 +1,5 @@
 """Rigid rings and balls: only the contacts deform.
 
-build   the system of a scene
+kind    the plug-in
+build   the bearing of a scene
 """

@@ -4,7 +4,8 @@ rule            Gauss points, and the matrices that integrate a polynomial accel
 sweep           compiled: residuals, exact tangents and their condensation to transfer matrices, one interval after the other
 newton          compiled: Newton's iteration on one mesh
 rates           rates of the balls, and their lag behind dashpots
-collocation     the boundary-value problem on one mesh
+problem         the boundary-value problem, and a motion on a mesh
+collocation     its solution on one mesh
 symmetry        period of the motion up to a rotation: one turn, or one ball pitch
 first_guess     linear response about the static equilibrium
 neighbour       a first guess from the motion of a similar problem

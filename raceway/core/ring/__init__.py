@@ -1,10 +1,11 @@
 """The compiled bearing: five coordinates of the inner ring, balls condensed out.
 
-system          arrays and kernels of one model, ready for an integrator
+ring            five coordinates on balls, however their forces are computed
+system          a ring whose forces are compiled;  surrogate: rings that are stepped, and a compiled one near each
 kernels         internal force and tangents
 equilibrium     static state by a trust region on the total potential
 root            static state where forces have no potential: gyroscopic moments, friction
-loops           compiled time loops;  advance: runs them in chunks
+dense           linear algebra inside kernels
 orbit           steady orbit by Fourier collocation
 start           initial state of a time integration
 changing_speed  parts of a system that follow a changing spin speed
