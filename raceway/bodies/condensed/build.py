@@ -39,7 +39,7 @@ _NOTHING = 1e-6
 
 def build(scene: Scene, plan: Plan) -> CondensedBearing:
     """The bearing of a scene with condensed bodies and contact resultants."""
-    stiff = rigid.build(scene, plan, wrapped=True)
+    stiff = rigid.build(scene, plan)
     bodies = elastic_bodies(scene, stiff.basis)
     _refuse_stiff_law(scene, stiff, bodies)
     _refuse_dashpots(scene, plan, bodies)

@@ -39,18 +39,12 @@ class RigidBearing(Bearing):
         return against_hertz(model, equilibrium)
 
 
-def build(scene: Scene, plan: Plan, wrapped: bool = False) -> RigidBearing:
-    """The bearing of a scene with rigid bodies.
-
-    Parameters
-    ----------
-    wrapped : another kernel is compiled around this one, which an address would keep out of the cache
-    """
+def build(scene: Scene, plan: Plan) -> RigidBearing:
+    """The bearing of a scene with rigid bodies."""
     basis = make_basis(scene)
     system = rigid_system(scene, plan, basis)
     probe(scene, basis, system)
-    if not wrapped:
-        system = by_address(system)
+    system = by_address(system)
     return RigidBearing(basis, system, place_ring(scene, basis, system))
 
 

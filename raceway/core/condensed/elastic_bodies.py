@@ -8,6 +8,7 @@ import numpy as np
 from raceway.core.condensed.calibration import Calibration
 from raceway.core.condensed.structural import RingCompliance
 from raceway.core.revolution.grooves import along_normal, groove_compliance, own_compliance
+from raceway.core.ring.address import plain
 from raceway.core.ring.kernels.condensed import condensed
 from raceway.core.ring.system import System
 
@@ -100,8 +101,8 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
         tables.append(np.column_stack([rings[0] + rings[1], rings[1][:, 1:]]).ravel())
     return attrs.evolve(
         rigid,
-        kernel=condensed(rigid.kernel),
-        base_kernel=condensed(rigid.base_kernel),
+        kernel=condensed(plain(rigid.kernel)),
+        base_kernel=condensed(plain(rigid.base_kernel)),
         scalars=np.concatenate([rigid.scalars, head, *tables]),
     )
 

@@ -50,6 +50,11 @@ def _address(kernel: Any, pointer: Any) -> Address:
     return kernel if isinstance(kernel, Address) else Address(kernel, pointer)
 
 
+def plain(kernel: Any) -> Any:
+    """The kernel itself, for others that are compiled around it: around an address they could not be kept."""
+    return kernel._kernel if isinstance(kernel, Address) else kernel
+
+
 def by_address(system: System) -> System:
     """The same system with its kernels as addresses."""
     kernel = _address(system.kernel, SYSTEM_POINTER)
