@@ -75,12 +75,15 @@ HARMS: dict[str, harm.Harm] = {
 
 
 def three_kernels() -> list[float]:
-    """A force, its slope and the rate's, of the smallest law."""
-    from raceway.core.contact_laws.power import three_halves
+    """Force, slope and the rate's, of the three smallest laws."""
+    from raceway.core.contact_laws.power import linear, square, three_halves
 
-    out, none = [np.empty(1) for _ in range(3)], np.zeros((1, 0))
-    three_halves(np.array([-4e-6]), np.zeros(1), np.array([[1e9]]), none, none, 0.0, *out)
-    return [float(value[0]) for value in out]
+    found, none = [], np.zeros((1, 0))
+    for law in (three_halves, square, linear):
+        out = [np.empty(1) for _ in range(3)]
+        law(np.array([-4e-6]), np.zeros(1), np.array([[1e9]]), none, none, 0.0, *out)
+        found += [float(value[0]) for value in out]
+    return found
 
 
 def run_of(tables: dict[str, Any]) -> list[float]:
@@ -149,8 +152,8 @@ def kernels(count: int = 150, seed: int = 17) -> dict[str, int]:
 
 
 def arrays(count: int = 50, seed: int = 19) -> dict[str, int]:
-    """Outcomes with kept compliances of condensed bodies, whose kernels are loaded before."""
-    from raceway.core.condensed import structural  # noqa: F401  # kernels that children run, loaded once before they fork
+    """Outcomes with kept compliances of condensed bodies, whose kernels are whole."""
+    from raceway.core.condensed import structural  # noqa: F401  # what children run, imported once before they fork
     from raceway.pipeline.run import run  # noqa: F401  # the command itself, for the same reason: each child would import it anew
 
     return tried(run_of, (_CONDENSED,), "*.arrays", count, 2, seed)
