@@ -26,8 +26,8 @@ from raceway.core.elastic.statics import TOLERANCE, Settled
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import HexMesh
-from raceway.core.mesh.quarter import ball_layers, half_line, quarter_ball, quarter_groove
 from raceway.core.mesh.spacing import growing
+from validation.quarter import ball_layers, half_line, quarter_ball, quarter_groove
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 DIAMETER, CONFORMITY, ROLLING = 9.525e-3, 0.52, 18.25e-3

@@ -22,7 +22,7 @@ from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear.statics import solve_static
 from raceway.core.mesh.ball_mesh import ball_mesh
 from raceway.core.mesh.hex_mesh import FACES
-from raceway.core.mesh.quarter import half_line
+from validation.quarter import half_line
 from validation.reference.elastic import grid
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0

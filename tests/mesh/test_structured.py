@@ -12,7 +12,6 @@ from raceway.core.mesh import ball_mesh as sphere
 from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
 from raceway.core.mesh.hex_mesh import EDGES
 from raceway.core.mesh.quality import quality, refuse_bad_cells
-from raceway.core.mesh.quarter import quarter_groove
 from raceway.core.mesh.ring_mesh import ring_mesh
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.mesh.spacing import graded, growing, halved
@@ -20,6 +19,7 @@ from raceway.core.mesh.summary import summary
 from raceway.errors import MeshError, SceneError
 from raceway.plugins.meshers.structured import Structured
 from validation.command_line import EXAMPLES
+from validation.quarter import quarter_groove
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 COARSE = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)

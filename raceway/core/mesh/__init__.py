@@ -7,7 +7,6 @@ ring_shape    profile of a ring from the dimensions of a scene
 ring_section  exact section of an inner ring: inertia, growth by rotation
 outline       outline of a section without the groove, plain or from a polygon
 ball_mesh     a ball as a cubed sphere
-quarter       a quarter of a ball above a quarter of a grooved block
 place         places of the balls in the bearing
 quality       scaled Jacobian, aspect, skew; refusal of bad cells
 size          cells and bytes, before a mesh is made
