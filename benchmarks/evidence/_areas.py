@@ -48,7 +48,7 @@ AREAS = {
         data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture
         studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
-        __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/hookspecs framework/registry
+        __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/hookspecs framework/registry
         framework/sources pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
         storage/files storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         studies/article/command studies/article/screen studies/compare/command studies/compare/screen studies/map/command

@@ -22,6 +22,7 @@ from raceway.core.ring.surrogate import compiled
 from raceway.core.stepping.record import Motion, Record
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
+from raceway.framework.duties import bodies, traits_of
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
 
@@ -207,7 +208,7 @@ class Model:
     @property
     def traits(self) -> Traits:
         """Of the bodies in this scene."""
-        traits: Traits = self.scene.bodies.traits(self.scene)
+        traits: Traits = traits_of(self.scene)
         return traits
 
     @property
@@ -226,7 +227,7 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     ConvergenceError
         No equilibrium under the axial load whose displacement is to be held.
     """
-    bearing = scene.bodies.build(scene, plan)
+    bearing = bodies(scene, "build", plan)
     if not isinstance(bearing, Bearing):
         raise PluginError(
             f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"

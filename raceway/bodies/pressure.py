@@ -8,6 +8,7 @@ from raceway.bodies.basis import Basis
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.surrogate import surrogate
+from raceway.framework.duties import traits_of
 from raceway.scene.tables import Scene
 
 #: Halvings of an interval of approaches: to the last bit.
@@ -55,7 +56,7 @@ def contact_ellipse(
     """
     ellipse: Ellipse = (basis.inner, basis.outer)[race]
     contact = scene.contact
-    if not scene.bodies.traits(scene).resultants or not getattr(contact.law, "foundation", False):
+    if not traits_of(scene).resultants or not getattr(contact.law, "foundation", False):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
     approach = approach_at(ring, basis.geometry.ball_diameter, race, load)

@@ -4,6 +4,7 @@ contracts   duties of each kind, numbered
 hookspecs   hooks that a plug-in may implement
 options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
+duties      calls of the duties of bodies, with their faults put to the plug-in
 sources     entry points and one-off files
 plugin_kernel   compiled kernel of a plug-in, by its declared signature
 probe       trial calls of a plug-in's kernel before a run

@@ -9,6 +9,7 @@ import attrs
 
 from raceway.core.schemes.drivers import missing_driver
 from raceway.errors import Mistake, SceneError
+from raceway.framework.duties import bodies, traits_of
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.tables import Scene
@@ -23,7 +24,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake(path, value, why))
 
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
-    faults += scene.bodies.faults(scene)
+    faults += bodies(scene, "faults")
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
@@ -34,7 +35,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
     refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
-    compiled = scene.bodies.traits(scene).compiled
+    compiled = traits_of(scene).compiled
     why = (
         f"has no terms that follow the changing speed of '{getattr(scene.excitation, 'name', None)}', which contact resultants on "
         "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
@@ -62,14 +63,14 @@ def refuse_what_cannot_run(scene: Scene) -> None:
 
 def _slow(scene: Scene) -> tuple[str, str]:
     """The key, and its value, by which bodies have no compiled forces."""
-    if scene.bodies.traits(scene).every_node or scene.contact.discretisation == "resultant":
+    if traits_of(scene).every_node or scene.contact.discretisation == "resultant":
         return "bodies.kind", scene.bodies.name
     return "contact.discretisation", scene.contact.discretisation
 
 
 def _refuse_driver(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
     """A method without the driver that the bodies ask for."""
-    missing = missing_driver(scene.integrator.method.scheme, scene.bodies.traits(scene).compiled)
+    missing = missing_driver(scene.integrator.method.scheme, traits_of(scene).compiled)
     key, value = _slow(scene)
     why = (
         f"has no driver `{missing}`, which {key} = '{value}' needs: its forces are not compiled. Use 'newmark' or "

@@ -8,6 +8,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake
+from raceway.framework.duties import bodies, traits_of
 from raceway.planning.recording import turns_of
 from raceway.scene.tables import Scene
 
@@ -56,9 +57,9 @@ def foreseen(scene: Scene) -> list[Mistake]:
         why = f"is longer than the record of {turns} turns: shorten it, or integrate more turns"
         found.append(Mistake("identifier.window_turns", window, why))
     steps = scene.integrator.steps_per_turn
-    if not scene.integrator.method.implicit and isinstance(steps, int) and not scene.bodies.traits(scene).every_node:
+    if not scene.integrator.method.implicit and isinstance(steps, int) and not traits_of(scene).every_node:
         period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-        stable = scene.bodies.stable_step(scene)
+        stable = bodies(scene, "stable_step")
         least = 0 if stable is None else int(period / stable)
         if steps * _ROUGH < least:
             why = f"is far above the stable step of an explicit method: some {least} steps a turn are needed, 'auto' takes enough"

@@ -13,6 +13,7 @@ from typing import Any
 
 import attrs
 
+from raceway.framework.duties import bodies, traits_of
 from raceway.framework.registry import default_registry
 from raceway.planning.decisions import Balls
 from raceway.planning.steady_orbits import compares_with_steady_motion, has_orbits, remembers_its_start, searches_orbits
@@ -48,7 +49,7 @@ def optional_modules(scene: Scene, balls: Balls, integrates: bool) -> tuple[Modu
     def decide(needed: bool, module: str, why: str, why_not: str) -> None:
         found.append(Module(module, needed, why if needed else why_not))
 
-    imported = scene.bodies.imports(scene, balls)
+    imported = bodies(scene, "imports", balls)
     known: list[Any] = [entry.plugin for entry in default_registry().all() if entry.kind == "bodies"]
     for module in dict.fromkeys((*scene.bodies.modules, *(module for kind in known for module in kind.modules))):
         why_not = f"bodies.kind is {scene.bodies.name}, the balls are {balls.kind}"
@@ -79,7 +80,7 @@ def optional_modules(scene: Scene, balls: Balls, integrates: bool) -> tuple[Modu
 def _loops(scene: Scene) -> list[str]:
     """Modules of the core that take the steps."""
     scheme = scene.integrator.method.scheme
-    quick = scene.bodies.traits(scene).compiled and scheme.compiled is not None
+    quick = traits_of(scene).compiled and scheme.compiled is not None
     found = imported_by(scheme, "compiled" if quick else "stepped")
     return [module for module in found if module.startswith(_LOOPS) and module != f"{_LOOPS}advance"]
 

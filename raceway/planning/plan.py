@@ -12,6 +12,7 @@ from typing import Any
 
 import attrs
 
+from raceway.framework.duties import bodies
 from raceway.planning.combinations import refuse_what_cannot_run
 from raceway.planning.decisions import decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.machine import slowness
@@ -88,13 +89,13 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     parts = Decisions(force)
     tilts = decide_tilts(scene, parts)
     balls = decide_balls(scene, parts)
-    scene.bodies.decide(scene, parts)
+    bodies(scene, "decide", parts)
     motion = decide_motion(scene, parts, tilts, balls.friction)
     decide_output(scene, parts, motion)
     count = scene.bearing.ball_count * len(scene.bearing.rows)
     if motion.recorded:
         refuse_memory(scene, motion.turns, motion.steps_per_turn, count)
-    cost = scene.bodies.cost(scene, balls, motion, parts)
+    cost = bodies(scene, "cost", balls, motion, parts)
     free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return Plan(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import ceil
 
 from raceway.errors import SceneError
+from raceway.framework.duties import bodies
 from raceway.scene.tables import Scene
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
@@ -32,7 +33,7 @@ def predicted_steps_per_turn(scene: Scene) -> int:
     if scene.integrator.method.implicit:
         return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-    stable = scene.bodies.stable_step(scene)
+    stable = bodies(scene, "stable_step")
     least = 0 if stable is None else int(period / (0.8 * stable)) + 1
     return STEPS_PER_TURN * max(1, ceil(least / STEPS_PER_TURN))
 

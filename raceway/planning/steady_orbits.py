@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from raceway.framework.duties import traits_of
 from raceway.scene.tables import Scene
 
 
@@ -17,7 +18,7 @@ def has_orbits(scene: Scene) -> bool:
     if excitation is None or method.steady or not method.inertial:
         return False
     repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
-    return repeats and scene.bodies.traits(scene).compiled and contact.law.state_size == 0
+    return repeats and traits_of(scene).compiled and contact.law.state_size == 0
 
 
 def remembers_its_start(scene: Scene) -> bool:
@@ -28,7 +29,7 @@ def remembers_its_start(scene: Scene) -> bool:
     With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
     fits over several speeds no transient is estimated: a second run of them would tell nothing more.
     """
-    if scene.excitation is None or scene.contact.friction == 0.0 or scene.bodies.traits(scene).every_node:
+    if scene.excitation is None or scene.contact.friction == 0.0 or traits_of(scene).every_node:
         return False
     needs = scene.identifier.method.needs
     return "record" in needs and "speeds" not in needs
@@ -45,7 +46,7 @@ def compares_with_steady_motion(scene: Scene) -> bool:
     method, excitation = scene.integrator.method, scene.excitation
     if excitation is None or not method.inertial or method.steady:
         return False
-    if not scene.bodies.traits(scene).compiled or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
+    if not traits_of(scene).compiled or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
         return False
     if excitation.period_s is None:
         return getattr(excitation, "steady", None) is not None

@@ -11,6 +11,7 @@ import click
 from raceway.commands.frame import RESULTS, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.errors import RacewayError, SceneError, extra
+from raceway.framework.duties import traits_of
 from raceway.plugins.system_libraries import refuse_pictures
 
 
@@ -52,7 +53,7 @@ def view(
         from raceway.studies.view.study import Wanted, draw
 
         result = run(loaded, registry, progress)
-        mesh = _mesh(loaded, folder) if loaded.bodies.traits(loaded).every_node else None
+        mesh = _mesh(loaded, folder) if traits_of(loaded).every_node else None
         content = draw(result, folder, Wanted(page, frames if animate else 0, mesh), progress)
     show(content, as_json, None, lambda: _screen(content))
     return 0
