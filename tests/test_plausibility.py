@@ -11,7 +11,6 @@ import pytest
 from raceway.errors import ConvergenceError
 from raceway.framework.options import nearest
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import contact_angles
 from raceway.pipeline.simulate import _stride
 from raceway.planning.recording import samples_per_turn
 from raceway.scene.file import scene_from_dict
@@ -29,9 +28,9 @@ def test_angles_of_many_states_at_once_are_those_of_each():
     found = computed(kinematics={"orbiting": True, "ball_inertia": True}, supports={"tilt": "free"}, integrator={"turns": 3})
     record, some = found.simulation.record, slice(0, 40)
     parts = [part[some] for part in (record.displacement, record.ball, record.contact_force, record.time)]
-    inner, outer = contact_angles(found.model, *parts)
+    inner, outer = found.model.bearing.contact_angles(found.model, *parts)
     for k, state in enumerate(zip(*parts, strict=True)):
-        one = contact_angles(found.model, *state)
+        one = found.model.bearing.contact_angles(found.model, *state)
         assert np.array_equal(one[0], inner[k], equal_nan=True) and np.array_equal(one[1], outer[k], equal_nan=True)
     assert np.ptp(inner) > 0.0
 

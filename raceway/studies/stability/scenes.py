@@ -10,7 +10,6 @@ import numpy as np
 
 from raceway.bodies.basis import make_basis
 from raceway.bodies.model import build_model
-from raceway.core.ring.surrogate import surrogate
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
@@ -206,6 +205,8 @@ def _default_penalty(tables: dict[str, Any], changes: dict[str, Any], registry: 
 
 def _inner_factor(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
     scene = scene_at(tables, changes, registry)
+    from raceway.core.ring.surrogate import surrogate
+
     return float(surrogate(build_model(scene, make_plan(scene)).system).law_params[0, 0])
 
 

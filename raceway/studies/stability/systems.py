@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.core.ring.surrogate import surrogate
 from raceway.framework.registry import Entry, Registry
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
@@ -101,6 +100,7 @@ def still(scene: Scene) -> Still:
     """The bearing of a scene, in equilibrium, nothing exciting it."""
     from raceway.bodies.model import build_model
     from raceway.core.excitations.harmonic import no_force
+    from raceway.core.ring.surrogate import surrogate
     from raceway.pipeline.settle import settle
 
     model = build_model(scene, make_plan(scene))
