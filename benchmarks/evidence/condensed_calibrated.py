@@ -63,7 +63,7 @@ def quantities(equilibrium: Any) -> dict[str, float]:
 
 def structural() -> list[Row]:
     """Against the published split of one contact; 0.03 nm/N is what two ways of splitting differ by there."""
-    bodies = settled(tables())[0].bodies.compliances
+    bodies = settled(tables())[0].bearing.compliances
     angle = np.radians(18.65)
     found = {
         "inner ring, 18.65 deg": (float(np.interp(angle, bodies.inner.angles, bodies.inner.own)), -0.60e-9),

@@ -7,6 +7,7 @@ import numpy as np
 from benchmarks.evidence import Row, below, near
 from benchmarks.evidence._files import ROOT
 from raceway import load_scene
+from raceway.bodies.condensed.kind import Condensed
 from raceway.bodies.meshing import mesh_scene
 from raceway.pipeline.run import run
 from raceway.scene.file import scene_from_dict
@@ -86,7 +87,7 @@ def _example() -> list[Row]:
 
     name = "examples/b7206_elastic.toml"
     scene = load_scene(ROOT / name)
-    condensed = evolve(scene, bodies=evolve(scene.bodies, kind="condensed"), mesh=None)
+    condensed = evolve(scene, bodies=Condensed(), mesh=None)
     found, other = (run(each).as_dict() for each in (scene, condensed))
     kyy, expected = (each["equilibrium"]["stiffness"][1][1] for each in (found, other))
     pressure, hertz = (each["equilibrium"]["balls"][0]["peak_pressure_inner_pa"] for each in (found, other))
