@@ -56,22 +56,22 @@ def rig(
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "rig-rows.jsonl"
-    with show_progress() as progress:
-        from raceway.pipeline.result import write_json
-        from raceway.studies.rig.study import study
+    with keeping("points", kept):
+        with show_progress() as progress:
+            from raceway.pipeline.result import write_json
+            from raceway.studies.rig.study import study
 
-        with keeping("points", kept):
             found = study(loaded, own, registry, progress, kept)
-    content, files = found.as_dict(), list[str]()
-    failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or found.fault
-    if pictures and failed is None:
-        from raceway.studies.rig.page import write_page
+        content, files = found.as_dict(), list[str]()
+        failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or found.fault
+        if pictures and failed is None:
+            from raceway.studies.rig.page import write_page
 
-        failed = attempt(lambda: write_page(found, folder), files)
-    if signals and failed is None:
-        written = list[str]()
-        failed = attempt(lambda: found.write_signals(folder), written)
-        files += [f"{len(written)} records, signals-*.csv and slow-roll-*.csv"] if written else []
+            failed = attempt(lambda: write_page(found, folder), files)
+        if signals and failed is None:
+            written = list[str]()
+            failed = attempt(lambda: found.write_signals(folder), written)
+            files += [f"{len(written)} records, signals-*.csv and slow-roll-*.csv"] if written else []
     from raceway.studies.rig.screen import rig_screen
 
     show(content, as_json, failed, lambda: rig_screen(content, files))
