@@ -51,11 +51,13 @@ def _lock_of_an_import():
 
 
 @pytest.fixture(autouse=True)
-def pythons_own_handler():
-    """A shell may start a program in the background with Ctrl-C ignored."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+def pythons_own_handlers():
+    """A shell, or ``nohup``, may start a program with signals ignored; libraries leave handlers of their own."""
+    before = {number: signal.signal(number, signal.SIG_DFL) for number in CODES}
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
-    signal.signal(signal.SIGINT, before)
+    for number, handler in before.items():
+        signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
 
 @pytest.mark.parametrize(
