@@ -33,13 +33,14 @@ def count() -> list[dict[str, Any]]:
     from benchmarks.time_loop import EXAMPLE
     from raceway import load_scene
     from raceway.core.jit import clock
+    from raceway.core.ring.equilibrium import settle
     from raceway.core.schemes.explicit.compiled import central_difference
     from raceway.core.schemes.one_step.compiled import implicit
     from raceway.core.schemes.static.compiled import quasi_static
     from raceway.pipeline.run import run
 
     run(load_scene(EXAMPLE))
-    loops = (implicit, central_difference, quasi_static)
+    loops = (implicit, central_difference, quasi_static(settle))
     rows = []
     for word in WORDS:
         before = clock["compiled"]

@@ -11,6 +11,7 @@ from raceway.core.ring.address import by_address
 from raceway.core.ring.start import at_rest
 from raceway.core.schemes.compiled import outer_force
 from raceway.core.schemes.drivers import integrate
+from raceway.core.signatures import Outer
 from raceway.core.stepping.record import Schedule
 from raceway.errors import StabilityError
 from raceway.pipeline.settle import settle
@@ -133,6 +134,6 @@ def test_the_ramp_grows_from_nothing_to_all_of_the_force_smoothly(built):
     excitation = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 100.0}
     system, ramp, out = by_address(built(excitation=excitation, rotor={"mass": 2.0}).system), 0.02, np.empty(5)
     for s in (0.0, 0.1, 0.25, 0.5, 0.9, 1.0, 1.5):
-        outer_force(system.force, s * ramp, system.force_params, ramp, out)
+        outer_force(Outer(system.force, system.force_params, ramp), s * ramp, out)
         share = 10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5 if s < 1.0 else 1.0
         assert np.linalg.norm(out) == pytest.approx(100.0 * share, rel=1e-12, abs=1e-12)

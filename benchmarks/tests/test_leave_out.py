@@ -85,7 +85,7 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     _check_shapes(found["shapes"], scene, plan)
     names = {kernel.partition(":")[2] for kernel, made in found["kernels"].items() if made}
     if plan.balls != "tangential":
-        assert not names & {"find_root", "quasi_static_tangential", "rigid_tangential", "gyroscopic_moment"}
+        assert not names & {"find_root", "rigid_tangential", "gyroscopic_moment"}
     assert ("square_or_linear" in names) == (scene.contact.kind == "penalty")
     assert ("three_halves_or_linear" in names) == (scene.contact.kind == "hertz")
 

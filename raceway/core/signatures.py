@@ -1,13 +1,16 @@
-"""The types of the kernels that reach the time loops as function pointers.
+"""The types of the kernels that reach the time loops as function pointers, and the records that those pass on.
 
 A kernel carries one explicit signature of C-contiguous float64 arrays, so that one compiled loop serves every
-plug-in of its kind.
+plug-in of its kind.  A record is a named tuple: its fields are read by name, and cost nothing in machine code.
 """
+
+from typing import Any, NamedTuple
 
 from numba import float64, int64, types, void
 
 VECTOR = float64[::1]
 MATRIX = float64[:, ::1]
+CUBE = float64[:, :, ::1]
 
 #: law(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate)
 LAW = void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, VECTOR, VECTOR)
@@ -17,30 +20,127 @@ LAW_POINTER = types.FunctionType(LAW)
 FORCE = void(float64, VECTOR, VECTOR)
 FORCE_POINTER = types.FunctionType(FORCE)
 
-#: system(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work,
-#:        f (5,), K (5, 5), C (5, 5)) -> status, see raceway.core.ring.kernels
-SYSTEM = int64(
-    float64, float64, VECTOR, VECTOR, MATRIX, float64, MATRIX,
-    LAW_POINTER, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX,
-)  # fmt: skip
+
+def record(kind: type[tuple[Any, ...]], *fields: types.Type) -> types.BaseTuple:
+    """numba's type of a named tuple whose fields have these types."""
+    return types.BaseTuple.from_types(fields, kind)
+
+
+class Balls(NamedTuple):
+    """``place`` (Z, 2 to 8), and its rate = ``gain`` [1/s] * place + ``known`` (like place) [m/s]: an integrator's formula."""
+
+    place: Any
+    gain: Any
+    known: Any
+
+
+class Contacts(NamedTuple):
+    """Contact law with its parameters (2 Z, k), its memory (2 Z, m) before and after, and the step between the two [s]."""
+
+    law: Any
+    params: Any
+    old: Any
+    new: Any
+    dt: Any
+
+
+class Constants(NamedTuple):
+    """Numbers of the bearing (n,) and of each ball (Z, k): ``raceway.core.ring.kernels.layout``."""
+
+    scalars: Any
+    table: Any
+
+
+class Response(NamedTuple):
+    """Internal force (5,), its derivatives by displacement and by velocity, each (5, 5) or (0, 0), and rows of work (r, 2 Z)."""
+
+    f: Any
+    K: Any
+    C: Any
+    work: Any
+
+
+BALLS = record(Balls, MATRIX, float64, MATRIX)
+CONTACTS = record(Contacts, LAW_POINTER, MATRIX, MATRIX, MATRIX, float64)
+CONSTANTS = record(Constants, VECTOR, MATRIX)
+RESPONSE = record(Response, VECTOR, MATRIX, MATRIX, MATRIX)
+
+#: system(t, q (5,), v (5,), balls, contacts, constants, response) -> status, see raceway.core.ring.kernels
+SYSTEM = int64(float64, VECTOR, VECTOR, BALLS, CONTACTS, CONSTANTS, RESPONSE)
 SYSTEM_POINTER = types.FunctionType(SYSTEM)
 
-CUBE = float64[:, :, ::1]
 
-#: The arguments that every compiled loop shares; see ``raceway.core.schemes.compiled``.
-_MODEL = (
-    SYSTEM_POINTER, LAW_POINTER, FORCE_POINTER, MATRIX, VECTOR, MATRIX, VECTOR,
-    MATRIX, MATRIX, MATRIX, VECTOR, VECTOR,
-)  # fmt: skip
-_STATE = (MATRIX, MATRIX, MATRIX, MATRIX)
-_RECORD = (int64, MATRIX, CUBE, VECTOR)
+class Forces(NamedTuple):
+    """The bearing's compiled forces: a ``SYSTEM``, the law with its parameters (2 Z, k), and the constants."""
 
-#: loop(model..., coefficients, dt, ramp, first, count, state..., stride, rows, probes, counters) -> steps done
-LOOP = int64(*_MODEL, VECTOR, float64, float64, int64, int64, *_STATE, *_RECORD)
+    system: Any
+    law: Any
+    law_params: Any
+    constants: Any
 
-#: settle(system, law, law_params, scalars, table, stiffness, free, load, tolerance, t, q, ball, law_state, work, f, K,
-#:        report) -> status
-SETTLE = int64(
-    SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR, float64, float64,
-    VECTOR, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, VECTOR,
-)  # fmt: skip
+
+class Linear(NamedTuple):
+    """Linear parts (5, 5), 1 for unknowns and 0 for coordinates that are held (5,), and the constant load (5,) [N, N m]."""
+
+    mass: Any
+    damping: Any
+    stiffness: Any
+    free: Any
+    load: Any
+
+
+class Outer(NamedTuple):
+    """Excitation with its parameters (k,), and the time over which it grows smoothly from zero [s]; 0 for none."""
+
+    force: Any
+    params: Any
+    ramp: Any
+
+
+class Steps(NamedTuple):
+    """Step [s], number of the step that the motion stands at, and steps to take."""
+
+    dt: Any
+    first: Any
+    count: Any
+
+
+class State(NamedTuple):
+    """Motion (4, 5): q, v, a, rest force; places of the balls (Z, c) now and a step before; the law's memory (2 Z, m)."""
+
+    motion: Any
+    ball: Any
+    ball_before: Any
+    memory: Any
+
+
+class Recording(NamedTuple):
+    """Every ``stride``-th step is noted in rows (n, 16) and probes (n, 3, 4 or 5, 2 Z); counters (8,)."""
+
+    stride: Any
+    rows: Any
+    probes: Any
+    counters: Any
+
+
+class Rest(NamedTuple):
+    """A state at rest: displacement (5,), places of the balls (Z, c), the law's memory (2 Z, m)."""
+
+    q: Any
+    ball: Any
+    memory: Any
+
+
+FORCES = record(Forces, SYSTEM_POINTER, LAW_POINTER, MATRIX, CONSTANTS)
+LINEAR = record(Linear, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR)
+OUTER = record(Outer, FORCE_POINTER, VECTOR, float64)
+STEPS = record(Steps, float64, int64, int64)
+STATE = record(State, MATRIX, MATRIX, MATRIX, MATRIX)
+RECORDING = record(Recording, int64, MATRIX, CUBE, VECTOR)
+REST = record(Rest, VECTOR, MATRIX, MATRIX)
+
+#: loop(forces, linear, outer, coefficients (k,), steps, state, recording) -> steps done, see raceway.core.schemes.compiled
+LOOP = int64(FORCES, LINEAR, OUTER, VECTOR, STEPS, STATE, RECORDING)
+
+#: settle(forces, linear, tolerance, t, rest, response, report (2,)) -> status, see raceway.core.ring.equilibrium
+SETTLE = int64(FORCES, LINEAR, float64, float64, REST, RESPONSE, VECTOR)

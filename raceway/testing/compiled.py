@@ -51,8 +51,11 @@ _OPEN = 1.0
 
 
 @jit(SYSTEM)
-def one_contact(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
+def one_contact(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``."""
+    law, law_params, law_old, law_new, dt = contacts
+    scalars, _ = constants
+    f, K, C, work = response
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
     for i in range(gap.size):
         gap[i] = _OPEN

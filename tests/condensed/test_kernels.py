@@ -10,6 +10,7 @@ from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.start import from_orbit, static_orbit
 from raceway.core.schemes.drivers import integrate
+from raceway.core.signatures import Balls, Constants, Contacts, Response
 from raceway.core.stepping.record import Schedule
 from tests.condensed.bodies import ANGLES, BALL, BED, INNER, OPPOSITE, OUTER, elastic
 
@@ -136,10 +137,10 @@ def test_stored_energy_is_the_work_of_the_force(built, name):
 
     def energy(place):
         work, rest = soft._work(), ball.copy()
-        soft.kernel(
-            0.0, 0.0, place, np.zeros(5), rest, 0.0, np.zeros_like(ball), soft.law, soft.law_params, soft.law_state,
-            soft.law_state.copy(), soft.scalars, soft.table, work, np.empty(5), np.empty((0, 0)), np.empty((0, 0)),
-        )  # fmt: skip
+        contacts = Contacts(soft.law, soft.law_params, soft.law_state, soft.law_state.copy(), 0.0)
+        response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
+        balls = Balls(rest, 0.0, np.zeros_like(ball))
+        soft.kernel(0.0, place, np.zeros(5), balls, contacts, Constants(soft.scalars, soft.table), response)
         factor = np.repeat([rigid.inner.factor, rigid.outer.factor], soft.ball_count)
         hertz = 0.4 * factor * np.maximum(-work[0], 0.0) ** 2.5
         return hertz.sum() + work[STORED].sum() - (soft.table[:, CENTRIFUGAL] * rest[:, 1]).sum()

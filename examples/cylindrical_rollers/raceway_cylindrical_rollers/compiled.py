@@ -25,7 +25,7 @@ def palmgren(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_ra
 
 
 @jit(SYSTEM)
-def rollers(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
+def rollers(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball[:, 1] is the outer approach p [m], radial; ball[:, 0] is not used.
 
     Notes
@@ -33,6 +33,10 @@ def rollers(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, 
     With the radial approach of both races d = y cos + z sin + growth - clearance / 2, a roller lies where
     Q_o(p) = Q_i(d - p) + F_c.  The difference of the sides grows with p: Newton's method within a bracket finds the one place.
     """
+    ball, ball_gain, ball_known = balls
+    law, law_params, law_old, law_new, dt = contacts
+    scalars, table = constants
+    f, K, C, work = response
     z = table.shape[0]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
     place(t, q, v, scalars, table, work, _DIRECTION, _APPROACH, _SPEED)

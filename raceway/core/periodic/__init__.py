@@ -1,7 +1,10 @@
 """The steady motion, solved for directly.
 
 rule            Gauss points, and the matrices that integrate a polynomial acceleration twice
-sweep           compiled: residuals, exact tangents and their condensation to transfer matrices, one interval after the other
+arrays          the arrays of a collocated motion, as compiled parts take them
+intervals       compiled: residuals, exact tangents and their condensation to transfer matrices, one interval after the other
+sweep           compiled: changes of a path, rates and contacts over all intervals
+defects         compiled: what a path lacks at the ends of its intervals
 newton          compiled: Newton's iteration on one mesh
 rates           rates of the balls, and their lag behind dashpots
 problem         the boundary-value problem, and a motion on a mesh

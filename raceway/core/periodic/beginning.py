@@ -24,7 +24,7 @@ from raceway.core.periodic.search import Found, can_follow, find, found_by
 from raceway.core.periodic.stop import passed_on, stopping
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.ring.address import by_address
-from raceway.core.ring.orbit import Orbit, evaluate_many, steady_orbit
+from raceway.core.ring.orbit import Orbit, States, evaluate_many, steady_orbit
 from raceway.core.ring.system import System
 from raceway.errors import BeyondPlanError, ConvergenceError
 
@@ -106,7 +106,7 @@ def sampled(found: Found, period: float) -> Orbit:
     q, v, a, ball, rate = states(solved, problem.speed * times)
     q, v = np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed)
     f, K, C = np.empty((_SAMPLES, 5)), np.empty((_SAMPLES, 5, 5)), np.empty((_SAMPLES, 5, 5))
-    done = evaluate_many(*system.model, system.law_state, times, q, v, ball, rate, f, K, C)
+    done = evaluate_many(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
     if done < _SAMPLES:
         raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
     force = np.array([system.outer_force(t) for t in times])

@@ -21,12 +21,14 @@ from collections.abc import Callable, Iterator
 import attrs
 import numpy as np
 
+from raceway.core.periodic.arrays import Change, Eliminated
 from raceway.core.periodic.collocation import Solved, gap
 from raceway.core.periodic.floquet import Floquet, floquet
+from raceway.core.periodic.intervals import FORCE, IMBALANCE, condense, imbalances
 from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.rates import renew, stiff
 from raceway.core.periodic.refinement import divided, estimate, resampled
-from raceway.core.periodic.sweep import condense, imbalances, spread
+from raceway.core.periodic.sweep import spread
 from raceway.errors import ConvergenceError
 
 _LIMIT = 12
@@ -117,7 +119,7 @@ class Branch:
         # adds once more, is far below the tolerance.
         dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
         first = size * self.length * here.tangent[: 2 * n]
-        spread(solved.problem.free, solved.stages, solved.transfer, first, dp, dq, dv, da)
+        spread(solved.problem.free, solved.eliminated, first, dp, Change(dq, dv, da))
         moved = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da, ball=path.ball.copy(), rate=path.rate.copy())
         at = here.parameter + dp
         path, parameter, tangent, last = self._correct(moved, at, here.tangent, (moved, at))
@@ -136,10 +138,8 @@ class Branch:
         folded = tangent[-1] * here.tangent[-1] < 0.0
         return Point(parameter, last, found.error, tangent, folded), last.sweeps
 
-    def _linearise(self, problem: Problem, path: Path, parameter: float) -> tuple[np.ndarray, ...] | None:
-        """stages, transfer, whole, report; with the derivative by the parameter."""
-        system, free = problem.system, problem.free
-        m, s, n = path.intervals, len(problem.rule.points), len(free)
+    def _linearise(self, problem: Problem, path: Path, parameter: float) -> tuple[Eliminated, np.ndarray] | None:
+        """The linearisation, with the derivative by the parameter, and its report."""
         push = problem.push(path.nodes)
         if self.slope is not None:
             by = self.slope(problem, path)
@@ -147,24 +147,14 @@ class Branch:
             h = _DIFFERENCE * self.unit
             both = [self._imbalance(self.problem_at(parameter + off), path) for off in (-h, h)]
             by = (both[1] - both[0]) / (2.0 * h)
-        out = np.empty((m * s * n, 2 * n + 2)), np.empty((2 * m * n, 2 * n + 2)), np.empty((2 * n, 2 * n + 2))
-        report = np.zeros(3)
-        done = condense(
-            *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.weight, free,
-            problem.speed, path.nodes, problem.rule.packed, path.q, path.v, path.a, path.ball, path.rate, push, by, *out,
-            report,
-        )  # fmt: skip
-        return (*out, report) if done == m and np.isfinite(report).all() else None
+        out, report = problem.eliminated(path.nodes), np.zeros(3)
+        done = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
+        return (out, report) if done == path.intervals and np.isfinite(report).all() else None
 
     def _imbalance(self, problem: Problem, path: Path) -> np.ndarray:
-        system = problem.system
         push = problem.push(path.nodes)
         out = np.zeros_like(push)
-        done = imbalances(
-            *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.speed, path.nodes,
-            problem.rule.packed, path.q, path.v, path.a, path.ball, path.rate, push, out,
-        )  # fmt: skip
-        if done < path.intervals:
+        if imbalances(problem.equations, problem.mesh(path.nodes), path.samples(push), out) < path.intervals:
             raise ConvergenceError("the balls find no place between the races")
         return out
 
@@ -178,10 +168,11 @@ class Branch:
             problem = self.problem_at(parameter)
             free = problem.free
             n = len(free)
-            linear = self._linearise(problem, path, parameter)
-            if linear is None:
+            linearised = self._linearise(problem, path, parameter)
+            if linearised is None:
                 raise ConvergenceError("the balls find no place between the races")
-            stages, transfer, whole, report = linear
+            linear, report = linearised
+            whole = linear.whole
             bordered = np.zeros((2 * n + 1, 2 * n + 1))
             bordered[: 2 * n, : 2 * n] = problem.closing - whole[:, : 2 * n]
             bordered[: 2 * n, 2 * n] = -whole[:, 2 * n + 1] * self.unit / self.length
@@ -199,11 +190,13 @@ class Branch:
                 raise ConvergenceError("the branch has no single direction here") from why
             first, dp = self.length * found[: 2 * n, 0], self.unit * found[2 * n, 0]
             dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
-            spread(free, stages, transfer, first, dp, dq, dv, da)
+            spread(free, linear, first, dp, Change(dq, dv, da))
             correction = float(np.abs(dq / problem.weight).max())
-            if not np.isfinite(correction) or (sweeps > 2 and report[0] > 10.0 * worst and report[0] > 1e-9 * report[2]):
+            if not np.isfinite(correction) or (
+                sweeps > 2 and report[IMBALANCE] > 10.0 * worst and report[IMBALANCE] > 1e-9 * report[FORCE]
+            ):
                 raise ConvergenceError("the corrector diverges")
-            worst = report[0]
+            worst = report[IMBALANCE]
             path = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da)
             parameter += dp
             renew(problem, path, lagging)
@@ -211,7 +204,7 @@ class Branch:
             place = float(np.abs(path.q / problem.weight).max())
             if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * place:
                 tangent = found[:, 1] / np.linalg.norm(found[:, 1])
-                solved = Solved(problem, path, stages, transfer, whole, size, True, sweeps, correction)
+                solved = Solved(problem, path, linear, size, True, sweeps, correction)
                 return path, parameter, tangent, solved
         raise ConvergenceError("the corrector does not converge")
 

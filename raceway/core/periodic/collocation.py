@@ -5,6 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
+from raceway.core.periodic.arrays import Eliminated
 from raceway.core.periodic.newton import (
     CORRECTION,
     IMBALANCE,
@@ -15,6 +16,8 @@ from raceway.core.periodic.newton import (
     SOLVED,
     STALLED,
     SWEEPS,
+    Closure,
+    Limits,
     newton,
 )
 from raceway.core.periodic.problem import Path, Problem
@@ -31,7 +34,7 @@ class Solved:
 
     Attributes
     ----------
-    stages, transfer, whole : the last linearisation, see ``raceway.core.periodic.sweep``
+    eliminated : the last linearisation
     size : largest derivative by the angle [m], the amplitude of a 1x motion; tilts as lengths at the arm
     direct : whether full steps of Newton's iteration sufficed
     sweeps : of all intervals that it took;  correction : the last one [m]
@@ -39,9 +42,7 @@ class Solved:
 
     problem: Problem
     path: Path
-    stages: np.ndarray
-    transfer: np.ndarray
-    whole: np.ndarray
+    eliminated: Eliminated
     size: float
     direct: bool
     sweeps: int
@@ -91,17 +92,12 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
 
 def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rated: np.ndarray) -> Solved:
     """The compiled iteration; ``rated``: columns of the balls whose rates are put in after every sweep."""
-    system, free = problem.system, problem.free
-    m, s, n = path.intervals, len(problem.rule.points), len(free)
-    push = problem.push(path.nodes)
-    out = np.empty((m * s * n, 2 * n + 2)), np.empty((2 * m * n, 2 * n + 2)), np.empty((2 * n, 2 * n + 2))
-    report = np.zeros(REPORT)
+    eliminated, report = problem.eliminated(path.nodes), np.zeros(REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
-    status = newton(
-        *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.weight, free, problem.speed,
-        problem.closing, problem.symmetry.order, rated, path.nodes, problem.rule.points,
-        problem.rule.packed, q, v, a, ball, rate, push, np.zeros_like(push), tolerance, limit, patience, *out, report,
-    )  # fmt: skip
+    found = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
+    closure, limits = Closure(problem.closing, problem.symmetry.order, rated), Limits(tolerance, limit, patience)
+    samples = found.samples(problem.push(path.nodes))
+    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, eliminated, report)
     if status != SOLVED:
         why = {STALLED: "the iteration stalls", SINGULAR: "the motion is singular"}.get(
             status, "the balls find no place between the races"
@@ -111,7 +107,12 @@ def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit
             f"{report[IMBALANCE]:.2g} N",
             {"q": q[0] if np.isfinite(q[0]).all() else path.q[0].copy()},
         )
-    found = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
     return Solved(
-        problem, found, *out, float(report[SIZE]), report[SHORTENED] == 0.0, int(report[SWEEPS]), float(report[CORRECTION])
+        problem,
+        found,
+        eliminated,
+        float(report[SIZE]),
+        report[SHORTENED] == 0.0,
+        int(report[SWEEPS]),
+        float(report[CORRECTION]),
     )

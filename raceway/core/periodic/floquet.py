@@ -21,8 +21,8 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Solved
+from raceway.core.periodic.intervals import condense
 from raceway.core.periodic.refinement import divided, resampled
-from raceway.core.periodic.sweep import condense
 from raceway.errors import ConvergenceError
 
 #: Distance from the unit circle that counts as on it: what a mesh fit for 1e-8 of the motion leaves of error.
@@ -88,7 +88,7 @@ def floquet(solved: Solved, highest: float = 0.0) -> Floquet:
     contacts' dashpots bring off by the difference of the races' compliances over their sum (2 % of the decay for B7206C).
     """
     n = len(solved.problem.free)
-    whole = solved.whole if highest == 0.0 else _finer(solved, highest)
+    whole = solved.eliminated.whole if highest == 0.0 else _finer(solved, highest)
     over_span = np.linalg.eigvals(solved.problem.closing.T @ whole[:, : 2 * n]).astype(complex)
     turns = 2.0 * np.pi / solved.problem.symmetry.span
     with np.errstate(divide="ignore"):
@@ -102,17 +102,9 @@ def _finer(solved: Solved, highest: float) -> np.ndarray:
     problem, path = solved.problem, solved.path
     parts = np.ceil(np.diff(path.nodes) * min(highest, 2000.0) / _PHASE - 1e-9).astype(int)
     if parts.max() <= 1:
-        return solved.whole
+        return solved.eliminated.whole
     path = resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))
-    system, free = problem.system, problem.free
-    m, s, n = path.intervals, len(problem.rule.points), len(free)
-    push = problem.push(path.nodes)
-    out = np.empty((m * s * n, 2 * n + 2)), np.empty((2 * m * n, 2 * n + 2)), np.empty((2 * n, 2 * n + 2))
-    done = condense(
-        *system.model, system.law_state, system.mass, system.damping, system.stiffness, problem.weight, free, problem.speed,
-        path.nodes, problem.rule.packed, path.q, path.v, path.a, path.ball, path.rate, push, np.zeros_like(push), *out,
-        np.zeros(3),
-    )  # fmt: skip
-    if done < m:
+    out, samples = problem.eliminated(path.nodes), path.samples(problem.push(path.nodes))
+    if condense(problem.equations, problem.mesh(path.nodes), samples, out, np.zeros(3)) < path.intervals:
         raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
-    return out[2]
+    return out.whole

@@ -8,6 +8,7 @@ from itertools import islice, pairwise
 import attrs
 import numpy as np
 
+from raceway.core.periodic.arrays import Eliminated
 from raceway.core.periodic.branch import Branch, Point, towards
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.direct import ROUGH
@@ -99,7 +100,8 @@ def from_rest(
     branch = Branch(lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, ROUGH, MOST, slope)
     still = attrs.evolve(problem, share=0.0)
     n, none = len(problem.free), np.empty((0, 0))
-    rest = Solved(still, standing(still, q, nodes), none, none, np.zeros((2 * n, 2 * n + 2)), 0.0, True, 0, 0.0)
+    linear = Eliminated(none, none, np.zeros((2 * n, 2 * n + 2)))
+    rest = Solved(still, standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
     first, small = branch.start(rest, 0.0), 0
     try:
         for point in islice(branch.follow(first, 0.1, 2.0), POINTS):

@@ -1,12 +1,25 @@
 """Newton's iteration for a periodic motion on one mesh, compiled as a whole."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
-from numba import float64, int64
+from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
-from raceway.core.periodic.sweep import INDICES, MODEL, condense, differentiate, eliminate, spread
+from raceway.core.periodic.arrays import (
+    CHANGE,
+    ELIMINATED,
+    EQUATIONS,
+    INDICES,
+    MESH,
+    SAMPLES,
+    Change,
+)
+from raceway.core.periodic.intervals import FORCE, condense, eliminate
+from raceway.core.periodic.intervals import IMBALANCE as LEFT
+from raceway.core.periodic.sweep import differentiate, spread
 from raceway.core.ring.dense import copy_cube
-from raceway.core.signatures import CUBE, MATRIX, VECTOR
+from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 
 #: A displacement's rounding over the displacement itself, below which no correction can come.
 ROUNDING = 1e-14
@@ -15,110 +28,135 @@ ROUNDING = 1e-14
 SWEEPS, IMBALANCE, CORRECTION, SIZE, SHORTENED = range(5)
 REPORT = 8
 SOLVED, STALLED, BALLS_FAILED, SINGULAR = range(4)
+#: Sweeps at the limit of rounding after which no better one comes.
+_FINE = 5
 
 
-@jit(
-    int64(
-        *MODEL, MATRIX, MATRIX, MATRIX, VECTOR, INDICES, float64, MATRIX, INDICES, INDICES, VECTOR, VECTOR, MATRIX, MATRIX,
-        MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX, float64, int64, int64, MATRIX, MATRIX, MATRIX, VECTOR,
-    ),
-    allocates=True,
-)  # fmt: skip
-def newton(
-    system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, closing, order, rated,
-    nodes, points, rule, q, v, a, ball, rate, push, slope, tolerance, limit, patience, stages, transfer, whole, report,
-):  # fmt: skip
-    """Move q, v, a, ball and rate onto the periodic motion; see ``raceway.core.periodic.sweep`` for the arrays.
+class Closure(NamedTuple):
+    """How a span ends: rotation of a state (2 n, 2 n), order of the balls (Z,), columns of the balls that have rates (r,)."""
 
-    Parameters
-    ----------
-    closing : (2 n, 2 n) rotation of a state by the span;  order : (Z,) see ``raceway.core.periodic.symmetry``
-    rated : columns of ``ball`` that have rates
-    tolerance : of the last correction over the size of the motion
-    patience : halvings of a step that may follow each other
-    """
-    m, s, n, z = nodes.size - 1, points.size, free.size, ball.shape[1]
-    noted = np.zeros(3)
-    dq, dv, da = np.zeros_like(q), np.zeros_like(v), np.zeros_like(a)
-    safe = ball.copy()
-    close = np.empty((2 * n, 2 * n + 1))
-    first = np.empty(2 * n)
-    columns = rated.size
-    longer, more, most = np.empty(m + 3), np.empty((m * s + 4, z, columns)), np.empty((m * s + 4, z, columns))
+    rotation: Any
+    order: Any
+    rated: Any
+
+
+class Limits(NamedTuple):
+    """Last correction over the motion's size, sweeps, and halvings of a step that may follow each other."""
+
+    tolerance: Any
+    sweeps: Any
+    patience: Any
+
+
+CLOSURE = record(Closure, MATRIX, INDICES, INDICES)
+LIMITS = record(Limits, float64, int64, int64)
+
+
+@jit(void(SAMPLES, CHANGE, float64))
+def move(samples, change, factor):
+    """Add a part of a change to a path."""
+    for k in range(samples.q.shape[0]):
+        for c in range(5):
+            samples.q[k, c] += factor * change.q[k, c]
+            samples.v[k, c] += factor * change.v[k, c]
+    for k in range(samples.a.shape[0]):
+        for c in range(5):
+            samples.a[k, c] += factor * change.a[k, c]
+
+
+@jit(boolean(EQUATIONS, MATRIX, MATRIX, SAMPLES, MATRIX, VECTOR))
+def first_state(equations, rotation, whole, samples, close, first):
+    """first (2 n,): correction of the state at the start with which the span closes; False where it has none."""
+    free = equations.free
+    n, m, q, v = free.size, samples.q.shape[0] - 1, samples.q, samples.v
+    # A path that was put together from others may not end where it begins: that is corrected with the rest.
+    for i in range(2 * n):
+        close[i, 2 * n] = whole[i, 2 * n] + (q[m, free[i]] if i < n else v[m, free[i - n]])
+        for j in range(2 * n):
+            close[i, j] = rotation[i, j] - whole[i, j]
+            close[i, 2 * n] -= rotation[i, j] * (q[0, free[j]] if j < n else v[0, free[j - n]])
+    if not eliminate(close, 2 * n, 1):
+        return False
+    for i in range(2 * n):
+        first[i] = close[i, 2 * n]
+    return True
+
+
+@jit(types.UniTuple(float64, 3)(VECTOR, SAMPLES, CHANGE))
+def sizes(weight, samples, change):
+    """Largest correction of a displacement, derivative by the angle, and displacement [m]; tilts as lengths."""
+    correction, size, place = 0.0, 0.0, 0.0
+    for k in range(samples.q.shape[0]):
+        for c in range(5):
+            correction = max(correction, abs(change.q[k, c]) / weight[c])
+            size = max(size, abs(samples.v[k, c]) / weight[c])
+            place = max(place, abs(samples.q[k, c]) / weight[c])
+    return correction, size, place
+
+
+@jit(void(MESH, CLOSURE, float64, CUBE, CUBE), allocates=True)
+def renew_rates(mesh, closure, speed, ball, rate):
+    """rate (m s, Z, c) [m/s] of the columns of ball (m s, Z, c) that have one: two samples of the next span follow at each end."""
+    nodes, rated, order = mesh.nodes, closure.rated, closure.order
+    m, s, z = nodes.size - 1, mesh.rule.shape[1], ball.shape[1]
+    longer, more = np.empty(m + 3), np.empty((m * s + 4, z, rated.size))
+    most = np.empty_like(more)
     longer[0], longer[m + 2] = nodes[0] - (nodes[m] - nodes[m - 1]), nodes[m] + nodes[1] - nodes[0]
     for k in range(m + 1):
         longer[k + 1] = nodes[k]
+    for c in range(rated.size):
+        for b in range(z):
+            for k in range(m * s):
+                more[k + 2, b, c] = ball[k, b, rated[c]]
+            for k in range(2):
+                # Ball b stands one span later where ball order[b] stood.
+                more[m * s + 2 + k, b, c] = ball[k, order[b], rated[c]]
+                more[k, order[b], c] = ball[m * s - 2 + k, b, rated[c]]
+    differentiate(longer, mesh.rule[2 * s + 2], speed, more, most)
+    for k in range(m * s):
+        for b in range(z):
+            for c in range(rated.size):
+                rate[k, b, rated[c]] = most[k + 2, b, c]
+
+
+@jit(int64(EQUATIONS, CLOSURE, MESH, SAMPLES, LIMITS, ELIMINATED, VECTOR), allocates=True)
+def newton(equations, closure, mesh, samples, limits, eliminated, report):
+    """Move the samples, but push and slope, onto the periodic motion."""
+    m, n = mesh.nodes.size - 1, equations.free.size
+    noted, safe = np.zeros(3), samples.ball.copy()
+    change = Change(np.zeros_like(samples.q), np.zeros_like(samples.v), np.zeros_like(samples.a))
+    close, first = np.empty((2 * n, 2 * n + 1)), np.empty(2 * n)
     factor, worst, halvings, fine = 1.0, np.inf, 0, 0
-    for sweep in range(1, limit + 1):
+    for sweep in range(1, limits.sweeps + 1):
         report[SWEEPS] = sweep
-        done = condense(
-            system, law, law_params, scalars, table, law_state, mass, damping, stiffness, weight, free, speed, nodes,
-            rule, q, v, a, ball, rate, push, slope, stages, transfer, whole, noted,
-        )  # fmt: skip
+        done = condense(equations, mesh, samples, eliminated, noted)
         # The accelerations of a first guess are rough: its imbalance tells nothing.
-        if done < m or (sweep > 2 and noted[0] > 2.0 * worst and noted[0] > 1e-9 * noted[2]):
+        if done < m or (sweep > 2 and noted[LEFT] > 2.0 * worst and noted[LEFT] > 1e-9 * noted[FORCE]):
             report[SHORTENED] = 1.0
             halvings += 1
-            if sweep == 1 or halvings > patience:
+            if sweep == 1 or halvings > limits.patience:
                 return BALLS_FAILED if done < m else STALLED
             factor *= 0.5
-            for k in range(m + 1):
-                for c in range(5):
-                    q[k, c] -= factor * dq[k, c]
-                    v[k, c] -= factor * dv[k, c]
-            for k in range(m * s):
-                for c in range(5):
-                    a[k, c] -= factor * da[k, c]
-            copy_cube(safe, ball)
+            move(samples, change, -factor)
+            copy_cube(safe, samples.ball)
             continue
-        worst, halvings = noted[0], 0
+        worst, halvings = noted[LEFT], 0
         report[IMBALANCE] = worst
-        # A path that was put together from others may not end where it begins: that is corrected with the rest.
-        for i in range(2 * n):
-            close[i, 2 * n] = whole[i, 2 * n] + (q[m, free[i]] if i < n else v[m, free[i - n]])
-            for j in range(2 * n):
-                close[i, j] = closing[i, j] - whole[i, j]
-                close[i, 2 * n] -= closing[i, j] * (q[0, free[j]] if j < n else v[0, free[j - n]])
-        if not eliminate(close, 2 * n, 1):
+        if not first_state(equations, closure.rotation, eliminated.whole, samples, close, first):
             return SINGULAR
-        for i in range(2 * n):
-            first[i] = close[i, 2 * n]
-        spread(free, stages, transfer, first, 0.0, dq, dv, da)
+        spread(equations.free, eliminated, first, 0.0, change)
         if sweep > 1:
             factor = min(1.0, 2.0 * factor)
-        correction, size, place = 0.0, 0.0, 0.0
-        for k in range(m + 1):
-            for c in range(5):
-                correction = max(correction, abs(dq[k, c]) / weight[c])
-                q[k, c] += factor * dq[k, c]
-                v[k, c] += factor * dv[k, c]
-                size = max(size, abs(v[k, c]) / weight[c])
-                place = max(place, abs(q[k, c]) / weight[c])
-        for k in range(m * s):
-            for c in range(5):
-                a[k, c] += factor * da[k, c]
+        move(samples, change, factor)
+        correction, size, place = sizes(equations.weight, samples, change)
         report[CORRECTION], report[SIZE] = correction, size
         if not np.isfinite(correction):
             return SINGULAR
-        copy_cube(ball, safe)
-        for k in range(m * s):
-            for b in range(z):
-                for c in range(columns):
-                    more[k + 2, b, c] = ball[k, b, rated[c]]
-        for k in range(2):
-            for b in range(z):
-                for c in range(columns):
-                    # Ball b stands one span later where ball order[b] stood.
-                    more[m * s + 2 + k, b, c] = ball[k, order[b], rated[c]]
-                    more[k, order[b], c] = ball[m * s - 2 + k, b, rated[c]]
-        differentiate(longer, points, speed, more, most)
-        for k in range(m * s):
-            for b in range(z):
-                for c in range(columns):
-                    rate[k, b, rated[c]] = most[k + 2, b, c]
+        copy_cube(samples.ball, safe)
+        renew_rates(mesh, closure, equations.speed, samples.ball, samples.rate)
         if factor < 1.0 or sweep == 1:
             continue
         fine = fine + 1 if correction <= 1e-8 * size else 0
-        if correction <= tolerance * size + ROUNDING * place or fine > 5:
+        if correction <= limits.tolerance * size + ROUNDING * place or fine > _FINE:
             return SOLVED
     return STALLED

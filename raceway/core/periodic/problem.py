@@ -7,6 +7,7 @@ from collections.abc import Callable
 import attrs
 import numpy as np
 
+from raceway.core.periodic.arrays import Eliminated, Equations, Mesh, Samples
 from raceway.core.periodic.rule import Rule, rule
 from raceway.core.periodic.sweep import forces
 from raceway.core.periodic.symmetry import Symmetry
@@ -76,6 +77,21 @@ class Problem:
         """Load and excitation at the Gauss points (m s, 5)."""
         return self.system.load + self.share * self.force(nodes)
 
+    @property
+    def equations(self) -> Equations:
+        """What compiled parts need of it."""
+        system = self.system
+        return Equations(system.compiled_forces, system.linear, system.law_state, self.free, self.weight, self.speed)
+
+    def mesh(self, nodes: np.ndarray) -> Mesh:
+        """Nodes (m + 1,) with the rule inside the intervals."""
+        return Mesh(nodes, self.rule.packed)
+
+    def eliminated(self, nodes: np.ndarray) -> Eliminated:
+        """Room for a linearisation on a mesh."""
+        m, s, n = len(nodes) - 1, len(self.rule.points), len(self.free)
+        return Eliminated(np.empty((m * s * n, 2 * n + 2)), np.empty((2 * m * n, 2 * n + 2)), np.empty((2 * n, 2 * n + 2)))
+
 
 @attrs.frozen(eq=False)
 class Path:
@@ -97,3 +113,8 @@ class Path:
     @property
     def intervals(self) -> int:
         return len(self.nodes) - 1
+
+    def samples(self, push: np.ndarray, slope: np.ndarray | None = None) -> Samples:
+        """For compiled parts, with outer forces ``push`` (m s, 5) and their derivative ``slope``; zeros for none."""
+        by = np.zeros_like(push) if slope is None else slope
+        return Samples(self.q, self.v, self.a, self.ball, self.rate, push, by)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.core.periodic.sweep import contacts, differentiate
+from raceway.core.ring.orbit import States
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ def _places(problem: Problem, path: Path, chosen: np.ndarray, moved: list[list[i
     for columns in moved:
         ball, rate = path.ball[chosen].copy(), path.rate[chosen].copy()
         rate[:, :, columns] += _step(problem, path)
-        done = contacts(*system.model, system.law_state, times, q, v, ball, rate, gap, force)
+        done = contacts(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), gap, force)
         if done < len(chosen):
             raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
         found.append(ball[:, :, rated])

@@ -16,10 +16,10 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Solved, solve
+from raceway.core.periodic.defects import Excitation, carry, try_between
 from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.rates import between
 from raceway.core.periodic.rule import integrals
-from raceway.core.periodic.sweep import carry, try_between
 from raceway.errors import ConvergenceError
 
 #: Intervals beyond which no mesh goes, rounds of dividing, and parts of an interval in one round.
@@ -55,18 +55,19 @@ def estimate(solved: Solved) -> Estimate:
     m, s, n = path.intervals, len(problem.rule.points), len(free)
     inverse = np.linalg.inv(system.mass[np.ix_(free, free)])
     defect = np.empty((m, 2 * n))
+    excitation = Excitation(system.force, system.force_params, problem.share, problem.clock)
+    tried = attrs.evolve(path, rate=between(problem, path)).samples(np.empty((0, 5)))
     done = try_between(
-        *system.model, system.law_state, system.force, system.force_params, system.mass, system.damping, system.stiffness,
-        inverse, system.load, free, problem.share, problem.speed, problem.clock, path.nodes, problem.rule.packed,
-        problem.rule.try_packed, path.q, path.v, path.a, path.ball, between(problem, path), defect,
-    )  # fmt: skip
+        problem.equations, excitation, inverse, problem.mesh(path.nodes), problem.rule.try_packed, tried, defect
+    )
     if done < m or not np.isfinite(defect).all():
         raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
     dq, dv = np.zeros_like(path.q), np.zeros_like(path.v)
-    carry(free, solved.transfer, np.zeros(2 * n), defect, dq, dv)
+    transfer, whole = solved.eliminated.transfer, solved.eliminated.whole
+    carry(free, transfer, np.zeros(2 * n), defect, dq, dv)
     end = np.concatenate([dq[-1, free], dv[-1, free]])
-    first = np.linalg.solve(problem.closing - solved.whole[:, : 2 * n], end)
-    carry(free, solved.transfer, first, defect, dq, dv)
+    first = np.linalg.solve(problem.closing - whole[:, : 2 * n], end)
+    carry(free, transfer, first, defect, dq, dv)
     h = np.diff(path.nodes)
     legendre = np.abs(np.einsum("js,msc->mjc", problem.rule.legendre, path.a.reshape(m, s, 5))) / weight
     last, lower = legendre[:, -1], legendre[:, -3:].max(axis=1)

@@ -11,6 +11,7 @@ from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.rule import integrals
 from raceway.core.periodic.sweep import contacts, forces
 from raceway.core.periodic.symmetry import rotations
+from raceway.core.ring.orbit import States
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError
 
@@ -121,10 +122,8 @@ def _with_contacts(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]
     problem, system = solved.problem, solved.problem.system
     q, v, a, ball, rate = states(solved, angles)
     gap, force = np.empty((2, len(angles), 2 * system.ball_count))
-    done = contacts(
-        *system.model, system.law_state, angles / problem.speed, np.ascontiguousarray(q),
-        np.ascontiguousarray(v * problem.speed), ball, rate, gap, force,
-    )  # fmt: skip
+    at = States(angles / problem.speed, np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed), ball, rate)
+    done = contacts(system.compiled_forces, system.law_state, at, gap, force)
     if done < len(angles):
         raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
     return q, v, a, ball, rate, gap, force

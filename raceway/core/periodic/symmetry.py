@@ -16,6 +16,7 @@ import numpy as np
 
 from raceway.core.periodic.sweep import contacts, forces
 from raceway.core.ring.kernels.layout import CAGE, COSINE, LEVER, REST_RADIAL, SIDE, SINE
+from raceway.core.ring.orbit import States
 from raceway.core.ring.system import System
 
 #: Largest difference that counts as rounding, over the largest force: ball solves end near 1e-12.
@@ -124,11 +125,9 @@ def _bodies_turn(system: System, found: Symmetry, speed: float, q: np.ndarray) -
     v = 0.3 * speed * off[[0, 2, 1, 4, 3]]
     z = system.ball_count
     ball, gap, load = np.zeros((2, z, system.ball_columns)), np.empty((2, 2 * z)), np.empty((2, 2 * z))
-    done = contacts(
-        *system.model, system.law_state, np.array([0.0, found.span / speed]), np.array([state, turn @ state]),
-        np.array([v, turn @ v]), ball, np.zeros_like(ball), gap, load,
-    )  # fmt: skip
-    if done < 2:
+    times = np.array([0.0, found.span / speed])
+    states = States(times, np.array([state, turn @ state]), np.array([v, turn @ v]), ball, np.zeros_like(ball))
+    if contacts(system.compiled_forces, system.law_state, states, gap, load) < 2:
         return False
     # Forces, gaps and places of all balls are what the ring's force is made of.
     both = np.concatenate([found.order, found.order + z])

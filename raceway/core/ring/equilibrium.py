@@ -14,26 +14,39 @@ More, Sorensen: Computing a trust region step, SIAM J. Sci. Stat. Comput. 4 (198
 """
 
 import numpy as np
-from numba import float64, int64
+from numba import float64, int64, void
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
-from raceway.core.ring.dense import cholesky_solve
-from raceway.core.ring.kernels import STORED
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, TILT_ARM, stop
-from raceway.core.signatures import LAW_POINTER, MATRIX, SETTLE, VECTOR
+from raceway.core.ring.dense import cholesky_solve, copy_matrix
+from raceway.core.ring.kernels import FORCES, GAPS, STORED
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, stop
+from raceway.core.signatures import (
+    CONSTANTS,
+    CONTACTS,
+    LINEAR,
+    MATRIX,
+    SETTLE,
+    VECTOR,
+    Balls,
+    Constants,
+    Contacts,
+    Response,
+)
 
 CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE, RUN_AWAY = range(5)
 #: Entries of ``report``.
 ITERATIONS, RESIDUAL = range(2)
 _LIMIT = 300
+#: Rows of ``work`` that the energy's integral takes, from the first to the one after the last.
+_SCRATCH, _SCRATCH_END = 8, 14
 
 
-@jit(float64(LAW_POINTER, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR))
-def contact_energy(law, law_params, law_old, law_new, table, ball, work, energy):
-    """Energy [J] stored in all contacts at the gaps in work[0] and in the bodies, less the work of the centrifugal forces."""
-    scratch = work[8:14]
-    stored_energy(law, law_params, law_old, law_new, work[0], scratch, energy)
+@jit(float64(CONTACTS, CONSTANTS, MATRIX, MATRIX, VECTOR))
+def contact_energy(contacts, constants, ball, work, energy):
+    """Energy [J] stored in all contacts at the gaps in ``work`` and in the bodies, less the work of the centrifugal forces."""
+    table = constants.table
+    stored_energy(contacts.law, contacts.params, contacts.old, contacts.new, work[GAPS], work[_SCRATCH:_SCRATCH_END], energy)
     total = 0.0
     for i in range(energy.size):
         total += energy[i] + work[STORED, i]
@@ -43,25 +56,123 @@ def contact_energy(law, law_params, law_old, law_new, table, ball, work, energy)
     return total
 
 
+@jit(float64(float64, LINEAR, VECTOR))
+def with_linear_parts(energy, linear, q):
+    """An energy [J] and that of the linear stiffness, less the work of the load, at q (5,)."""
+    for i in range(5):
+        energy -= linear.load[i] * q[i]
+        for j in range(5):
+            energy += 0.5 * q[i] * linear.stiffness[i, j] * q[j]
+    return energy
+
+
 @jit(float64(MATRIX, int64))
 def force_scale(work, inner):
     """Sum of the inner races' forces and a ten-thousandth of the outer ones' [N]."""
     total = 0.0
     for i in range(work.shape[1]):
-        total += abs(work[2, i]) * (1.0 if i < inner else 1e-4)
+        total += abs(work[FORCES, i]) * (1.0 if i < inner else 1e-4)
     return total
 
 
+@jit(float64(LINEAR, VECTOR, VECTOR, VECTOR, VECTOR))
+def gradient(linear, f, q, scale, out):
+    """out (5,): slope of the potential by the scaled unknowns [N], from the contacts' force f (5,); its largest entry."""
+    norm = 0.0
+    for i in range(5):
+        total = f[i] - linear.load[i]
+        for j in range(5):
+            total += linear.stiffness[i, j] * q[j]
+        out[i] = total * scale[i] * linear.free[i]
+        norm = max(norm, abs(out[i]))
+    return norm
+
+
+@jit(float64(LINEAR, MATRIX, VECTOR, float64, MATRIX))
+def hessian(linear, K, scale, least, H):
+    """H (5, 5): second derivatives by the scaled unknowns [N/m] from the contacts' K; its largest diagonal entry, or ``least``."""
+    trace, free = 0.0, linear.free
+    for i in range(5):
+        for j in range(5):
+            H[i, j] = (K[i, j] + linear.stiffness[i, j]) * scale[i] * scale[j] * free[i] * free[j]
+        trace = max(trace, H[i, i])
+    if trace == 0.0:
+        trace = least
+    for i in range(5):
+        if free[i] == 0.0:
+            H[i, i] = trace
+    return trace
+
+
+@jit(float64(MATRIX, VECTOR, float64, float64, float64, MATRIX, VECTOR))
+def trust_region_step(H, g, norm, trace, radius, factor, step):
+    """step (5,): Newton's where it stays inside the radius, else of (H + shift) d = -g with |d| = radius; its length."""
+    size, shift, low, high = np.inf, 0.0, 0.0, 0.0
+    for _ in range(60):
+        for i in range(5):
+            step[i] = -g[i]
+            for j in range(5):
+                factor[i, j] = H[i, j]
+            factor[i, i] += shift + 1e-15 * trace
+        size = np.inf
+        if cholesky_solve(factor, step, 5):
+            size = 0.0
+            for i in range(5):
+                size += step[i] * step[i]
+            size = np.sqrt(size)
+        if size <= radius:
+            if shift == 0.0 or size >= 0.8 * radius:
+                break
+            high = shift
+        else:
+            low = max(shift, 1e-12 * trace)
+        if high == 0.0:
+            shift = max(10.0 * shift, 1e-10 * trace, 0.1 * norm / radius)
+        else:
+            shift = np.sqrt(low * high)
+            if high <= low * 1.05:
+                shift = high
+    return size
+
+
+@jit(float64(MATRIX, VECTOR, VECTOR))
+def predicted_decrease(H, g, step):
+    """How far the quadratic model falls over a step [J]."""
+    predicted = 0.0
+    for i in range(5):
+        total = g[i]
+        for j in range(5):
+            total += 0.5 * H[i, j] * step[j]
+        predicted -= step[i] * total
+    return predicted
+
+
+@jit(float64(float64, float64, float64, VECTOR, VECTOR, VECTOR))
+def decrease_ratio(before, after, predicted, g, g_new, step):
+    """Fall of the potential from ``before`` to ``after`` [J] over the predicted one."""
+    if predicted <= 1e-13 * (abs(before) + abs(after)):
+        # Energies no longer tell the two states apart: the mean of the slopes at both ends of the step does.
+        slopes = 0.0
+        for i in range(5):
+            slopes += (g[i] + g_new[i]) * step[i]
+        return -0.5 * slopes / predicted if predicted > 0.0 else 0.0
+    return (before - after) / predicted if predicted > 0.0 else 0.0
+
+
+@jit(void(VECTOR, VECTOR))
+def copy_vector(source, target):
+    """target (n,) becomes source (n,)."""
+    for i in range(source.size):
+        target[i] = source[i]
+
+
 @jit(SETTLE, allocates=True)
-def settle(
-    system, law, law_params, scalars, table, stiffness, free, load, tolerance, t, q, ball, law_state, work, f, K, report
-):
-    """Move q (5,) and ball (Z, 2) to the equilibrium of ``load`` (5,); f and K are the contacts' there.
+def settle(forces, linear, tolerance, t, rest, response, report):
+    """Move a state at rest to the equilibrium of ``linear.load`` (5,); the response is the contacts' there.
 
     Parameters
     ----------
-    stiffness : (5, 5) linear stiffness added to the contacts' (the shaft's against tilts)
-    free : (5,) 1 for unknowns, 0 for coordinates that are held
+    linear : its stiffness is added to the contacts' (the shaft's against tilts)
     tolerance : residual over the sum of the inner races' forces and the loads
     t : time [s]: balls that orbit stand still where they are then
     report : (2,) out: iterations, relative residual
@@ -71,46 +182,36 @@ def settle(
     int
         ``CONVERGED``, ``NOT_CONVERGED``, ``BALLS_FAILED``, ``NOT_FINITE`` or ``RUN_AWAY`` (nothing holds the ring).
     """
-    if scalars[CAGE] != 0.0:
-        scalars, table = scalars.copy(), table.copy()
-        stop(t, scalars, table)
-    arm = scalars[TILT_ARM]
+    constants, q, ball, work = forces.constants, rest.q, rest.ball, response.work
+    if constants.scalars[CAGE] != 0.0:
+        constants = Constants(constants.scalars.copy(), constants.table.copy())
+        stop(t, constants.scalars, constants.table)
+    arm = constants.scalars[TILT_ARM]
     scale = np.ones(5)
     scale[3] = 1.0 / arm
     scale[4] = 1.0 / arm
-    rest = np.zeros(5)
-    zeros = np.zeros_like(ball)
-    law_new = law_state.copy()
-    C, K_new, f_new = np.empty((5, 5)), np.empty((5, 5)), np.empty(5)
-    g, g_new, step, trial = np.zeros(5), np.zeros(5), np.zeros(5), np.empty(5)
-    H, factor, rhs = np.empty((5, 5)), np.empty((5, 5)), np.empty(5)
-    ball_new = ball.copy()
-    energy_rows = np.empty(work.shape[1])
-    radius = 0.05 * (abs(scalars[0]) + abs(scalars[1]))
+    still, zeros = np.zeros(5), np.zeros_like(ball)
+    contacts = Contacts(forces.law, forces.law_params, rest.memory, rest.memory.copy(), 0.0)
+    now = Response(response.f, response.K, np.empty((5, 5)), work)
+    new = Response(np.empty(5), np.empty((5, 5)), now.C, work)
+    g, g_new, step, trial = np.zeros(5), np.zeros(5), np.empty(5), np.empty(5)
+    H, factor, ball_new, energies = np.empty((5, 5)), np.empty((5, 5)), ball.copy(), np.empty(work.shape[1])
+    radius = 0.05 * (abs(constants.scalars[REST_AXIAL]) + abs(constants.scalars[REST_RADIAL]))
     if radius == 0.0:  # bearings without grooves or clearance
         radius = 1e-3 * arm
-    status = system(t, 0.0, q, rest, ball, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work, f, K, C)
-    if status != 0:
+    if forces.system(t, q, still, Balls(ball, 0.0, zeros), contacts, constants, now) != 0:
         return BALLS_FAILED
     # What the ring feels counts: under centrifugal force the outer races may carry a million times more, of which only
     # the rounding (a ten-thousandth of the tolerance, 1e-15) remains.
     inner = work.shape[1] // 2
-    forces = force_scale(work, inner)
-    potential = np.nan
-    weight, relative = 0.0, np.inf
+    carried, weight = force_scale(work, inner), 0.0
+    potential, relative = np.nan, np.inf
     for i in range(5):
-        weight += abs(load[i]) * scale[i]
+        weight += abs(linear.load[i]) * scale[i]
     for iteration in range(_LIMIT):
-        norm = 0.0
-        for i in range(5):
-            total = f[i] - load[i]
-            for j in range(5):
-                total += stiffness[i, j] * q[j]
-            g[i] = total * scale[i] * free[i]
-            norm = max(norm, abs(g[i]))
-        relative = norm / max(forces + weight, 1e-300)
-        report[0] = iteration
-        report[1] = relative
+        norm = gradient(linear, now.f, q, scale, g)
+        relative = norm / max(carried + weight, 1e-300)
+        report[ITERATIONS], report[RESIDUAL] = iteration, relative
         if not np.isfinite(norm):
             return NOT_FINITE
         for i in range(5):
@@ -118,96 +219,26 @@ def settle(
                 return RUN_AWAY
         if relative <= tolerance:
             return CONVERGED
-        trace = 0.0
-        for i in range(5):
-            for j in range(5):
-                H[i, j] = (K[i, j] + stiffness[i, j]) * scale[i] * scale[j] * free[i] * free[j]
-            trace = max(trace, H[i, i])
-        if trace == 0.0:
-            trace = norm / radius
-        for i in range(5):
-            if free[i] == 0.0:
-                H[i, i] = trace
-        # The step: Newton where it stays inside the radius, else (H + shift) d = -g with |d| = radius.
-        shift, low, high = 0.0, 0.0, 0.0
-        for _ in range(60):
-            for i in range(5):
-                rhs[i] = -g[i]
-                for j in range(5):
-                    factor[i, j] = H[i, j]
-                factor[i, i] += shift + 1e-15 * trace
-            size = np.inf
-            if cholesky_solve(factor, rhs, 5):
-                size = 0.0
-                for i in range(5):
-                    size += rhs[i] * rhs[i]
-                size = np.sqrt(size)
-            if size <= radius:
-                if shift == 0.0 or size >= 0.8 * radius:
-                    break
-                high = shift
-            else:
-                low = max(shift, 1e-12 * trace)
-            if high == 0.0:
-                shift = max(10.0 * shift, 1e-10 * trace, 0.1 * norm / radius)
-            else:
-                shift = np.sqrt(low * high)
-                if high <= low * 1.05:
-                    shift = high
+        trace = hessian(linear, now.K, scale, norm / radius, H)
+        size = trust_region_step(H, g, norm, trace, radius, factor, step)
         if not np.isfinite(size):
             return NOT_CONVERGED
-        predicted = 0.0
         for i in range(5):
-            step[i] = rhs[i] * scale[i]
-            trial[i] = q[i] + step[i]
-        for i in range(5):
-            total = g[i]
-            for j in range(5):
-                total += 0.5 * H[i, j] * rhs[j]
-            predicted -= rhs[i] * total
-        for k in range(ball.shape[0]):
-            for c in range(ball.shape[1]):
-                ball_new[k, c] = ball[k, c]
+            trial[i] = q[i] + step[i] * scale[i]
+        copy_matrix(ball, ball_new)
         if np.isnan(potential):
-            potential = contact_energy(law, law_params, law_state, law_new, table, ball, work, energy_rows)
-            for i in range(5):
-                potential -= load[i] * q[i]
-                for j in range(5):
-                    potential += 0.5 * q[i] * stiffness[i, j] * q[j]
-        status = system(
-            t, 0.0, trial, rest, ball_new, 0.0, zeros, law, law_params, law_state, law_new, scalars, table, work,
-            f_new, K_new, C,
-        )  # fmt: skip
-        if status != 0:
+            potential = with_linear_parts(contact_energy(contacts, constants, ball, work, energies), linear, q)
+        if forces.system(t, trial, still, Balls(ball_new, 0.0, zeros), contacts, constants, new) != 0:
             radius *= 0.25
             if radius < 1e-18:
                 return BALLS_FAILED
             continue
-        norm_new, forces_new = 0.0, force_scale(work, inner)
-        for i in range(5):
-            total = f_new[i] - load[i]
-            for j in range(5):
-                total += stiffness[i, j] * trial[j]
-            g_new[i] = total * scale[i] * free[i]
-            norm_new = max(norm_new, abs(g_new[i]))
-        accepted = norm_new < 0.25 * norm
-        if accepted:
-            potential = np.nan
-            radius = max(radius, 3.0 * size)
+        carried_new = force_scale(work, inner)
+        if gradient(linear, new.f, trial, scale, g_new) < 0.25 * norm:
+            accepted, potential, radius = True, np.nan, max(radius, 3.0 * size)
         else:
-            energy = contact_energy(law, law_params, law_state, law_new, table, ball_new, work, energy_rows)
-            for i in range(5):
-                energy -= load[i] * trial[i]
-                for j in range(5):
-                    energy += 0.5 * trial[i] * stiffness[i, j] * trial[j]
-            ratio = (potential - energy) / predicted if predicted > 0.0 else 0.0
-            rounding = 1e-13 * (abs(potential) + abs(energy))
-            if predicted <= rounding:
-                # Energies no longer tell the two states apart: the mean of the slopes at both ends of the step does.
-                slopes = 0.0
-                for i in range(5):
-                    slopes += (g[i] + g_new[i]) * rhs[i]
-                ratio = -0.5 * slopes / predicted if predicted > 0.0 else 0.0
+            energy = with_linear_parts(contact_energy(contacts, constants, ball_new, work, energies), linear, trial)
+            ratio = decrease_ratio(potential, energy, predicted_decrease(H, g, step), g, g_new, step)
             accepted = ratio > 1e-4
             if ratio < 0.25:
                 radius = 0.25 * min(radius, size)
@@ -217,15 +248,11 @@ def settle(
                 potential = energy
             if radius < 1e-22:
                 # No step helps any more: rounding, where the imbalance is small already.
-                return CONVERGED if relative <= 1e3 * tolerance else NOT_CONVERGED
+                break
         if accepted:
-            forces = forces_new
-            for i in range(5):
-                q[i] = trial[i]
-                f[i] = f_new[i]
-                for j in range(5):
-                    K[i, j] = K_new[i, j]
-            for k in range(ball.shape[0]):
-                for c in range(ball.shape[1]):
-                    ball[k, c] = ball_new[k, c]
+            carried = carried_new
+            copy_vector(trial, q)
+            copy_vector(new.f, now.f)
+            copy_matrix(new.K, now.K)
+            copy_matrix(ball_new, ball)
     return CONVERGED if relative <= 1e3 * tolerance else NOT_CONVERGED

@@ -14,6 +14,8 @@ Trefethen, Spectral Methods in MATLAB (2000), chapter 3; Krack, Gross, Harmonic 
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import attrs
 import numpy as np
 from numba import int64
@@ -22,7 +24,7 @@ from raceway.core.jit import jit
 from raceway.core.ring.kernels.columns import work_rows
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.surrogate import compiled, surrogate
-from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, SYSTEM_POINTER, VECTOR
+from raceway.core.signatures import CUBE, FORCES, MATRIX, VECTOR, Balls, Contacts, Response, record
 from raceway.errors import ConvergenceError
 
 #: Times of a period, and residual, of systems that are evaluated from Python: each takes a millisecond or a hundred, and
@@ -30,24 +32,30 @@ from raceway.errors import ConvergenceError
 _SAMPLES_PYTHON, _TOLERANCE_PYTHON = 17, 1e-7
 
 
-@jit(
-    int64(
-        SYSTEM_POINTER, LAW_POINTER, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, CUBE, MATRIX, CUBE, CUBE
-    ),
-    allocates=True,
-)
-def evaluate_many(system, law, law_params, scalars, table, law_state, times, q, v, ball, ball_rate, f, K, C):
+class States(NamedTuple):
+    """Times (n,), displacements and velocities (n, 5), places of the balls (n, Z, c) and their rates."""
+
+    times: Any
+    q: Any
+    v: Any
+    ball: Any
+    rate: Any
+
+
+STATES = record(States, VECTOR, MATRIX, MATRIX, CUBE, CUBE)
+
+
+@jit(int64(FORCES, MATRIX, STATES, MATRIX, CUBE, CUBE), allocates=True)
+def evaluate_many(forces, memory, states, f, K, C):
     """Contact forces (n, 5) and tangents (n, 5, 5) at n states; the index of the first that fails, or n."""
-    work = np.zeros((work_rows(scalars, table), 2 * table.shape[0]))
-    law_new = law_state.copy()
-    for i in range(times.size):
-        status = system(
-            times[i], 0.0, q[i], v[i], ball[i], 0.0, ball_rate[i], law, law_params, law_state, law_new, scalars, table,
-            work, f[i], K[i], C[i],
-        )  # fmt: skip
-        if status != 0:
+    constants = forces.constants
+    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
+    contacts = Contacts(forces.law, forces.law_params, memory, memory.copy(), 0.0)
+    for i in range(states.times.size):
+        balls, response = Balls(states.ball[i], 0.0, states.rate[i]), Response(f[i], K[i], C[i], work)
+        if forces.system(states.times[i], states.q[i], states.v[i], balls, contacts, constants, response) != 0:
             return i
-    return times.size
+    return states.times.size
 
 
 @attrs.frozen(eq=False)
@@ -150,7 +158,7 @@ def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertia
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
         if ring is not None:
-            done = evaluate_many(*ring.model, system.law_state, times, q, v, ball, rate, f, K, C)
+            done = evaluate_many(ring.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
         else:
             done = _evaluate_each(system, times, q, v, ball, f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force

@@ -7,7 +7,8 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, RUN_AWAY, settle
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, settle
+from raceway.core.ring.kernels import FORCES, GAPS
 from raceway.core.ring.kernels.columns import BLOCK, ROW, are_condensed, elastic_columns, work_rows
 from raceway.core.ring.kernels.layout import (
     CAGE,
@@ -16,6 +17,7 @@ from raceway.core.ring.kernels.layout import (
     GYROSCOPIC,
 )
 from raceway.core.ring.ring import COORDINATES, TOLERANCE, Evaluation, Ring
+from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, Rest
 from raceway.core.stepping.states import check_state
 from raceway.errors import ConvergenceError
 
@@ -108,9 +110,14 @@ class System(Ring):
         return np.zeros((work_rows(self.scalars, self.table), 2 * self.ball_count))
 
     @property
-    def model(self) -> tuple[Any, ...]:
-        """The arguments that every compiled loop begins with, less the excitation."""
-        return self.kernel, self.law, self.law_params, self.scalars, self.table
+    def compiled_forces(self) -> Forces:
+        """The compiled forces of the contacts, for compiled loops."""
+        return Forces(self.kernel, self.law, self.law_params, Constants(self.scalars, self.table))
+
+    @property
+    def linear(self) -> Linear:
+        """The linear parts, for compiled loops."""
+        return Linear(self.mass, self.damping, self.stiffness, self.free, self.load)
 
     def evaluate(
         self,
@@ -157,13 +164,14 @@ class System(Ring):
         f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
         old = self.law_state if memory is None else memory
         new = old.copy()
+        contacts = Contacts(self.law, self.law_params, old, new, dt)
         status = self.kernel(
-            t, dt, np.ascontiguousarray(q, dtype=float), v, ball, ball_gain, rate, self.law, self.law_params,
-            old, new, scalars, self.table, work, f, K, C,
+            t, np.ascontiguousarray(q, dtype=float), v, Balls(ball, ball_gain, rate), contacts,
+            Constants(scalars, self.table), Response(f, K, C, work),
         )  # fmt: skip
         if status != 0:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
-        return Evaluation(f, K, C, work[0].copy(), work[2].copy(), ball, new)
+        return Evaluation(f, K, C, work[GAPS].copy(), work[FORCES].copy(), ball, new)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
@@ -211,16 +219,15 @@ class System(Ring):
             q_now = np.array(q, dtype=float)
             ball_now = np.zeros((self.ball_count, self.ball_columns)) if ball is None else np.array(ball, dtype=float)
             for part in range(1, count + 1):
-                scalars, now = self.scalars.copy(), self.load
+                scalars, linear = self.scalars.copy(), self.linear
                 if load is None:
                     scalars[GYROSCOPIC] *= part / count
                 else:
-                    now = load * (part / count)
-                status = solver(
-                    self.kernel, self.law, self.law_params, scalars, self.table, self.stiffness, self.free, now,
-                    tolerance, 0.0, q_now, ball_now, self.law_state, self._work(), np.empty(5), np.empty((5, 5)), report,
-                )  # fmt: skip
-                total += int(report[0]) + 1
+                    linear = linear._replace(load=load * (part / count))
+                forces = self.compiled_forces._replace(constants=Constants(scalars, self.table))
+                response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), self._work())
+                status = solver(forces, linear, tolerance, 0.0, Rest(q_now, ball_now, self.law_state), response, report)
+                total += int(report[ITERATIONS]) + 1
                 if status != CONVERGED:
                     break
             if status == CONVERGED:
@@ -233,8 +240,8 @@ class System(Ring):
                     {"q": np.array(q, dtype=float), "ball": ball_now},
                 )
         what = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
-        left = f"relative residual {report[1]:.1e}"
-        if not np.isfinite(report[1]):
+        left = f"relative residual {report[RESIDUAL]:.1e}"
+        if not np.isfinite(report[RESIDUAL]):
             left = "the forces leave what can be computed with: check the units of loads and materials"
         raise ConvergenceError(
             f"no static equilibrium found after {total} iterations: {what}, {left}",

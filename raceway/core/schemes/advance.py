@@ -19,6 +19,7 @@ from raceway.core.schemes.compiled import (
     ROWS,
     UNBOUNDED,
 )
+from raceway.core.signatures import Outer, Recording, State, Steps
 from raceway.core.stepping.record import Motion, OnChunk, Record, Schedule
 from raceway.core.stepping.states import check_start
 from raceway.errors import ConvergenceError, StabilityError
@@ -57,18 +58,15 @@ def advance(
     ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
     if start.memory is not None:
         memory[:] = start.memory
+    state, recording = State(motion, ball, before, memory), Recording(schedule.stride, rows, probes, counters)
     done, last = schedule.first, schedule.first + schedule.steps
     # A speed that changes is another one in every step, which ends at its time.
     addressed, longest = by_address(system), _CHUNK if system.spin is None else 1
     while done < last:
         count = min(longest, last - done)
         now = addressed.at_speed((done + count) * schedule.dt)
-        taken = loop(
-            now.kernel, now.law, now.force, now.law_params, now.scalars, now.table,
-            now.force_params, now.mass, now.damping, now.stiffness, now.free, now.load,
-            coefficients, schedule.dt, schedule.ramp, done, count, motion, ball, before, memory,
-            schedule.stride, rows, probes, counters,
-        )  # fmt: skip
+        outer, steps = Outer(now.force, now.force_params, schedule.ramp), Steps(schedule.dt, done, count)
+        taken = loop(now.compiled_forces, now.linear, outer, coefficients, steps, state, recording)
         done += taken
         if taken < count:
             raise _failure(system, schedule, done, motion, ball, counters)

@@ -1,24 +1,20 @@
 """Compiled systems: internal force and tangents of the inner ring after the balls are condensed out.
 
-Every kernel has the signature ``raceway.core.signatures.SYSTEM``::
+Every kernel has the signature ``raceway.core.signatures.SYSTEM``, whose records stand there::
 
-    system(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new,
-           scalars, table, work, f, K, C) -> status
+    system(t, q, v, balls, contacts, constants, response) -> status
 
-    q, v (5,)            displacement [m, rad] and velocity of the reference point: x, y, z, tilt_y, tilt_z
-    ball (Z, 2 to 8)     in: a first guess; out: the position of each ball in its meridian plane [m], then the slip
-                         of its inner and outer contact where there is friction [m], of condensed bodies the
-                         structural approach of both contacts and, where balls act on each other through the rings,
-                         at last the displacement of the inner groove centre against the outer one by that [m]
-    ball_gain [1/s], ball_known (like ball) [m/s]   rate of a ball = ball_gain * ball + ball_known: an integrator
-                         states its difference formula with them; 0 and zeros at rest.  The columns of slips hold those
-                         that were committed last [m]; see ``raceway.core.ring.kernels.columns``
-    law_params (2 Z, k), law_old, law_new (2 Z, m)   the law's parameters and memory: inner races first, then outer
-    scalars, table       constants of the model, laid out in ``raceway.core.ring.kernels.layout``
-    work (rows, 2 Z)     ``columns.work_rows`` tells how many; on return rows 0 and 2 hold gap [m] and force [N] of every
-                         contact
-    f (5,), K, C (5, 5)  internal force [N, N m] and its derivatives by q and by v; a caller that needs no tangents gives
-                         K and C of shape (0, 0), which are left alone
+    q, v (5,)   displacement [m, rad] and velocity of the reference point: x, y, z, tilt_y, tilt_z
+    balls       place (Z, 2 to 8), in: a first guess; out: the position of each ball in its meridian plane [m], then the slip
+                of its inner and outer contact where there is friction [m], of condensed bodies the structural approach of
+                both contacts and, where balls act on each other through the rings, at last the displacement of the inner
+                groove centre against the outer one by that [m].  gain [1/s], known (like place) [m/s]: 0 and zeros at
+                rest; the columns of slips hold those that were committed last [m]; see ``columns``
+    contacts    the law, its parameters and memory: inner races first, then outer
+    constants   of the model, laid out in ``layout``
+    response    f, K, C: internal force [N, N m] and its derivatives by q and by v; a caller that needs no tangents gives K and
+                C of shape (0, 0), which are left alone.  work (rows, 2 Z): ``columns.work_rows`` tells how many; on return
+                rows GAPS and FORCES hold gap [m] and force [N] of every contact
 
 and returns 0, or 1 when the balls did not find their equilibrium.  Damping and tilt stiffness of the shaft, masses and
 outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the balls of all rows.
@@ -37,6 +33,7 @@ impact             one mass against one contact, for the published impacts and t
 #: Rows of ``work``: gap, gap rate, force, d_gap, d_rate, then scratch of the ball solvers (5 to 25), then what the bodies'
 #: elasticity adds to each gap [m], its rate [m/s] and the energy it stores [J]: zeros for rigid bodies.
 WORK_ROWS = 29
+GAPS, GAP_RATES, FORCES, FORCES_BY_GAP, FORCES_BY_RATE = range(5)
 SHIFT, SHIFT_RATE, STORED = 26, 27, 28
 #: Rows that condensed bodies have beyond these.  Kernels fill them with the derivatives of both contact forces of a ball by
 #: the vector e, its velocity, the shifts (own and the other contact's) and the turn of the section; of its force on the

@@ -51,6 +51,15 @@ def slips_end(scalars, ball):
     return ball.shape[1] - elastic_columns(scalars)
 
 
+@jit(void(VECTOR, MATRIX, MATRIX))
+def keep_slips(scalars, ball, known):
+    """known, like ball: zeros, and the committed slips: what is known of the rates of balls at rest."""
+    end = slips_end(scalars, ball)
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            known[k, c] = ball[k, c] if 2 <= c < end else 0.0
+
+
 @jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
 def next_balls(scalars, dt, ball, before, known, trial):
     """First guess of the balls after a step, and the part of their rates that is known by then.

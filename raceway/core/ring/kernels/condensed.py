@@ -12,14 +12,15 @@ def condensed(rigid: Kernel) -> Kernel:
     """The kernel of elastic rings and balls whose contacts, inertia and friction are those of a rigid kernel."""
 
     @jit(SYSTEM)
-    def elastic(t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C):
+    def elastic(t, q, v, balls, contacts, constants, response):
         # See ``raceway.core.ring.kernels``; the last columns of ball belong to the elasticity of the bodies [m].
+        ball, ball_gain, ball_known = balls
+        scalars, table = constants
+        f, K, C, work = response
         begin(t, q, v, scalars, table, work)
         for _ in range(ITERATIONS):
             shift(scalars, ball, ball_gain, ball_known, work)
-            status = rigid(
-                t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C
-            )
+            status = rigid(t, q, v, balls, contacts, constants, response)
             if status != 0:
                 return status
             answer = correct(scalars, table, ball, ball_gain, work, f)

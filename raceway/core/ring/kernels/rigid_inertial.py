@@ -57,10 +57,12 @@ CARRIED, STIFF, VISCOUS = 9, 5, 7
 
 
 @jit(SYSTEM)
-def rigid_inertial(
-    t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C
-):
+def rigid_inertial(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball (Z, 2) holds p [m]; a row of zeros asks for a first guess."""
+    ball, ball_gain, ball_known = balls
+    law, law_params, law_old, law_new, dt = contacts
+    scalars, table = constants
+    f, K, C, work = response
     z = table.shape[0]
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]

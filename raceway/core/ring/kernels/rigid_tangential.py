@@ -103,10 +103,12 @@ def _contact_matrix(k, f, h, h_s, h_a, w, na, nr):
 
 
 @jit(SYSTEM)
-def rigid_tangential(
-    t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C
-):
+def rigid_tangential(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball (Z, 4): p [m], slips [m]."""
+    ball, ball_gain, ball_known = balls
+    law, law_params, law_old, law_new, dt = contacts
+    scalars, table = constants
+    f, K, C, work = response
     z = table.shape[0]
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     mu, stick, diameter = scalars[FRICTION], scalars[STICK], scalars[DIAMETER]

@@ -49,10 +49,12 @@ APPROACH, OUTER = SPEED, LENGTH
 
 
 @jit(SYSTEM)
-def rigid_weightless(
-    t, dt, q, v, ball, ball_gain, ball_known, law, law_params, law_old, law_new, scalars, table, work, f, K, C
-):
+def rigid_weightless(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball[:, 0] is s_o [m], ball[:, 1] is not used."""
+    ball, ball_gain, ball_known = balls
+    law, law_params, law_old, law_new, dt = contacts
+    scalars, table = constants
+    f, K, C, work = response
     z = table.shape[0]
     arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
     gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]

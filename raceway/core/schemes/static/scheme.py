@@ -24,12 +24,13 @@ class Static:
         import numpy as np
 
         from raceway.core.schemes.advance import advance
+        from raceway.core.schemes.static.compiled import quasi_static
 
         if system.conservative:
-            from raceway.core.schemes.static.compiled import quasi_static as loop
+            from raceway.core.ring.equilibrium import settle as solver
         else:
-            from raceway.core.schemes.static.tangential import quasi_static_tangential as loop
-        return advance(loop, system, start, schedule, np.array([self.tolerance]), on_chunk)
+            from raceway.core.ring.root import find_root as solver
+        return advance(quasi_static(solver), system, start, schedule, np.array([self.tolerance]), on_chunk)
 
     def stepped(self, system: SteppedSystem, recorder: Recorder) -> None:
         """Equilibria of any system."""
