@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from raceway.bodies.model import build_model
+from raceway.core.ring.ring import Increment
 from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import integrate
@@ -39,7 +40,10 @@ def bearing():
         ({"ball": SIX}, r"`ball` has the shape \(6, 2\); that of this system is \(12, 2\): a row for each ball"),
         ({"ball": NARROW}, r"`ball` has the shape \(12, 1\)"),
         ({"ball_rate": SIX}, r"`ball_rate` has the shape \(6, 2\)"),
-        ({"memory": np.zeros((12, 1))}, r"`memory` has the shape \(12, 1\); that of this system is \(24, 0\)"),
+        (
+            {"step": Increment(memory=np.zeros((12, 1)))},
+            r"`memory` has the shape \(12, 1\); that of this system is \(24, 0\)",
+        ),
         ({"v": np.zeros(3)}, r"`v` has the shape \(3,\)"),
     ],
 )

@@ -15,6 +15,7 @@ from raceway.core.patches.contact import Contact, Held
 from raceway.core.patches.friction import Friction, Gripped
 from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.core.patches.history import History
+from raceway.core.ring.ring import Increment
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.unused import unused
@@ -140,7 +141,7 @@ def test_a_bearing_with_friction_has_exact_tangents_and_a_history():
     # A trial leaves no trace; an accepted state does: on the way back the points pull the other way.
     again = system.evaluate(found.displacement, ball=found.ball)
     assert again.force == pytest.approx(rest.force, abs=1e-2)
-    back = system.evaluate(found.displacement, ball=now.ball, memory=now.memory)
+    back = system.evaluate(found.displacement, ball=now.ball, step=Increment(memory=now.memory))
     assert np.abs(back.force - rest.force)[:3].max() > 1.0
     assert History.of(now.memory, 12).lost.sum() > 0.0
 
@@ -152,10 +153,10 @@ def test_points_that_get_more_neighbours_keep_their_memory():
     system, far, near = case.system, 2.5 * found.displacement, 1.02 * found.displacement
     first = system.evaluate(near, ball=found.ball)
     narrow = system.pool.patches[0]
-    there = system.evaluate(far, ball=first.ball, memory=first.memory)
+    there = system.evaluate(far, ball=first.ball, step=Increment(memory=first.memory))
     assert system.pool.patches[0].rows * system.pool.patches[0].columns > narrow.rows * narrow.columns
     again = system.evaluate(near, ball=found.ball)
-    wide = system.evaluate(far, ball=again.ball, memory=again.memory)
+    wide = system.evaluate(far, ball=again.ball, step=Increment(memory=again.memory))
     # Rows lie elsewhere on the wider patches: some percent with 2 points along a semi-axis.
     assert there.force[0] == pytest.approx(wide.force[0], rel=0.02)
     assert History.of(there.memory, 12).lost.sum() == pytest.approx(History.of(wide.memory, 12).lost.sum(), rel=0.1)
@@ -242,7 +243,7 @@ def test_balls_are_accelerated_by_their_contacts():
         memory[:, 1] = known
         memory[:, 2], memory[:, 3] = (-dt * k * acceleration.T.reshape(-1) for k in (1.0, 2.0))
         now = system.evaluate(
-            rest.displacement, ball=rest.ball, ball_rate=rate, ball_gain=gain, dt=dt, memory=memory, v=np.zeros(5)
+            rest.displacement, ball=rest.ball, ball_rate=rate, v=np.zeros(5), step=Increment(dt, gain, memory)
         )
         force = np.array([one.force for one in system.pressures()])
         balance = force[:12] + force[12:] + np.column_stack([np.zeros(12), system.table[:, 2]])

@@ -10,7 +10,7 @@ import numpy as np
 
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.ring.ring import Evaluation
+from raceway.core.ring.ring import AT_ONCE, Evaluation, Increment
 from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
@@ -99,10 +99,7 @@ class ElasticRing(SteppedRing):
         ball: np.ndarray | None = None,
         ball_rate: np.ndarray | None = None,
         t: float = 0.0,
-        *,
-        dt: float = 0.0,
-        ball_gain: float = 0.0,
-        memory: np.ndarray | None = None,
+        step: Increment = AT_ONCE,
     ) -> Evaluation:
         """The last equilibrium; its tangent is that of the ring with all nodes in balance.
 

@@ -15,8 +15,7 @@ def _signature(real: Any) -> Any:
     return void(int32[::1], int32[::1], vector, vector, vector, real, vector)
 
 
-@jit(_signature(float64))
-def _multiply_double(starts, columns, blocks, x, base, factor, out):  # type: ignore[no-untyped-def]
+def _multiply(starts, columns, blocks, x, base, factor, out):  # type: ignore[no-untyped-def]
     """out = factor base + A x."""
     for row in range(starts.size - 1):
         i = 3 * row
@@ -30,19 +29,7 @@ def _multiply_double(starts, columns, blocks, x, base, factor, out):  # type: ig
         out[i], out[i + 1], out[i + 2] = a, b, c
 
 
-@jit(_signature(float32))
-def _multiply_single(starts, columns, blocks, x, base, factor, out):  # type: ignore[no-untyped-def]
-    """The same in single precision."""
-    for row in range(starts.size - 1):
-        i = 3 * row
-        a, b, c = factor * base[i], factor * base[i + 1], factor * base[i + 2]
-        for k in range(starts[row], starts[row + 1]):
-            j, at = 3 * columns[k], 9 * k
-            p, q, r = x[j], x[j + 1], x[j + 2]
-            a += blocks[at] * p + blocks[at + 1] * q + blocks[at + 2] * r
-            b += blocks[at + 3] * p + blocks[at + 4] * q + blocks[at + 5] * r
-            c += blocks[at + 6] * p + blocks[at + 7] * q + blocks[at + 8] * r
-        out[i], out[i + 1], out[i + 2] = a, b, c
+_MULTIPLY = {np.float64: jit(_signature(float64))(_multiply), np.float32: jit(_signature(float32))(_multiply)}
 
 
 class BlockMatrix:
@@ -58,7 +45,7 @@ class BlockMatrix:
         blocks = matrix.tobsr((3, 3))
         self._starts, self._columns = blocks.indptr.astype(np.int32), blocks.indices.astype(np.int32)
         self._blocks = np.ascontiguousarray(blocks.data.reshape(-1), dtype=real)
-        self._kernel: Any = _multiply_double if real is np.float64 else _multiply_single
+        self._kernel: Any = _MULTIPLY[real]
         self._real = real
         self._nothing = np.zeros(matrix.shape[0], dtype=real)
 

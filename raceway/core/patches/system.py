@@ -29,7 +29,7 @@ from raceway.core.ring.kernels.layout import (
     TILT_ARM,
     place,
 )
-from raceway.core.ring.ring import TOLERANCE, Evaluation
+from raceway.core.ring.ring import AT_ONCE, TOLERANCE, Evaluation, Increment
 from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
@@ -94,20 +94,17 @@ class PatchSystem(SteppedRing):
         ball: np.ndarray | None = None,
         ball_rate: np.ndarray | None = None,
         t: float = 0.0,
-        *,
-        dt: float = 0.0,
-        ball_gain: float = 0.0,
-        memory: np.ndarray | None = None,
+        step: Increment = AT_ONCE,
     ) -> Evaluation:
         q = np.asarray(q, dtype=float)
         v = np.zeros(5) if v is None else np.asarray(v, dtype=float)
-        history = History.of(self.law_state if memory is None else memory, self.ball_count)
-        return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, ball_gain, dt, history))
+        return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, step))
 
     def _evaluate(
-        self, q: np.ndarray, v: np.ndarray, ball: np.ndarray | None, ball_rate: np.ndarray | None, t: float, gain: float,
-        dt: float, history: History,
-    ) -> Evaluation:  # fmt: skip
+        self, q: np.ndarray, v: np.ndarray, ball: np.ndarray | None, ball_rate: np.ndarray | None, t: float, step: Increment
+    ) -> Evaluation:
+        history = History.of(self.law_state if step.memory is None else step.memory, self.ball_count)
+        dt, gain = step.dt, step.gain
         rubbing = self.rubbing and ball is not None  # without a history nothing sticks
         row = self.pool.row(self.table, rubbing)
         centre, jacobian, velocity = self._groove(q, v, t)
@@ -134,10 +131,7 @@ class PatchSystem(SteppedRing):
         """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
 
         def found() -> np.ndarray:
-            self._evaluate(
-                np.asarray(q, dtype=float), np.zeros(5), now.ball, None, 0.0, 0.0, 0.0,
-                History.of(self.law_state, self.ball_count),
-            )  # fmt: skip
+            self._evaluate(np.asarray(q, dtype=float), np.zeros(5), now.ball, None, 0.0, AT_ONCE)
             row = self.pool.row(self.table, self.rubbing)
             _, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
             assert row.last is not None

@@ -160,7 +160,7 @@ def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertia
         if ring is not None:
             done = evaluate_many(ring.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
         else:
-            done = _evaluate_each(system, times, q, v, ball, f, K, C)
+            done = _evaluate_each(system, States(times, q, v, ball, rate), f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:
             imbalance += v @ system.damping.T + (second @ q) @ system.mass.T
@@ -192,24 +192,16 @@ def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertia
     return Orbit(period, q, first @ q, second @ q, force, ball, K, residual, iterations)
 
 
-def _evaluate_each(
-    system: Ring,
-    times: np.ndarray,
-    q: np.ndarray,
-    v: np.ndarray,
-    ball: np.ndarray,
-    f: np.ndarray,
-    K: np.ndarray,
-    C: np.ndarray,
-) -> int:
-    """``evaluate_many`` for a system that is evaluated from Python; its balls follow the ring."""
-    for i, t in enumerate(times):
+def _evaluate_each(system: Ring, states: States, f: np.ndarray, K: np.ndarray, C: np.ndarray) -> int:
+    """``evaluate_many`` for a system that is evaluated from Python; its balls follow the ring, and ``rate`` is not used."""
+    ball = states.ball
+    for i, t in enumerate(states.times):
         try:
-            now = system.evaluate(q[i], v[i], ball[i] if ball[i].any() else None, None, float(t))
+            now = system.evaluate(states.q[i], states.v[i], ball[i] if ball[i].any() else None, None, float(t))
         except ConvergenceError:
             return i
         f[i], K[i], C[i], ball[i] = now.force, now.stiffness, now.damping, now.ball
-    return len(times)
+    return len(states.times)
 
 
 def at_time(values: np.ndarray, period: float, t: float) -> np.ndarray:

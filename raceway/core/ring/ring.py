@@ -54,6 +54,25 @@ class Evaluation:
     memory: np.ndarray
 
 
+@attrs.frozen(eq=False)
+class Increment:
+    """A step of an integrator since the law's memory was committed.
+
+    Attributes
+    ----------
+    dt : its length [s];  gain : derivative of the balls' rates by their places [1/s]
+    memory : (2 Z, m); None for the ring's ``law_state``
+    """
+
+    dt: float = 0.0
+    gain: float = 0.0
+    memory: np.ndarray | None = None
+
+
+#: No time has passed.
+AT_ONCE = Increment()
+
+
 class Spin(Protocol):
     """A speed that changes, with what of a ring follows it: ``raceway.core.ring.changing_speed``."""
 
@@ -114,18 +133,15 @@ class Ring(ABC):
         ball: np.ndarray | None = None,
         ball_rate: np.ndarray | None = None,
         t: float = 0.0,
-        *,
-        dt: float = 0.0,
-        ball_gain: float = 0.0,
-        memory: np.ndarray | None = None,
+        step: Increment = AT_ONCE,
     ) -> Evaluation:
         """Contact forces and tangents at displacement q (5,) and velocity v (5,).
 
         Parameters
         ----------
         ball : (Z, ``ball_columns``) a first guess, and the slips that were committed last
-        ball_rate, ball_gain : the rate of a ball is ball_gain * ball + ball_rate [m/s]
-        dt : step since ``memory`` (2 Z, m) was committed [s]; None for ``law_state``
+        ball_rate : (Z, ``ball_columns``), the rate of a ball is step.gain * ball + ball_rate [m/s]
+        step : since the law's memory was committed
 
         Raises
         ------

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from raceway.core.ring.ring import Increment
 from raceway.core.stepping.protocol import Observation, State
 from raceway.core.stepping.record import Motion
 from raceway.core.stepping.states import check_start
@@ -22,7 +23,7 @@ class SteppedBearing:
     system : object
         Offers ``ball_count``, ``ball_columns``, ``rated_columns``, ``conservative``, ``arm``, ``mass``, ``damping``, ``stiffness`` (5, 5), ``free``, ``load``
         (5,), ``law_state``, ``outer_force(t)``, ``critical_time_step(tangent)``, ``at_speed(t)`` (itself, or with the constants
-        of the speed at t), ``stopped(t)`` (a copy whose balls stand where they are at t), and ``evaluate(q, v, ball, ball_rate, t, dt=, ball_gain=, memory=)``, an ``Evaluation``.
+        of the speed at t), ``stopped(t)`` (a copy whose balls stand where they are at t), and ``evaluate(q, v, ball, ball_rate, t, step)``, an ``Evaluation``.
 
     Notes
     -----
@@ -74,7 +75,7 @@ class SteppedBearing:
             system = system.stopped(t)
         if self._guess is not None:  # what is not rated, slips, is handed over as it was committed
             guess[:, rated] = self._guess[:, rated]
-        self._now = system.evaluate(u, v, guess, rate, t, dt=dt, ball_gain=gain, memory=self._memory)
+        self._now = system.evaluate(u, v, guess, rate, t, Increment(dt, gain, self._memory))
         self._guess = self._now.ball.copy()
         return np.asarray(self._now.force + system.damping @ v + system.stiffness @ u)
 

@@ -16,7 +16,7 @@ from raceway.core.ring.kernels.layout import (
     FRICTION,
     GYROSCOPIC,
 )
-from raceway.core.ring.ring import COORDINATES, TOLERANCE, Evaluation, Ring
+from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Increment, Ring
 from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, Rest
 from raceway.core.stepping.states import check_state
 from raceway.errors import ConvergenceError
@@ -126,18 +126,15 @@ class System(Ring):
         ball: np.ndarray | None = None,
         ball_rate: np.ndarray | None = None,
         t: float = 0.0,
-        *,
-        dt: float = 0.0,
-        ball_gain: float = 0.0,
-        memory: np.ndarray | None = None,
+        step: Increment = AT_ONCE,
     ) -> Evaluation:
         """Contact forces and tangents at displacement q (5,) and velocity v (5,).
 
         Parameters
         ----------
         ball : (Z, ``ball_columns``) a first guess, and the slips that were committed last
-        ball_rate, ball_gain : the rate of a ball is ball_gain * ball + ball_rate [m/s]
-        dt : step since the law's ``memory`` (2 Z, m) was committed [s]; None for ``law_state``
+        ball_rate : (Z, ``ball_columns``), the rate of a ball is step.gain * ball + ball_rate [m/s]
+        step : since the law's memory was committed
 
         Raises
         ------
@@ -146,7 +143,7 @@ class System(Ring):
         PluginError
             An array of another shape: a compiled kernel would write beyond it.
         """
-        check_state(self, "System.evaluate()", q=q, v=v, ball=ball, ball_rate=ball_rate, memory=memory)
+        check_state(self, "System.evaluate()", q=q, v=v, ball=ball, ball_rate=ball_rate, memory=step.memory)
         z = self.ball_count
         scalars = self.scalars
         rate = np.zeros((z, self.ball_columns))
@@ -162,11 +159,11 @@ class System(Ring):
         v = np.zeros(5) if v is None else np.ascontiguousarray(v, dtype=float)
         work = self._work()
         f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
-        old = self.law_state if memory is None else memory
+        old = self.law_state if step.memory is None else step.memory
         new = old.copy()
-        contacts = Contacts(self.law, self.law_params, old, new, dt)
+        contacts = Contacts(self.law, self.law_params, old, new, step.dt)
         status = self.kernel(
-            t, np.ascontiguousarray(q, dtype=float), v, Balls(ball, ball_gain, rate), contacts,
+            t, np.ascontiguousarray(q, dtype=float), v, Balls(ball, step.gain, rate), contacts,
             Constants(scalars, self.table), Response(f, K, C, work),
         )  # fmt: skip
         if status != 0:
