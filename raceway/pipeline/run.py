@@ -26,6 +26,7 @@ from raceway.pipeline.error.estimate import error_table, no_error
 from raceway.pipeline.error.misfit import misfit_warnings
 from raceway.pipeline.error.other_start import start_warnings
 from raceway.pipeline.error.series import series_warnings, with_series_error
+from raceway.pipeline.error.steady_motion import Settled
 from raceway.pipeline.plausibility import inertia_warnings, motion_warnings, refuse_impossible
 from raceway.pipeline.result import Result
 from raceway.pipeline.settle import settle
@@ -127,12 +128,13 @@ def _run(
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
         identified = working_clock()
+        steady = Settled(model)
         if allowance.spent:  # what is computed is kept
             warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
             error = no_error("the run went far beyond its plan")
         else:
-            error = error_table(model, equilibrium, motions, identification, allowance.check)
-        identification = with_series_error(model, identification, error, allowance.check)
+            error = error_table(model, equilibrium, motions, identification, steady, allowance.check)
+        identification = with_series_error(model, identification, error, steady, allowance.check)
         error_s = working_clock() - identified
     done = working_clock()
     compile_s = take_compile_seconds()

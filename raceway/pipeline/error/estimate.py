@@ -34,7 +34,7 @@ from raceway.pipeline.error.finer_series import finer_value, more_equilibria
 from raceway.pipeline.error.free_vibration import Clean, without_free_vibration
 from raceway.pipeline.error.misfit import largest_misfit
 from raceway.pipeline.error.other_start import Run, distance
-from raceway.pipeline.error.steady_motion import settled_value
+from raceway.pipeline.error.steady_motion import Settled, settled_value
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 from raceway.planning.recording import fits
@@ -77,6 +77,7 @@ def error_table(
     equilibrium: Equilibrium,
     motions: list[tuple[Model, Simulation]],
     found: Identification,
+    steady: Settled,
     on_progress: OnProgress | None = None,
 ) -> dict[str, Any]:
     """The table ``error``.
@@ -84,6 +85,7 @@ def error_table(
     Parameters
     ----------
     motions : model and motion of each speed; empty where the identifier needs no motion
+    steady : steady motions of an excitation that changes its speed
     on_progress : called in further runs and searches; the error of one that it ends is not known
     """
     table = no_error("")
@@ -95,7 +97,7 @@ def error_table(
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
     else:
         step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness, on_progress)
-        transient = _transient(model, equilibrium, motions, found, step, on_progress)
+        transient = _transient(model, equilibrium, motions, found, step, steady, on_progress)
         if remembers_its_start(model.scene) and transient.size is not None:
             first = motions[-1][1]
             run = second or Run.of(model, equilibrium, first)
@@ -282,6 +284,7 @@ def _transient(
     motions: list[tuple[Model, Simulation]],
     found: Identification,
     step: Part,
+    steady: Settled,
     on_progress: OnProgress | None,
 ) -> Part:
     method, value, simulation = model.scene.integrator.method, found.dynamic_stiffness, motions[-1][1]
@@ -292,7 +295,7 @@ def _transient(
         return Part(0.0, "a series of equilibria: nothing dies out")
     if compares_with_steady_motion(model.scene):
         try:
-            settled = settled_value(model, equilibrium, motions, found, on_progress)
+            settled = settled_value(model, equilibrium, motions, found, steady, on_progress)
         except BeyondPlanError as why:
             return Part(None, f"the search for the steady motion was {why}")
         if settled is not None:
