@@ -112,17 +112,12 @@ def _run(
     else:
         method = scene.identifier.method
         records = []
-        try:
-            if "speeds" in method.needs:
-                motions = simulate_speeds(model, progress)
-                simulation, records = motions[-1][1], [one.record for _, one in motions]
-            elif "record" in method.needs:
-                simulation = simulate(model, equilibrium, progress, near=_followed(scene, near), stay=stay)
-                motions, records = [(model, simulation)], [simulation.record]
-        except ConvergenceError as why:
-            allowance.confirm(why)
-            raise
-        allowance.confirm()
+        if "speeds" in method.needs:
+            motions = simulate_speeds(model, progress)
+            simulation, records = motions[-1][1], [one.record for _, one in motions]
+        elif "record" in method.needs:
+            simulation = simulate(model, equilibrium, progress, near=_followed(scene, near), stay=stay)
+            motions, records = [(model, simulation)], [simulation.record]
         for one, motion in motions:
             refuse_impossible(one, equilibrium, motion.whole)
         identification = method.identify(records, equilibrium, model)

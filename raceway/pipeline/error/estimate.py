@@ -28,7 +28,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.ring import TOLERANCE
 from raceway.core.signals.identification import Identification
-from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
+from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.error.finer_series import finer_value, more_equilibria
 from raceway.pipeline.error.free_vibration import Clean, without_free_vibration
@@ -197,7 +197,7 @@ def _time_step(
         again = [
             simulate(_over(one, turns), _at(one, model, equilibrium), on_progress, other, begun=m) for one, m in motions
         ]
-    except ConvergenceError as why:
+    except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, f"the run with {other} steps a turn failed: {why}"), None
     second = Run.of(model, equilibrium, again[-1]) if other < steps and remembers_its_start(model.scene) else None
     fine, coarse = value, 0j
@@ -248,7 +248,7 @@ def _sampling(
         return Part(None, f"not estimated: the record of a second series with {count} equilibria a turn would not fit")
     try:
         shift = (value - finer_value(model, equilibrium, motions, value, count, on_progress)) / abs(value)
-    except ConvergenceError as why:
+    except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, f"the series of {count} equilibria a turn failed: {why}")
     if abs(shift) <= tolerance:
         return Part(tolerance, "residual that each equilibrium is solved to; more of them change less")
@@ -344,7 +344,7 @@ def _from_other_start(
     words = "friction remembers how the motion began"
     try:
         size, kind = distance(model, equilibrium, first, run, on_progress)
-    except (ConvergenceError, StabilityError) as why:
+    except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, f"{words}, and runs from other starts failed: {why}")
     if not np.isfinite(size):
         return Part(None, f"{words}, and start '{kind}' gives no dynamic stiffness")

@@ -12,7 +12,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.signals.identification import Identification, fourier_line, stiffness
 from raceway.core.stepping.record import Motion, Record, Schedule
-from raceway.errors import BeyondPlanError, RacewayError
+from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation
 
@@ -132,9 +132,7 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnPr
     watch = None if on_progress is None else (lambda done, total: on_progress("the steady motion", done, total))
     try:
         return steady(model.system, start, schedule, _TOLERANCE, on_chunk=watch)
-    except BeyondPlanError:
-        raise
-    except RacewayError:
+    except (ConvergenceError, SceneError):
         return None
 
 
