@@ -149,7 +149,7 @@ def plan(
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    content = make_plan(loaded).as_dict()
+    content = make_plan(loaded, registry=registry).as_dict()
     tell_faults(registry)
     from raceway.commands.screen.plan import plan_screen
 
@@ -178,7 +178,7 @@ def check(
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    make_plan(loaded)
+    make_plan(loaded, registry=registry)
     tell_faults(registry)
     if mistakes := foreseen(loaded):
         raise SceneError(mistakes)

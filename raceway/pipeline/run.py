@@ -89,7 +89,7 @@ def _run(
     patience: float,
     stay: bool,
 ) -> Result:
-    plan = make_plan(scene)
+    plan = make_plan(scene, registry=registry)
     allowance, warned = Allowance.of(plan, patience), []
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
