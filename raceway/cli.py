@@ -30,7 +30,7 @@ from raceway.commands.frame import (
 from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults, writable
 from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
 from raceway.commands.reports import chosen_reports, write_reports
-from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
 from raceway.studies.command import study
 from raceway.studies.compare.command import compare
 from raceway.studies.measured.command import identify
@@ -112,7 +112,7 @@ def run(
 
         try:
             result = compute(loaded, registry, progress, patience=patience)
-        except ConvergenceError as error:
+        except (ConvergenceError, BeyondPlanError) as error:
             _keep_state(error, loaded, folder)
             raise
     content = result.as_dict()
@@ -149,7 +149,7 @@ def plan(
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    content = make_plan(loaded).as_dict()
+    content = make_plan(loaded, registry=registry).as_dict()
     tell_faults(registry)
     from raceway.commands.screen.plan import plan_screen
 
@@ -178,7 +178,7 @@ def check(
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    make_plan(loaded)
+    make_plan(loaded, registry=registry)
     tell_faults(registry)
     if mistakes := foreseen(loaded):
         raise SceneError(mistakes)
@@ -191,7 +191,7 @@ def check(
     return 0
 
 
-def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
+def _keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
     """Write the last good state of a run that failed, and say so in the error."""
     from raceway.commands.failure import save_failure
 
@@ -200,7 +200,7 @@ def _keep_state(error: ConvergenceError, scene: Scene, folder: Path) -> None:
     except RacewayError as why:
         error.add_note(f"the last good state is lost: {why}")
         return
-    error.files = {path.stem.replace("-", "_"): str(path) for path in paths}  # type: ignore[attr-defined]
+    error.files = {path.stem.replace("-", "_"): str(path) for path in paths}
     what = "failure and last good state" if len(paths) > 1 else "failure"
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
 

@@ -1,8 +1,8 @@
 """The exceptions of the package, one class by who must act.
 
 ``SceneError``: the user's file; ``PluginError``: a plug-in's author; ``MeshError``: the mesh;
-``ConvergenceError`` and ``StabilityError``: the numbers.  The command line turns the first three into
-exit code 2 and the last two into exit code 1.
+``ConvergenceError`` and ``StabilityError``: the numbers; ``BeyondPlanError``: the time.  The command line
+turns the first three into exit code 2 and the others into exit code 1.
 """
 
 from __future__ import annotations
@@ -14,9 +14,20 @@ import attrs
 
 
 class RacewayError(Exception):
-    """Anything that this package refuses or fails at, with a message for a person."""
+    """Anything that this package refuses or fails at, with a message for a person.
+
+    Attributes
+    ----------
+    state : the last good arrays of a run, by name
+    files : what the command line has written of it, path by name
+    """
 
     exit_code = 2
+
+    def __init__(self, message: str = "", state: dict[str, Any] | None = None) -> None:
+        super().__init__(message)
+        self.state = state or {}
+        self.files: dict[str, str] = {}
 
 
 def extra(name: str) -> str:
@@ -77,17 +88,15 @@ class MeshError(RacewayError):
 
 
 class ConvergenceError(RacewayError):
-    """A solver that found no solution.  ``state`` holds the last good arrays, by name."""
+    """A solver that found no solution; ``state`` holds the last good arrays."""
 
     exit_code = 1
 
-    def __init__(self, message: str, state: dict[str, Any] | None = None) -> None:
-        super().__init__(message)
-        self.state = state or {}
 
+class BeyondPlanError(RacewayError):
+    """A run that was stopped because it took many times its plan; no search takes it for a solution that was not found."""
 
-class BeyondPlanError(ConvergenceError):
-    """A run that was stopped because it took many times its plan."""
+    exit_code = 1
 
 
 class StabilityError(ConvergenceError):

@@ -17,7 +17,7 @@ from raceway.studies.compare import study
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
 from raceway.studies.compare.phrases import percent
-from raceway.studies.compare.study import compare, tables_at
+from raceway.studies.compare.study import StudyInterrupt, compare, tables_at
 from raceway.studies.many.axes import MOST_POINTS, parse_axes, points
 
 SCENE = {
@@ -192,7 +192,7 @@ def test_interruption_keeps_the_finished_rows():
         if done == 2:
             raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt) as caught:
+    with pytest.raises(StudyInterrupt) as caught:
         compare(SCENE, ["excitation.speed_rpm=12000:13000:3"], on_progress=stop)
     partial = caught.value.partial
     assert len(partial.rows) == 2 and partial.table() and partial.words

@@ -11,7 +11,7 @@ from raceway import scene_from_dict
 from raceway.commands.screen.text import number_within
 from raceway.pipeline.error import estimate as error_estimate
 from raceway.pipeline.error.finer_series import more_equilibria
-from raceway.pipeline.error.steady_motion import settles_elsewhere
+from raceway.pipeline.error.steady_motion import _at_speed, settles_elsewhere
 from raceway.pipeline.run import run
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
 from validation.error_estimate import CASES, judge, right
@@ -88,14 +88,19 @@ def test_fits_over_speeds_and_run_ups_have_a_part_for_the_transient():
     assert rubbing["how"]["total"] == "not estimated: that of the transient is not known"
 
 
-def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed():
+def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed(monkeypatch):
     tables = rotating(1000.0, "locked", 12000.0, False, "newmark")
     tables["excitation"] = {
         "kind": "run_up", "first_speed_rpm": 9000.0, "speed_rpm": 12000.0, "duration_s": 0.2, "unbalance": 3.2e-4,
     }  # fmt: skip
     tables["integrator"] |= {"steps_per_turn": 90}
     tables["identifier"] = {"kind": "order_tracking"}
+    speeds = []
+    monkeypatch.setattr(
+        "raceway.pipeline.error.steady_motion._at_speed", lambda *given: (speeds.append(given[1]), _at_speed(*given))[1]
+    )
     found = run(scene_from_dict(tables))
+    assert speeds == [speed for speed, _ in found.identification.series]  # for both error and series: once
     rpm = found.identification.frequency_hz * 60.0
     steady = {**tables, "integrator": {"kind": "periodic"}, "identifier": {"kind": "fft_1x"}}
     steady["excitation"] = {"kind": "bidirectional", "speed_rpm": rpm, "unbalance": 3.2e-4}

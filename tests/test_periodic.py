@@ -13,7 +13,7 @@ from scipy.linalg import expm
 
 from raceway import scene_from_dict
 from raceway.core.periodic.branch import Branch
-from raceway.core.periodic.collocation import solve
+from raceway.core.periodic.collocation import _newton, solve
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
 from raceway.core.periodic.first_guess import guess, response
 from raceway.core.periodic.from_rest import from_rest
@@ -258,6 +258,20 @@ def test_rates_of_the_balls_are_the_derivatives_of_their_places(damping):
     ahead, behind = (motion_at(problem, path, angles + sign * step)[3][:, :, :2] for sign in (1.0, -1.0))
     rate = motion_at(problem, path, angles)[4][:, :, :2]
     assert np.abs((ahead - behind) / (2.0 * step) * problem.speed - rate).max() < 1e-3 * np.abs(rate).max()
+
+
+def test_a_motion_of_which_rounding_is_much_takes_no_finer_mesh(monkeypatch):
+    """Of some 1e-13 m beside 1e-5 m from zero, with dashpots: neither finer meshes nor more turns of the rates tell more."""
+    taken = []
+    monkeypatch.setattr(
+        "raceway.core.periodic.collocation._newton", lambda *given: (taken.append(given[1].intervals), _newton(*given))[1]
+    )
+    model = model_of(scene(contact={"damping": 500.0}, excitation={"unbalance": 1e-13}))
+    equilibrium = settle(model)
+    problem = Problem(model.system, 1256.0, one_turn(model.system))
+    refined = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8).refined
+    assert 1e-8 < refined.error <= refined.solved.rounding < 1e-3
+    assert len(taken) <= 5 and len(set(taken)) == 1
 
 
 def test_dashpots_are_noticed():

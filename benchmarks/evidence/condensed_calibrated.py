@@ -217,7 +217,7 @@ array_cache.folder = lambda: Path(sys.argv[1])
 from validation.scenes import settled
 from benchmarks.evidence.condensed_calibrated import peak_bytes, tables
 
-from raceway.bodies import compliances
+from raceway.bodies.condensed import compliances
 
 rigid = {**tables(), "bodies": {"kind": "rigid"}}
 settled(rigid)

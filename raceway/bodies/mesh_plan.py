@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.bodies.meshing import scene_mesher
 from raceway.errors import MeshError, Mistake, PluginError
+from raceway.framework.sources import blamed
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
     MeshError
         Sizes that cannot work.
     PluginError
-        A mesher whose prediction is none.
+        A mesher whose prediction is none, or that raises anything but a ``RacewayError``.
     """
     found = None if scene.mesh is None else _prediction(scene)
     if found is None:
@@ -69,7 +70,8 @@ def _prediction(scene: Scene) -> Prediction | None:
         return None
     from raceway.core.mesh.size import Prediction, refuse_memory
 
-    found = mesher.predict(scene.bearing)
+    with blamed(f"mesher '{mesher.name}'", "predict()"):
+        found = mesher.predict(scene.bearing)
     if found is None:  # it cannot tell before it reads or meshes
         return None
     if isinstance(found, Mapping) and all(isinstance(cells, int) for cells in found.values()):

@@ -9,6 +9,7 @@ import attrs
 
 from raceway.bodies.mesh_fit import check_size
 from raceway.errors import MeshError, PluginError, SceneError
+from raceway.framework.sources import blamed
 from raceway.planning.closed_form import axial_approach
 from raceway.scene.tables import Scene
 
@@ -40,13 +41,14 @@ def mesh_scene(scene: Scene) -> dict[str, HexMesh]:
     MeshError
         What the mesher refuses, a bad cell, or a body in other units than metres.
     PluginError
-        A mesher that returns something else.
+        A mesher that returns something else, or raises anything but a ``RacewayError``.
     """
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.mesh.quality import refuse_bad_cells
 
     mesher = scene_mesher(scene)
-    found = mesher.mesh(scene.bearing)
+    with blamed(f"mesher '{mesher.name}'", "mesh()"):
+        found = mesher.mesh(scene.bearing)
     if not isinstance(found, Mapping) or not found:
         raise PluginError(f"mesher '{mesher.name}': mesh() returned {type(found).__name__}; it must be meshes by name")
     out: dict[str, HexMesh] = {}

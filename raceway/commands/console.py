@@ -86,7 +86,7 @@ def report(error: Exception, as_json: bool) -> int:
     code, items = described(error)
     if as_json:
         try:
-            print_json({"errors": items, **getattr(error, "files", {})})
+            print_json({"errors": items, **(error.files if isinstance(error, RacewayError) else {})})
             return code
         except BrokenPipeError:
             raise

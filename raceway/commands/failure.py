@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from raceway.errors import ConvergenceError
+from raceway.errors import RacewayError
 from raceway.pipeline.result import without_nan, write_json
 from raceway.scene.tables import Scene
 from raceway.storage.files import write_whole
 
 
-def save_failure(error: ConvergenceError, scene: Scene, folder: Path) -> list[Path]:
+def save_failure(error: RacewayError, scene: Scene, folder: Path) -> list[Path]:
     """Write ``failure.json`` and, where there are arrays, ``last-good-state.npz``; an older ``result.json`` is renamed.
 
     Parameters

@@ -30,7 +30,7 @@ def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
     exact = os.environ.get("RACEWAY_PLUGINS")
     if exact is not None:
         wanted = _names(exact)
-        missing = sorted(wanted - {name for p in points for name in _called(p)})
+        missing = sorted(wanted - every)
         points = [p for p in points if wanted & _called(p)]
     blocked = _names(os.environ.get("RACEWAY_DISABLE", ""))
     known = sorted(every)
@@ -76,12 +76,12 @@ def blamed(who: str, duty: str) -> Iterator[None]:
     Raises
     ------
     PluginError
-        Instead of anything but a ``RacewayError``, which passes through.
+        Instead of anything but a ``RacewayError`` and a lack of memory, which pass through.
     """
     try:
         with foreign_words():
             yield
-    except RacewayError:
+    except (RacewayError, MemoryError):
         raise
     except BaseException as why:
         if not is_foreign_fault(why):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 
 from raceway.core.jit import working_processor_time
-from raceway.errors import BeyondPlanError, ConvergenceError
+from raceway.errors import BeyondPlanError
 from raceway.planning.plan import Plan
 
 #: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.
@@ -21,13 +21,11 @@ class Allowance:
     Attributes
     ----------
     planned : predicted time of the whole run;  patience : how many times that may pass;  begun : reading of the clock
-    stopped : the error that ended the run; a search for motions tries elsewhere where one fails, and may end with another one
     """
 
     planned: float
     patience: float
     begun: float = attrs.field(factory=lambda: working_processor_time())
-    stopped: BeyondPlanError | None = None
 
     @classmethod
     def of(cls, plan: Plan, patience: float) -> Allowance:
@@ -57,16 +55,7 @@ class Allowance:
             Much more than the plan's time is gone, and steps are left.
         """
         if self.spent and not 0 < total <= done:
-            self.stopped = self.stopped or BeyondPlanError(
-                self.words(f"stopped far beyond the plan, in {what}, {_told(done, total)} done")
-            )
-            raise self.stopped
-
-    def confirm(self, why: ConvergenceError | None = None) -> None:
-        """Raise the error that ended the run, if one did; ``why``: what it ended with instead."""
-        if self.stopped is not None and self.stopped is not why:
-            self.stopped.state = self.stopped.state or ({} if why is None else why.state)
-            raise self.stopped from why
+            raise BeyondPlanError(self.words(f"stopped far beyond the plan, in {what}, {_told(done, total)} done"))
 
 
 def _told(done: int, total: int) -> str:

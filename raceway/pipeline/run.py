@@ -26,6 +26,7 @@ from raceway.pipeline.error.estimate import error_table, no_error
 from raceway.pipeline.error.misfit import misfit_warnings
 from raceway.pipeline.error.other_start import start_warnings
 from raceway.pipeline.error.series import series_warnings, with_series_error
+from raceway.pipeline.error.steady_motion import Settled
 from raceway.pipeline.plausibility import inertia_warnings, motion_warnings, refuse_impossible
 from raceway.pipeline.result import Result
 from raceway.pipeline.settle import settle
@@ -88,7 +89,7 @@ def _run(
     patience: float,
     stay: bool,
 ) -> Result:
-    plan = make_plan(scene)
+    plan = make_plan(scene, registry=registry)
     allowance, warned = Allowance.of(plan, patience), []
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
@@ -111,28 +112,24 @@ def _run(
     else:
         method = scene.identifier.method
         records = []
-        try:
-            if "speeds" in method.needs:
-                motions = simulate_speeds(model, progress)
-                simulation, records = motions[-1][1], [one.record for _, one in motions]
-            elif "record" in method.needs:
-                simulation = simulate(model, equilibrium, progress, near=_followed(scene, near), stay=stay)
-                motions, records = [(model, simulation)], [simulation.record]
-        except ConvergenceError as why:
-            allowance.confirm(why)
-            raise
-        allowance.confirm()
+        if "speeds" in method.needs:
+            motions = simulate_speeds(model, progress)
+            simulation, records = motions[-1][1], [one.record for _, one in motions]
+        elif "record" in method.needs:
+            simulation = simulate(model, equilibrium, progress, near=_followed(scene, near), stay=stay)
+            motions, records = [(model, simulation)], [simulation.record]
         for one, motion in motions:
             refuse_impossible(one, equilibrium, motion.whole)
         identification = method.identify(records, equilibrium, model)
         _refuse_no_number(identification)
         identified = working_clock()
+        steady = Settled(model)
         if allowance.spent:  # what is computed is kept
             warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
             error = no_error("the run went far beyond its plan")
         else:
-            error = error_table(model, equilibrium, motions, identification, allowance.check)
-        identification = with_series_error(model, identification, error, allowance.check)
+            error = error_table(model, equilibrium, motions, identification, steady, allowance.check)
+        identification = with_series_error(model, identification, error, steady, allowance.check)
         error_s = working_clock() - identified
     done = working_clock()
     compile_s = take_compile_seconds()

@@ -18,13 +18,10 @@ from raceway.errors import StabilityError
 from raceway.pipeline.settle import settle
 from raceway.pipeline.starting import Start, chosen_start
 from raceway.planning.plan import make_plan
-from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn
+from raceway.planning.recording import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
 OnProgress = Callable[[str, int, int], None]
-#: Part of the stable limit, taken at the stiffest tangent of the orbit, that "auto" steps take. Balls that leave and meet the
-#: races each turn pump motions up a little below the limit of the frozen tangent: one orbit at 0.885 of it grew in 49 turns.
-SAFETY = 0.8
 
 
 @attrs.frozen(eq=False)
@@ -147,8 +144,7 @@ def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
         return given
     if model.scene.integrator.method.implicit or critical is None:
         return STEPS_PER_TURN
-    needed = ceil(period / (SAFETY * critical))
-    return STEPS_PER_TURN * max(1, ceil(needed / STEPS_PER_TURN))
+    return stable_steps_per_turn(period, critical)
 
 
 def _stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:

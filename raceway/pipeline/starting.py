@@ -12,7 +12,7 @@ from raceway.bodies.model import Model
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.surrogate import compiled
-from raceway.errors import BeyondPlanError, ConvergenceError
+from raceway.errors import ConvergenceError
 from raceway.planning.steady_orbits import searches_orbits
 
 Watch = Callable[[], None]
@@ -89,8 +89,6 @@ def _on_orbit(model: Model, equilibrium: Equilibrium, system: Ring, period: floa
             if found is not None:
                 return _told(model, found.orbit, found.told, found.warnings)
         return Start("orbit", steady_orbit(system, period, q))
-    except BeyondPlanError:
-        raise
     except ConvergenceError as why:
         return Start("ramp", settled=False, warnings=(f"{why}: started with a ramp instead",))
 

@@ -14,7 +14,7 @@ from typing import Any
 import attrs
 
 from raceway.framework.duties import bodies, traits_of
-from raceway.framework.registry import default_registry
+from raceway.framework.registry import Registry
 from raceway.planning.decisions import Balls
 from raceway.planning.steady_orbits import compares_with_steady_motion, has_orbits, remembers_its_start, searches_orbits
 from raceway.scene.tables import Scene
@@ -37,11 +37,12 @@ class Module:
     why: str
 
 
-def optional_modules(scene: Scene, balls: Balls, integrates: bool) -> tuple[Module, ...]:
+def optional_modules(scene: Scene, registry: Registry, balls: Balls, integrates: bool) -> tuple[Module, ...]:
     """Every optional module with its decision.
 
     Parameters
     ----------
+    registry : whose kinds of bodies are told of
     balls : as planned;  integrates : whether an integrator takes part
     """
     found: list[Module] = []
@@ -50,7 +51,7 @@ def optional_modules(scene: Scene, balls: Balls, integrates: bool) -> tuple[Modu
         found.append(Module(module, needed, why if needed else why_not))
 
     imported = bodies(scene, "imports", balls)
-    known: list[Any] = [entry.plugin for entry in default_registry().all() if entry.kind == "bodies"]
+    known: list[Any] = [entry.plugin for entry in registry.all() if entry.kind == "bodies"]
     for module in dict.fromkeys((*scene.bodies.modules, *(module for kind in known for module in kind.modules))):
         why_not = f"bodies.kind is {scene.bodies.name}, the balls are {balls.kind}"
         decide(module in imported, module, imported.get(module, ""), why_not)

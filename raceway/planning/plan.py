@@ -13,6 +13,7 @@ from typing import Any
 import attrs
 
 from raceway.framework.duties import bodies
+from raceway.framework.registry import Registry, default_registry
 from raceway.planning.combinations import refuse_what_cannot_run
 from raceway.planning.decisions import decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.machine import slowness
@@ -73,12 +74,13 @@ class Plan:
         }
 
 
-def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
+def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | None = None) -> Plan:
     """Decide what a scene needs.
 
     Parameters
     ----------
     force : parts that are kept although the scene does not need them: to measure what leaving them out saves
+    registry : that the scene was made with, whose kinds of bodies the modules are told of
 
     Raises
     ------
@@ -113,7 +115,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         predicted_work_s=cost.seconds,
         predicted_once_s=cost.once,
         mesh=cost.mesh,
-        modules=optional_modules(scene, balls, motion.recorded),
+        modules=optional_modules(scene, registry or default_registry(), balls, motion.recorded),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from types import ModuleType
 from typing import ClassVar
 
 import attrs
@@ -11,8 +12,11 @@ import pytest
 from raceway import load_scene, scene_from_dict
 from raceway.bodies.mesh_plan import predicted_mesh
 from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.rigid.kind import Rigid
 from raceway.commands.screen import plan_screen
 from raceway.errors import MeshError, PluginError, SceneError
+from raceway.framework.hookspecs import hookimpl
+from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
@@ -161,3 +165,53 @@ def test_other_meshers_predictions_are_judged():
         predicted_mesh(attrs.evolve(chosen, mesh=Guessing({"ball_0": 10**9})))
     with pytest.raises(PluginError, match="predict\\(\\) returned float; it must be body -> number of cells"):
         predicted_mesh(attrs.evolve(chosen, mesh=Guessing(7.0)))
+
+
+@attrs.frozen
+class Raising:
+    """A mesher of a third party whose own code fails."""
+
+    name: ClassVar[str] = "raising"
+    error: Exception
+
+    def predict(self, bearing):
+        raise self.error
+
+    def mesh(self, bearing):
+        raise self.error
+
+
+@pytest.mark.parametrize(("duty", "call"), [("mesh", mesh_scene), ("predict", predicted_mesh), ("predict", make_plan)])
+def test_what_a_mesher_raises_is_put_to_its_name(duty, call):
+    with pytest.raises(PluginError, match=rf"^mesher 'raising': {duty}\(\) raises KeyError: 'teeth'"):
+        call(attrs.evolve(scene(), mesh=Raising(KeyError("teeth"))))
+
+
+def test_want_of_memory_is_no_fault_of_a_mesher():
+    """The command line says what to do about it."""
+    with pytest.raises(MemoryError):
+        mesh_scene(attrs.evolve(scene(), mesh=Raising(MemoryError())))
+
+
+def test_a_plan_tells_modules_of_the_given_registry_s_bodies():
+    @attrs.frozen
+    class Other(Rigid):
+        """Bodies of one registry only."""
+
+        name: ClassVar[str] = "other"
+        modules: ClassVar[tuple[str, ...]] = ("other_bodies",)
+
+    registry = Registry(third_party=False)
+    plugin = ModuleType("other")
+
+    @hookimpl
+    def raceway_bodies():
+        return [Other]
+
+    plugin.raceway_bodies = raceway_bodies
+    registry.add(plugin)
+    assert not registry.faults
+    chosen = scene("rigid")
+    found = {one.module: one.needed for one in make_plan(attrs.evolve(chosen, mesh=None), registry=registry).modules}
+    assert found["other_bodies"] is False
+    assert "other_bodies" not in {one.module for one in make_plan(attrs.evolve(chosen, mesh=None)).modules}

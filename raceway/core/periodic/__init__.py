@@ -19,7 +19,6 @@ from_rest       the branch that grows out of rest with the force
 detour          a motion reached from another speed
 search          all motions that are found, directly and along branches
 beginning       the motion that a transient starts on
-stop            an end to a search
 floquet         Floquet multipliers and stability
 sampling        equidistant samples of the motion, as a ``Record``
 told            found motions as tables of a result

@@ -21,12 +21,11 @@ from raceway.core.periodic.problem import Problem
 from raceway.core.periodic.refinement import refine
 from raceway.core.periodic.sampling import states
 from raceway.core.periodic.search import Found, can_follow, find, found_by
-from raceway.core.periodic.stop import passed_on, stopping
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.ring.address import by_address
 from raceway.core.ring.orbit import Orbit, States, evaluate_many, steady_orbit
 from raceway.core.ring.system import System
-from raceway.errors import BeyondPlanError, ConvergenceError
+from raceway.errors import ConvergenceError
 
 #: Samples of an orbit, as many as Fourier collocation has, and error of the search over the motion.
 _SAMPLES, _TOLERANCE = 65, 1e-7
@@ -67,12 +66,9 @@ def beginning(system: System, period: float, q: np.ndarray, watch: Callable[[], 
     if not can_follow(problem, q, tangent):
         return None
     if watch is not None:
-        problem = attrs.evolve(problem, watch=stopping(watch))
+        problem = attrs.evolve(problem, watch=watch)
     try:
-        with passed_on():
-            found = find(problem, q, tangent, _TOLERANCE)
-    except BeyondPlanError:
-        raise
+        found = find(problem, q, tangent, _TOLERANCE)
     except ConvergenceError:
         orbit, highest = steady_orbit(system, period, q, _SAMPLES), highest_order(problem, tangent)
         try:

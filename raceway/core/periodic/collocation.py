@@ -10,6 +10,7 @@ from raceway.core.periodic.newton import (
     CORRECTION,
     IMBALANCE,
     REPORT,
+    ROUNDING,
     SHORTENED,
     SINGULAR,
     SIZE,
@@ -48,6 +49,11 @@ class Solved:
     sweeps: int
     correction: float
 
+    @property
+    def rounding(self) -> float:
+        """What rounding the displacements leaves of error, over the motion's size: much of a motion of picometres."""
+        return ROUNDING * float(np.abs(self.path.q / self.problem.weight).max()) / max(self.size, 1e-300)
+
 
 def gap(problem: Problem, path: Path) -> np.ndarray:
     """Gap between the end of a path (2 n,) and the rotated state of its beginning: y_m - P y_0 of the unknown states."""
@@ -80,8 +86,10 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
         sweeps += found.sweeps
         last, change = change, float(np.abs((found.path.q - path.q) / problem.weight).max())
         path = found.path
-        if turn > 0 and (change <= 10.0 * tolerance * found.size or (change >= last and change <= _LEFT * found.size)):
+        enough = 10.0 * max(tolerance, found.rounding) * found.size
+        if turn > 0 and (change <= enough or (change >= last and change <= _LEFT * found.size)):
             return attrs.evolve(found, sweeps=sweeps)
+        problem.watch()
         renew(problem, path, True)
     raise ConvergenceError(
         f"no periodic motion found near the first guess: the rates of the balls change it by {change:.2g} m still: too "

@@ -9,8 +9,8 @@ import numpy as np
 
 from raceway.core.periodic.branch import Branch, towards
 from raceway.core.periodic.collocation import solve
-from raceway.core.periodic.direct import ROUGH, directly, grown
-from raceway.core.periodic.from_rest import MOST, POINTS
+from raceway.core.periodic.direct import MOST, ROUGH, directly, grown
+from raceway.core.periodic.from_rest import POINTS
 from raceway.core.periodic.problem import Problem
 from raceway.core.periodic.refinement import Refined, refine
 from raceway.errors import ConvergenceError

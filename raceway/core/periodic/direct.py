@@ -23,8 +23,10 @@ _INTERVALS, _PER_ORDER = 24, 1.5
 HIGHEST = 2000.0
 #: Sweeps of an iteration with full steps only.
 _LIMIT = 12
-#: First and least step of a growing force, and intervals from which on the least is half the first.
-_FIRST_SHARE, _LEAST_SHARE, _LARGE = 0.25, 0.02, 512
+#: Intervals of meshes that branches are followed on.
+MOST = 512
+#: First and least step of a growing force; on larger meshes the least is half the first.
+_FIRST_SHARE, _LEAST_SHARE = 0.25, 0.02
 #: Relative error of motions on the way.
 ROUGH = 1e-4
 
@@ -82,7 +84,7 @@ def grown(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float
         except ConvergenceError:
             step *= 0.5
             # A large mesh makes small steps dear; none leads round a fold anyway.
-            if step < (_LEAST_SHARE if len(nodes) <= _LARGE else 0.5 * _FIRST_SHARE):
+            if step < (_LEAST_SHARE if len(nodes) <= MOST else 0.5 * _FIRST_SHARE):
                 raise
             continue
         share, gap = share + step, step

@@ -11,7 +11,7 @@ import numpy as np
 from raceway.core.periodic.arrays import Eliminated
 from raceway.core.periodic.branch import Branch, Point, towards
 from raceway.core.periodic.collocation import Solved, solve
-from raceway.core.periodic.direct import ROUGH
+from raceway.core.periodic.direct import MOST, ROUGH
 from raceway.core.periodic.first_guess import response, standing
 from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.refinement import Refined, refine
@@ -20,8 +20,8 @@ from raceway.core.periodic.sweep import forces
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.errors import ConvergenceError
 
-#: Points of a branch, and intervals of its meshes.
-POINTS, MOST = 120, 512
+#: Points of a branch.
+POINTS = 120
 #: Share of the force up to which the branch from rest is followed for its folds: a Duffing oscillator whose motion differs
 #: by a tenth from its linear response (``neighbour.MOST_NONLINEAR``) folds at 1.35 times the force, the internal resonances
 #: of the article's scene with tilt free at 1.6 and 1.8 times.

@@ -26,7 +26,7 @@ class Problem:
     free : (n,) numbers of the unknown coordinates
     weight : (5,) makes moments forces; lengths of tilts are tilts over it
     closing : (2 n, 2 n) rotation of an unknown state (q, v) by the span
-    watch : called between the tries of a search, which a ``Stopped`` of it ends
+    watch : called between the tries of a search, which what it raises ends
     """
 
     system: System

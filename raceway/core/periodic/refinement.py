@@ -133,7 +133,7 @@ def refine(solved: Solved, tolerance: float) -> Refined:
 
     Notes
     -----
-    An error far below rounding's share, or a mesh that reaches ``MOST_INTERVALS``, ends it too; the error says so.
+    An error within rounding's share, or a mesh that reaches ``MOST_INTERVALS``, ends it too; the error says so.
     """
     problem = solved.problem
     s = len(problem.rule.points)
@@ -143,7 +143,7 @@ def refine(solved: Solved, tolerance: float) -> Refined:
         found = estimate(solved)
         m = solved.path.intervals
         evaluations += m * extra
-        if found.error <= tolerance or rounds == _ROUNDS - 1:
+        if found.error <= max(tolerance, solved.rounding) or rounds == _ROUNDS - 1:
             break
         wanted = tolerance * solved.size
         carried = float(np.abs(found.field / problem.weight).max())
@@ -158,6 +158,7 @@ def refine(solved: Solved, tolerance: float) -> Refined:
         nodes, parent = divided(solved.path.nodes, parts)
         if len(nodes) > MOST_INTERVALS:
             break
+        problem.watch()
         solved = solve(problem, resampled(problem, solved.path, nodes, parent), _NEWTON * tolerance)
         sweeps += solved.sweeps
         evaluations += solved.sweeps * solved.path.intervals * s

@@ -6,10 +6,10 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.detour import from_other_speeds
-from raceway.core.periodic.direct import directly, full_steps, grown, highest_order, mesh_of
+from raceway.core.periodic.direct import MOST, directly, full_steps, grown, highest_order, mesh_of
 from raceway.core.periodic.first_guess import standing
 from raceway.core.periodic.floquet import Floquet, floquet
-from raceway.core.periodic.from_rest import MOST, Trail, at_whole_force, trail
+from raceway.core.periodic.from_rest import Trail, at_whole_force, trail
 from raceway.core.periodic.neighbour import Neighbour, Recorded, neighbour_of
 from raceway.core.periodic.problem import Problem
 from raceway.core.periodic.rates import stiff

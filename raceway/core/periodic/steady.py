@@ -11,7 +11,6 @@ import numpy as np
 from raceway.core.periodic.direct import problem_of
 from raceway.core.periodic.sampling import record
 from raceway.core.periodic.search import Found, find
-from raceway.core.periodic.stop import passed_on, stopping
 from raceway.core.periodic.told import orbits, several, unstable
 from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
@@ -60,9 +59,8 @@ def steady(
         )
         raise SceneError.at("integrator.kind", "periodic", why)
     if on_chunk is not None:
-        problem = attrs.evolve(problem, watch=stopping(lambda: on_chunk(0, schedule.steps)))
-    with passed_on():
-        found = find(problem, q, tangent, tolerance, start.near, start.stay)
+        problem = attrs.evolve(problem, watch=lambda: on_chunk(0, schedule.steps))
+    found = find(problem, q, tangent, tolerance, start.near, start.stay)
     refined, told = found.refined, orbits(found.all)
     counts = {
         "steps": refined.solved.path.intervals,

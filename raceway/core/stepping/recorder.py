@@ -8,7 +8,7 @@ import numpy as np
 
 from raceway.core.stepping.protocol import Observation, State, SteppedSystem
 from raceway.core.stepping.record import OnChunk, Record, Schedule
-from raceway.errors import ConvergenceError, StabilityError
+from raceway.errors import ConvergenceError, RacewayError, StabilityError
 
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
 BOUND = 1.0
@@ -91,7 +91,7 @@ class Recorder:
             self._reported = now
             try:
                 self._on_chunk(self._done, schedule.steps)
-            except ConvergenceError as why:
+            except RacewayError as why:
                 why.state = {**self._last_good(), **why.state}
                 raise
 

@@ -28,13 +28,13 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.ring import TOLERANCE
 from raceway.core.signals.identification import Identification
-from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
+from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.error.finer_series import finer_value, more_equilibria
 from raceway.pipeline.error.free_vibration import Clean, without_free_vibration
 from raceway.pipeline.error.misfit import largest_misfit
 from raceway.pipeline.error.other_start import Run, distance
-from raceway.pipeline.error.steady_motion import settled_value
+from raceway.pipeline.error.steady_motion import Settled, settled_value
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 from raceway.planning.recording import fits
@@ -77,6 +77,7 @@ def error_table(
     equilibrium: Equilibrium,
     motions: list[tuple[Model, Simulation]],
     found: Identification,
+    steady: Settled,
     on_progress: OnProgress | None = None,
 ) -> dict[str, Any]:
     """The table ``error``.
@@ -84,6 +85,7 @@ def error_table(
     Parameters
     ----------
     motions : model and motion of each speed; empty where the identifier needs no motion
+    steady : steady motions of an excitation that changes its speed
     on_progress : called in further runs and searches; the error of one that it ends is not known
     """
     table = no_error("")
@@ -95,7 +97,7 @@ def error_table(
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
     else:
         step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness, on_progress)
-        transient = _transient(model, equilibrium, motions, found, step, on_progress)
+        transient = _transient(model, equilibrium, motions, found, step, steady, on_progress)
         if remembers_its_start(model.scene) and transient.size is not None:
             first = motions[-1][1]
             run = second or Run.of(model, equilibrium, first)
@@ -195,7 +197,7 @@ def _time_step(
         again = [
             simulate(_over(one, turns), _at(one, model, equilibrium), on_progress, other, begun=m) for one, m in motions
         ]
-    except ConvergenceError as why:
+    except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, f"the run with {other} steps a turn failed: {why}"), None
     second = Run.of(model, equilibrium, again[-1]) if other < steps and remembers_its_start(model.scene) else None
     fine, coarse = value, 0j
@@ -246,7 +248,7 @@ def _sampling(
         return Part(None, f"not estimated: the record of a second series with {count} equilibria a turn would not fit")
     try:
         shift = (value - finer_value(model, equilibrium, motions, value, count, on_progress)) / abs(value)
-    except ConvergenceError as why:
+    except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, f"the series of {count} equilibria a turn failed: {why}")
     if abs(shift) <= tolerance:
         return Part(tolerance, "residual that each equilibrium is solved to; more of them change less")
@@ -282,6 +284,7 @@ def _transient(
     motions: list[tuple[Model, Simulation]],
     found: Identification,
     step: Part,
+    steady: Settled,
     on_progress: OnProgress | None,
 ) -> Part:
     method, value, simulation = model.scene.integrator.method, found.dynamic_stiffness, motions[-1][1]
@@ -292,7 +295,7 @@ def _transient(
         return Part(0.0, "a series of equilibria: nothing dies out")
     if compares_with_steady_motion(model.scene):
         try:
-            settled = settled_value(model, equilibrium, motions, found, on_progress)
+            settled = settled_value(model, equilibrium, motions, found, steady, on_progress)
         except BeyondPlanError as why:
             return Part(None, f"the search for the steady motion was {why}")
         if settled is not None:
@@ -341,7 +344,7 @@ def _from_other_start(
     words = "friction remembers how the motion began"
     try:
         size, kind = distance(model, equilibrium, first, run, on_progress)
-    except (ConvergenceError, StabilityError) as why:
+    except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, f"{words}, and runs from other starts failed: {why}")
     if not np.isfinite(size):
         return Part(None, f"{words}, and start '{kind}' gives no dynamic stiffness")

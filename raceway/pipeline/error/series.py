@@ -26,23 +26,22 @@ _MUCH = 0.05
 
 
 def with_series_error(
-    model: Model, found: Identification, error: dict[str, Any], on_progress: OnProgress | None = None
+    model: Model, found: Identification, error: dict[str, Any], steady: Settled, on_progress: OnProgress | None = None
 ) -> Identification:
     """The same with ``series_error`` held against steady motions where the speed changes.
 
     Parameters
     ----------
-    error : table ``error`` of the result
+    error : table ``error`` of the result;  steady : motions that it was made with
     on_progress : called in searches for steady motions; of windows whose search it ends no error is stated
     """
     if not found.series_error:
         return found
     held = model.excitation.period_s is None and compares_with_steady_motion(model.scene)
     told: list[float | None] = []
-    motions = Settled(model)
     for (speed, z), own in zip(found.series, found.series_error, strict=True):
         try:
-            settled = motions.value(speed, on_progress) if held else None
+            settled = steady.value(speed, on_progress) if held else None
         except BeyondPlanError:  # of this window and of those to come nothing is known
             told += [None] * (len(found.series) - len(told))
             break

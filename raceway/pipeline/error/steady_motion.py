@@ -12,7 +12,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.signals.identification import Identification, fourier_line, stiffness
 from raceway.core.stepping.record import Motion, Record, Schedule
-from raceway.errors import BeyondPlanError, RacewayError
+from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation
 
@@ -29,6 +29,7 @@ def settled_value(
     equilibrium: Equilibrium,
     motions: list[tuple[Model, Simulation]],
     found: Identification,
+    steady: Settled,
     on_progress: OnProgress | None = None,
 ) -> complex | None:
     """Z [N/m] that the scene's identifier finds in steady motions instead of the recorded ones.
@@ -37,6 +38,7 @@ def settled_value(
     ----------
     motions : model and motion of each speed
     found : what was identified in them; of a speed that changes, the steady motion at the speed of its Z counts
+    steady : motions of an excitation that changes its speed
     on_progress : called in the search, which what it raises ends
 
     Returns
@@ -47,7 +49,6 @@ def settled_value(
     """
     if model.excitation.period_s is None:
         # The windows before lead to that one's motion, where several exist.
-        steady = Settled(model)
         for speed, _ in found.series[:-1]:
             steady.value(speed, on_progress)
         return steady.value(found.speed, on_progress)
@@ -62,20 +63,27 @@ def settled_value(
 
 @attrs.define
 class Settled:
-    """Steady motions of an excitation that changes its speed, speed by speed.
+    """Steady motions of an excitation that changes its speed, speed by speed; each is solved for once.
 
     Attributes
     ----------
+    values : Z [N/m] by speed [rad/s]
     last : the motion at the last speed; where several exist, the next one continues it, as the motion that is integrated does
     missed : speeds in a row without a motion; after some, none is searched for
     """
 
     model: Model
+    values: dict[float, complex | None] = attrs.field(factory=dict)
     last: Record | None = None
     missed: int = 0
 
     def value(self, speed: float, on_progress: OnProgress | None = None) -> complex | None:
         """Z [N/m] at one speed [rad/s]; None where there is no motion that can be solved for, or none is found."""
+        if speed not in self.values:
+            self.values[speed] = self._solved(speed, on_progress)
+        return self.values[speed]
+
+    def _solved(self, speed: float, on_progress: OnProgress | None) -> complex | None:
         one = _at_speed(self.model, speed)
         if one is None or self.missed >= _GIVEN_UP:
             return None
@@ -124,9 +132,7 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnPr
     watch = None if on_progress is None else (lambda done, total: on_progress("the steady motion", done, total))
     try:
         return steady(model.system, start, schedule, _TOLERANCE, on_chunk=watch)
-    except BeyondPlanError:
-        raise
-    except RacewayError:
+    except (ConvergenceError, SceneError):
         return None
 
 

@@ -58,16 +58,16 @@ def compare(
     kept = folder / "compare-rows.jsonl"
     with show_progress() as progress:
         from raceway.pipeline.result import write_json
+        from raceway.studies.compare.study import StudyInterrupt
         from raceway.studies.compare.study import compare as study
 
         stopped = None
         try:
             comparison = study(tables, list(vary), registry, progress, kept)
-        except KeyboardInterrupt as stop:
-            partial = getattr(stop, "partial", None)
-            if partial is None or not partial.rows:
+        except StudyInterrupt as stop:
+            if not stop.partial.rows:
                 raise
-            comparison, stopped = partial, stop  # what is finished is shown and written first
+            comparison, stopped = stop.partial, stop  # what is finished is shown and written first
     content = comparison.as_dict()
     files: list[str] = []
     failed = attempt(lambda: [write_json(content, folder / "compare.json")], files) or comparison.fault

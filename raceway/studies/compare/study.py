@@ -22,6 +22,14 @@ from raceway.studies.many.points import refuse_mistakes, tables_at
 from raceway.studies.many.row_store import RowStore, row_key, tables_key
 
 
+class StudyInterrupt(KeyboardInterrupt):
+    """Ctrl-C in a study; ``partial``: the comparison of the runs that are finished."""
+
+    def __init__(self, partial: Comparison) -> None:
+        super().__init__()
+        self.partial = partial
+
+
 def compare(
     scene_tables: Mapping[str, Any],
     vary: Iterable[str],
@@ -42,8 +50,8 @@ def compare(
     ------
     SceneError
         A mistake in an axis or in the scene; nothing has been run.
-    KeyboardInterrupt
-        Passed on, with the finished rows as a ``Comparison`` in its attribute ``partial``; they are in ``store``, too.
+    StudyInterrupt
+        On Ctrl-C, with the finished rows; they are in ``store``, too.
 
     Notes
     -----
@@ -58,8 +66,7 @@ def compare(
     try:
         work_through(_result, items, kept, local(registry, 0), registry, on_progress=on_progress)
     except KeyboardInterrupt as stop:
-        stop.partial = _comparison(title, axes, places, items, kept, notes)  # type: ignore[attr-defined]
-        raise
+        raise StudyInterrupt(_comparison(title, axes, places, items, kept, notes)) from stop
     return _comparison(title, axes, places, items, kept, notes)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import attrs
 
-from raceway.errors import ConvergenceError, RacewayError
+from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
@@ -183,7 +183,7 @@ def study(
         held = under[grid[place][0]].anew()
         try:
             made[place] = point(place, held)
-        except ConvergenceError as why:
+        except (ConvergenceError, BeyondPlanError) as why:
             return {"answers": [], "reason": str(why)}
         return {"answers": held.given, "reason": ""}
 

@@ -19,8 +19,8 @@ from raceway.core.stepping.record import Motion, Schedule
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import SAFETY
 from raceway.planning.plan import make_plan
+from raceway.planning.recording import SAFETY
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Expectation, Measured, Near, Row, judged
 from raceway.studies.stability.systems import UNDAMPED, scene_at, still
 
