@@ -129,7 +129,7 @@ def require_matplotlib(otherwise: str) -> None:
 
 def has_netcdf() -> bool:
     """Whether labelled results can be written; says what is missing."""
-    missing = [name for name in ("xarray", "h5netcdf", "h5py") if find_spec(name) is None]
+    missing = [name for name in ("h5netcdf", "h5py") if find_spec(name) is None]
     if missing:
         warn(f"no results.nc: it needs {', '.join(missing)}; {extra('sweep')}; points.sqlite holds everything")
     return not missing

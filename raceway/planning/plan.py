@@ -7,7 +7,8 @@ predicts seconds.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
+from functools import partial
 from typing import Any
 
 import attrs
@@ -54,7 +55,12 @@ class Plan:
     predicted_work_s: float
     predicted_once_s: float = 0.0
     mesh: dict[str, Any] | None = None
-    modules: tuple[Module, ...] = ()
+    _modules: Callable[[], tuple[Module, ...]] = attrs.field(default=tuple, eq=False, repr=False)
+
+    @property
+    def modules(self) -> tuple[Module, ...]:
+        """Made when it is asked for: no run asks."""
+        return self._modules()
 
     def keeps(self, part: str) -> bool:
         """Whether a part is kept, by its name."""
@@ -113,7 +119,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         predicted_work_s=cost.seconds,
         predicted_once_s=cost.once,
         mesh=cost.mesh,
-        modules=optional_modules(scene, balls, motion.recorded),
+        modules=partial(optional_modules, scene, balls, motion.recorded),
     )
 
 

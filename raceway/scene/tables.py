@@ -6,6 +6,7 @@ chosen plug-in's own options in its last attribute.
 
 from __future__ import annotations
 
+from functools import cache
 from math import acos, asin, cos, degrees, pi, radians, sin
 from typing import Any
 
@@ -330,15 +331,24 @@ TABLES: dict[str, type] = {
 
 def _plain(part: Any) -> dict[str, Any]:
     out: dict[str, Any] = {}
-    for field in attrs.fields(type(part)):
-        value = getattr(part, field.name)
-        if "plugin" in field.metadata:
+    cls: type = type(part)
+    for name, plugin in _keys(cls):
+        value = getattr(part, name)
+        if plugin:
             out.update(_plain(value))
+        elif isinstance(value, float | str):
+            out[name] = value
         elif attrs.has(type(value)):
-            out[field.name] = _plain(value)
+            out[name] = _plain(value)
         elif value is not None:
-            out[field.name] = _lists(value)
+            out[name] = _lists(value)
     return out
+
+
+@cache
+def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
+    """Names of a table's keys, and whether it is the slot of a plug-in."""
+    return tuple((field.name, "plugin" in field.metadata) for field in attrs.fields(cls))
 
 
 def _lists(value: Any) -> Any:
