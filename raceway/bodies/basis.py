@@ -20,6 +20,7 @@ from raceway.planning.closed_form import axial_approach
 from raceway.planning.plan import Plan
 from raceway.scene.inner_ring import radial_growth, ring_inertia
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen(eq=False)
@@ -105,7 +106,7 @@ def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
     }
 
 
-def excitation(scene: Scene) -> dict[str, Any]:
+def excitation(scene: Scene) -> Tables:
     """The excitation's kernel and parameters."""
     if scene.excitation is None:
         from raceway.core.excitations.harmonic import no_force

@@ -22,6 +22,7 @@ import click
 from raceway.commands.interrupt import Interrupts, farewell, stopped_by
 from raceway.errors import MeshError, RacewayError, SceneError
 from raceway.framework.options import nearest
+from raceway.storage.tables import Tables
 
 
 class _Stopped(BaseException):
@@ -102,7 +103,7 @@ def report(error: Exception, as_json: bool) -> int:
     return code
 
 
-def described(error: Exception) -> tuple[int, list[dict[str, Any]]]:
+def described(error: Exception) -> tuple[int, list[Tables]]:
     """Exit code and ``[{path, value, message}]`` of an exception."""
     if isinstance(error, SceneError):
         return error.exit_code, [{"path": m.path, "value": plain(m.value), "message": m.message} for m in error.mistakes]
@@ -124,7 +125,7 @@ def described(error: Exception) -> tuple[int, list[dict[str, Any]]]:
     return code, [{"path": None, "value": None, "message": message}]
 
 
-def _where(item: dict[str, Any]) -> str:
+def _where(item: Tables) -> str:
     if item["path"] is None:
         return ""
     if item["value"] is None:

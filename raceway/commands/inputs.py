@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.commands.console import warn
 from raceway.errors import Mistake, RacewayError, SceneError, extra
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
@@ -59,7 +60,7 @@ def tell_faults(registry: Registry) -> None:
         warn(f"{text} (not used here)")
 
 
-def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[dict[str, Any], list[Mistake]]:
+def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Mistake]]:
     """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
     from raceway.scene.file import parse_change, read_toml, titled, with_paths, with_value
 

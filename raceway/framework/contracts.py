@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import attrs
 
+from raceway.storage.tables import ReadTables, Tables
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -170,7 +172,7 @@ class Mesher(Protocol):
 
     name: ClassVar[str]
 
-    def mesh(self, bearing: Any) -> Mapping[str, Any]: ...
+    def mesh(self, bearing: Any) -> ReadTables: ...
 
 
 class Format(Protocol):
@@ -272,7 +274,7 @@ class Cost:
     seconds: float
     once: float = 0.0
     unknowns: int | None = None
-    mesh: dict[str, Any] | None = None
+    mesh: Tables | None = None
     scales: bool = True
 
 

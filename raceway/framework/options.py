@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import attrs
 
 from raceway.errors import PluginError
+from raceway.storage.tables import ReadTables
 
 Rule = Callable[[Any, Any, Any], None]
 
@@ -59,7 +60,7 @@ def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
     return worded(check, words, facts)
 
 
-def worded(check: Rule, words: str, facts: Mapping[str, Any] | None = None) -> Rule:
+def worded(check: Rule, words: str, facts: ReadTables | None = None) -> Rule:
     """A rule of one's own with what ``--help``, the documents and the JSON schema say of it."""
     # Functions take attributes, but their type has none.
     check.words = words  # type: ignore[attr-defined]

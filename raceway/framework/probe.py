@@ -12,6 +12,7 @@ import numpy as np
 
 from raceway.errors import PluginError
 from raceway.framework.plugin_kernel import check_compiled
+from raceway.storage.tables import Tables
 
 #: Gaps [m] and rates [m/s] that are tried, all contacts at once.
 _GAPS = (1e-3, 1e-9, 0.0, -1e-9, -1e-6, -1e-5)
@@ -180,7 +181,7 @@ def _guarded(kernel: Any, who: str, where: str, *arguments: Any) -> None:
         ) from why
 
 
-def _check_outputs(outputs: dict[str, Any], who: str, where: str) -> None:
+def _check_outputs(outputs: Tables, who: str, where: str) -> None:
     for word, values in outputs.items():
         if (values == _MARK).any():
             raise PluginError(

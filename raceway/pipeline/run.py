@@ -5,7 +5,6 @@ from __future__ import annotations
 import platform
 import resource
 import sys
-from typing import Any
 
 import attrs
 import numpy as np
@@ -34,6 +33,7 @@ from raceway.planning.implausible import implausible
 from raceway.planning.plan import make_plan
 from raceway.planning.unused import unused
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 
 def run(
@@ -192,7 +192,7 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
     return lines(simulation.record.time, simulation.record.displacement, wanted)
 
 
-def _unresolved(error: dict[str, Any]) -> list[str]:
+def _unresolved(error: Tables) -> list[str]:
     """The first thing to say of a number that is smaller than its error."""
     total = error["total"]
     if total is None or total < 1.0:
@@ -209,9 +209,7 @@ def _refuse_no_number(found: Identification) -> None:
         raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
 
 
-def _cost(
-    simulations: list[Simulation], wall: float, compile_s: float, build: float, solve: float, error: float
-) -> dict[str, Any]:
+def _cost(simulations: list[Simulation], wall: float, compile_s: float, build: float, solve: float, error: float) -> Tables:
     scale = 1 if sys.platform == "darwin" else 1024
     return {
         "wall_s": wall,
@@ -226,7 +224,7 @@ def _cost(
     }
 
 
-def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
+def _stability(motions: list[tuple[Model, Simulation]]) -> Tables:
     """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
     drifts = [one for one in (_drift(*motion) for motion in motions) if one is not None]
     rubbing = [_friction(m, s) for m, s in motions if m.scene.contact.friction > 0.0]
@@ -268,7 +266,7 @@ def _drift(model: Model, simulation: Simulation) -> float | None:
     return None if ring is None else energy_balance(ring, simulation.whole).drift
 
 
-def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
+def _environment(scene: Scene, registry: Registry) -> Tables:
     import numba
 
     from raceway import __version__

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import ceil
-from typing import Any
 
 import attrs
 import numpy as np
@@ -19,6 +18,7 @@ from raceway.pipeline.settle import settle
 from raceway.pipeline.starting import Start, chosen_start
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import STEPS_PER_TURN, recorded_per_turn
+from raceway.storage.tables import Tables
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
 OnProgress = Callable[[str, int, int], None]
@@ -46,7 +46,7 @@ class Simulation:
     warnings: tuple[str, ...]
 
     @property
-    def orbits(self) -> list[dict[str, Any]]:
+    def orbits(self) -> list[Tables]:
         """``motion.orbits`` of result.json: the steady motions that were found; empty where none were looked for."""
         return list(self.whole.counts.get("orbits", self.start.orbits))
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from functools import partial
-from typing import Any
 
 import attrs
 
@@ -21,6 +20,7 @@ from raceway.planning.modules import Module, as_dicts, optional_modules
 from raceway.planning.parts import Decisions, Part
 from raceway.planning.recording import refuse_memory
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen
@@ -54,7 +54,7 @@ class Plan:
     predicted_wall_s: float
     predicted_work_s: float
     predicted_once_s: float = 0.0
-    mesh: dict[str, Any] | None = None
+    mesh: Tables | None = None
     _modules: Callable[[], tuple[Module, ...]] = attrs.field(default=tuple, eq=False, repr=False)
 
     @property
@@ -66,7 +66,7 @@ class Plan:
         """Whether a part is kept, by its name."""
         return any(one.part == part for one in self.kept)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {
             "kept": [attrs.asdict(p) for p in self.kept],
             "left_out": [attrs.asdict(p) for p in self.left_out],

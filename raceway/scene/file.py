@@ -6,7 +6,7 @@ import copy
 import difflib
 import json
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from raceway.scene.requires import check_requires
 from raceway.scene.rig import Rig
 from raceway.scene.structure import structure
 from raceway.scene.tables import TABLES, Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of
 
 #: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
@@ -60,7 +61,7 @@ def _scenes_in(folder: Path) -> list[str]:
     return found
 
 
-def read_toml(path: str | Path) -> dict[str, Any]:
+def read_toml(path: str | Path) -> Tables:
     """The tables of a TOML file.
 
     Raises
@@ -121,7 +122,7 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
     return scene_from_dict(with_paths(tables, Path(path).parent, registry), registry)
 
 
-def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> dict[str, Any]:
+def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
     """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
     result = copy.deepcopy(dict(tables))
     for name, (kind, default) in PLUGIN_TABLES.items():
@@ -138,7 +139,7 @@ def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> d
     return result
 
 
-def titled(tables: Mapping[str, Any], name: str, changes: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, Any]]) -> Tables:
     """The tables with a title that says what was changed, in its second line: the first one tells of the file.
 
     Parameters
@@ -179,7 +180,7 @@ def parse_value(text: str) -> Any:
         return text.strip()
 
 
-def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+def with_value(tables: ReadTables, key: str, value: Any) -> Tables:
     """A copy of the tables with one value set at a dotted key; tables beside the key's are shared with the original."""
     result = dict(tables)
     *parents, last = key.split(".")
@@ -195,7 +196,7 @@ def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any
 
 
 def scene_from_dict(
-    tables: Mapping[str, Any], registry: Registry | None = None, known_parts: dict[Any, Any] | None = None
+    tables: ReadTables, registry: Registry | None = None, known_parts: dict[Any, Any] | None = None
 ) -> Scene:
     """A scene from plain tables, as a TOML file would give them.
 
@@ -229,7 +230,7 @@ def scene_from_dict(
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     else:
         mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
-    parts: dict[str, Any] = {}
+    parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 
     def read(name: str, table: Any, make: Callable[[], Any]) -> Any:
@@ -278,7 +279,7 @@ def rig_of(scene: Scene) -> Rig:
     return rig
 
 
-def _with_preset(table: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
+def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     name = table.get("preset")
     if name is None:
         return table
@@ -309,7 +310,7 @@ _PLACEHOLDER = {
 
 
 def _plugin_table(
-    name: str, kind: str, default: str | None, table: dict[str, Any], registry: Registry, mistakes: list[Mistake]
+    name: str, kind: str, default: str | None, table: Tables, registry: Registry, mistakes: list[Mistake]
 ) -> Any:
     """The plug-in's options, or the core's table with the plug-in in its last attribute."""
     word = table.get("kind", default)

@@ -16,6 +16,7 @@ from cattrs.gen import make_dict_structure_fn, override
 
 from raceway.errors import Mistake
 from raceway.framework.options import nearest
+from raceway.storage.tables import Tables
 
 T = TypeVar("T")
 _MISSING = "is required"
@@ -126,9 +127,7 @@ def _converter() -> cattrs.Converter:
 
     def factory(cls: type) -> Any:
         attrs.resolve_types(cls)
-        overrides: dict[str, Any] = {
-            a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init
-        }
+        overrides: Tables = {a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init}
         inner: Any = make_dict_structure_fn(
             cls, converter, _cattrs_forbid_extra_keys=True, _cattrs_detailed_validation=True, **overrides
         )

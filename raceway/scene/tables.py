@@ -25,6 +25,7 @@ from raceway.framework.options import (
     positive,
     word_or,
 )
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen
@@ -285,7 +286,7 @@ class Scene:
     kinematics: Kinematics
     integrator: Integration
     identifier: Identifying
-    source: dict[str, Any] = attrs.field(repr=False, eq=False)
+    source: Tables = attrs.field(repr=False, eq=False)
 
     @property
     def spin_speed(self) -> float:
@@ -302,9 +303,9 @@ class Scene:
         changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
         return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Every key of the scene file with its value, defaults too; loads again as the same scene."""
-        tables: dict[str, Any] = {"title": self.title}
+        tables: Tables = {"title": self.title}
         for name in TABLES:
             part = getattr(self, name)
             if part is not None:
@@ -329,8 +330,8 @@ TABLES: dict[str, type] = {
 }
 
 
-def _plain(part: Any) -> dict[str, Any]:
-    out: dict[str, Any] = {}
+def _plain(part: Any) -> Tables:
+    out: Tables = {}
     cls: type = type(part)
     for name, plugin in _keys(cls):
         value = getattr(part, name)

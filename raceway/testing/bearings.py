@@ -17,6 +17,7 @@ from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
 from raceway.scene.tables import TABLES, Scene
+from raceway.storage.tables import Tables
 from raceway.testing.asked import Changes
 from raceway.testing.suite import ConformityError
 
@@ -55,7 +56,7 @@ def registry_with(bodies: Any) -> Registry:
     return registry
 
 
-def tables_of(bodies: Any) -> dict[str, Any]:
+def tables_of(bodies: Any) -> Tables:
     """The kind's own ``example_scene()``, or a ball bearing of 30 mm bore under a skew load and a turning force."""
     own = getattr(type(bodies), "example_scene", None)
     return dict(_USUAL if own is None else own())

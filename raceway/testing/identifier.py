@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from raceway.core.signals.identification import Identification
+from raceway.storage.tables import Tables
 from raceway.testing.signals import (
     DAMPING,
     FORCE,
@@ -97,7 +98,7 @@ class IdentifierSuite(Suite):
         for record, (x, f) in zip(records, before, strict=True):
             require(np.array_equal(record.displacement, x) and np.array_equal(record.force, f), "a record was changed")
 
-    def _records(self, identifier: Any, spoilt: dict[str, Any]) -> list[Any]:
+    def _records(self, identifier: Any, spoilt: Tables) -> list[Any]:
         if "speeds" in identifier.needs:
             return [synthetic_record(frequency=r * FREQUENCY, seed=k, **spoilt) for k, r in enumerate(_SPEEDS)]
         return [synthetic_record(**spoilt)] if "record" in identifier.needs else []

@@ -23,6 +23,7 @@ from typing import Any, ClassVar
 
 import attrs
 
+from raceway.storage.tables import Tables
 from raceway.testing.child import Died, apart
 
 PASSED, FAILED, EXPECTED, UNEXPECTED = "passed", "failed", "expected failure", "unexpectedly passed"
@@ -65,7 +66,7 @@ class Conformity:
     def conforms(self) -> bool:
         return bool(self.rows) and all(row.good for row in self.rows)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {
             "kind": self.kind,
             "name": self.name,
@@ -113,9 +114,9 @@ class Suite:
     apart: ClassVar[bool] = True
 
     @classmethod
-    def checks(cls) -> dict[str, Any]:
+    def checks(cls) -> Tables:
         """Check name -> method, in the order of the source."""
-        found: dict[str, Any] = {}
+        found: Tables = {}
         for base in reversed(cls.__mro__):
             for name, value in vars(base).items():
                 if hasattr(value, "duty"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from math import floor, log10
 from typing import Any
 
@@ -12,6 +12,8 @@ from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
+
+from raceway.storage.tables import ReadTables
 
 Row = tuple[str, str, str]
 
@@ -59,7 +61,7 @@ def written(files: Sequence[str]) -> list[RenderableType]:
     return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
 
 
-def grouped(bodies: Mapping[str, Any]) -> list[tuple[str, Any]]:
+def grouped(bodies: ReadTables) -> list[tuple[str, Any]]:
     """Bodies with what is said of them; balls of which the same is said share a line, ``balls (12)``."""
     rows: list[tuple[str, Any]] = []
     balls: list[tuple[Any, int]] = []
@@ -75,7 +77,7 @@ def grouped(bodies: Mapping[str, Any]) -> list[tuple[str, Any]]:
     return rows + [(f"balls ({count})", said) for said, count in balls]
 
 
-def rows_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> RenderableType:
+def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
     """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned."""
     table = Table(title=title or None, title_justify="left", header_style="bold", box=SIMPLE_HEAD, pad_edge=False)
     keys = list(dict.fromkeys(key for row in rows for key in row))

@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from raceway.storage.tables import Tables
+
 #: A symmetric elimination: pivots stay on the diagonal.
-_SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+_SYMMETRIC: Tables = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
 def factorised(matrix: Any, ordered: bool = True) -> Any:

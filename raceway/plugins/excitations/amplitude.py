@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.framework.options import at_least, between, finite, inside, one_of, option, optional, positive
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     import numpy as np
@@ -100,5 +101,5 @@ class Amplitude:
 
     def at_whirl(self, speed_rpm: float) -> Any:
         """The same force at another whirl speed [r/min]."""
-        fixed: dict[str, Any] = {"amplitude": "constant", "force": self.amplitude_n, "load_share": 1.0}
+        fixed: Tables = {"amplitude": "constant", "force": self.amplitude_n, "load_share": 1.0}
         return attrs.evolve(self, speed_rpm=speed_rpm, unbalance=None, reference_speed_rpm=None, **fixed)

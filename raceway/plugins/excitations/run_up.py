@@ -9,6 +9,7 @@ import attrs
 
 from raceway.framework.options import at_least, between, finite, inside, one_of, option, positive
 from raceway.plugins.excitations.bidirectional import Bidirectional
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,7 +34,7 @@ class RunUp:
     @classmethod
     def examples(cls) -> list[RunUp]:
         """Instances for the conformance suite."""
-        common: dict[str, Any] = {"duration_s": 0.5, "unbalance": 3.2e-4, "phase_lag_deg": 20.0}
+        common: Tables = {"duration_s": 0.5, "unbalance": 3.2e-4, "phase_lag_deg": 20.0}
         return [
             cls(first_speed_rpm=6000.0, speed_rpm=12000.0, **common),
             cls(first_speed_rpm=12000.0, speed_rpm=6000.0, whirl="backward", **common),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from raceway.core.mesh.hex_mesh import FACES, HexMesh
 from raceway.errors import MeshError, extra
+from raceway.storage.tables import ReadTables
 from raceway.storage.user_files import memory_for, size_of, told
 
 #: Bytes of the largest mesh file.
@@ -111,9 +112,7 @@ def hexahedra(path: Any, content: Any) -> tuple[np.ndarray, list[int | None]]:
     return np.concatenate(parts), first
 
 
-def used_only(
-    path: Any, points: Any, cells: np.ndarray, node_sets: Mapping[str, Any], facet_sets: Mapping[str, Any]
-) -> HexMesh:
+def used_only(path: Any, points: Any, cells: np.ndarray, node_sets: ReadTables, facet_sets: ReadTables) -> HexMesh:
     """A ``HexMesh`` without points that no cell uses; ``MeshError`` names the file if it is none."""
     points = np.asarray(points, dtype=float)
     if points.ndim == 2 and points.shape[1] == 3 and cells.min() >= 0 and cells.max() < len(points):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Any
 
 import click
 from click.core import ParameterSource
@@ -25,6 +24,7 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
+from raceway.storage.tables import Tables
 
 
 @click.command(short_help="The article's figures 9 to 12 and a verdict on each of its claims.")
@@ -79,7 +79,7 @@ def article(
       raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000
     """  # fmt: skip
     registry = registry_with(plugins)
-    tables: dict[str, Any] | None = None
+    tables: Tables | None = None
     if scene is not None or changes:
         from raceway.studies.article.design import ARTICLE
 

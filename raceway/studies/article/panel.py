@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.plugins.reports.pictures import new_figure
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +52,7 @@ class Picture:
 
 
 def _axes(figure: Figure, place: Any, solid: bool) -> Any:
-    words: dict[str, Any] = {"projection": "3d"} if solid else {}
+    words: Tables = {"projection": "3d"} if solid else {}
     return figure.add_subplot(*place, **words) if isinstance(place, tuple) else figure.add_subplot(place, **words)
 
 

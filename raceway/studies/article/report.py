@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
+from raceway.storage.tables import Tables
 from raceway.studies.article import causes, expected
 from raceway.studies.article.curves import told
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, FRICTIONS, TILT_WORDS, TILTS
@@ -300,7 +301,7 @@ def _kept(holds: bool, why: str) -> Cell:
     return Cell("holds", "good") if holds else Cell("does not hold", "bad")
 
 
-def verdict_rows(study: Article) -> list[dict[str, Any]]:
+def verdict_rows(study: Article) -> list[Tables]:
     """The verdicts as a flat table."""
     skip = ("findings",)
     return [

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -15,6 +14,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import verdicts
 from raceway.studies.article.curves import ROTATING, Curves
@@ -62,7 +62,7 @@ class Article:
         return verdicts(self.curves, self.static)
 
     @property
-    def failed(self) -> list[dict[str, Any]]:
+    def failed(self) -> list[Tables]:
         """Runs that failed or were refused, of curves, rig and scan; unstable motions are not among them."""
         every = [*self.curves.faults(), *self.rig, *(row for rows in self.scan.values() for row in rows)]
         return [row for row in every if row["status"] not in ("completed", "unstable")]
@@ -72,7 +72,7 @@ class Article:
         """How many motions were sought: steady orbits, and with friction transients."""
         return sum(map(len, [*self.curves.rows.values(), self.rig, *self.scan.values()]))
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         made = self.curves.design
         rows = [
@@ -80,7 +80,7 @@ class Article:
             for (setting, _), found in self.curves.rows.items()
             for row, w in zip(found, made.relative_speeds_of(setting), strict=True)
         ]
-        content: dict[str, Any] = without_nan(
+        content: Tables = without_nan(
             {
                 "title": self.title,
                 "scene": made.tables,
@@ -110,7 +110,7 @@ class Article:
 
 
 def article(
-    tables: Mapping[str, Any] | None = None,
+    tables: ReadTables | None = None,
     speeds: str = SPEEDS,
     loads: str = LOADS,
     shaft: float | None = None,

@@ -5,7 +5,7 @@ Only ``raceway.pipeline.run.run`` is called.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
 from raceway.studies.many.axes import parse_axes, points
@@ -23,7 +24,7 @@ from raceway.studies.many.row_store import RowStore, row_key, tables_key
 
 
 def compare(
-    scene_tables: Mapping[str, Any],
+    scene_tables: ReadTables,
     vary: Iterable[str],
     registry: Registry | None = None,
     on_progress: OnProgress | None = None,
@@ -70,7 +71,7 @@ def _comparison(title: str, axes: Any, places: list[Any], items: list[Item], kep
     return Comparison(title, axes, rows, tuple(notes), kept.fault)
 
 
-def _item(tables: Mapping[str, Any], registry: Registry) -> Item:
+def _item(tables: ReadTables, registry: Registry) -> Item:
     try:
         key = row_key(scene_from_dict(tables, registry), registry, "compare")
     except SceneError:  # refused as it is run
@@ -78,7 +79,7 @@ def _item(tables: Mapping[str, Any], registry: Registry) -> Item:
     return Item(key, "runs", tables)
 
 
-def _result(tables: Mapping[str, Any], registry: Registry) -> dict[str, Any]:
+def _result(tables: ReadTables, registry: Registry) -> Tables:
     try:
         return run(scene_from_dict(tables, registry), registry).as_dict()
     except RacewayError as error:

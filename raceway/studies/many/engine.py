@@ -16,6 +16,7 @@ import attrs
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import Lost, Refused
 from raceway.framework.registry import Registry
+from raceway.storage.tables import Tables
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.many.work import Work
 
@@ -39,15 +40,15 @@ class Item:
 
 
 def work_through(
-    function: Callable[[Any, Registry], dict[str, Any]],
+    function: Callable[[Any, Registry], Tables],
     items: Sequence[Item],
     store: RowStore,
     executor: Any,
     registry: Registry,
     plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None,
-    lost: Callable[[Item, str], dict[str, Any]] | None = None,
-) -> tuple[list[dict[str, Any]], int]:
+    lost: Callable[[Item, str], Tables] | None = None,
+) -> tuple[list[Tables], int]:
     """Rows of all items, in their order, and how many of them were kept from before.
 
     Parameters
@@ -80,7 +81,7 @@ def work_through(
     return [found[place] for place in range(len(items))], reused
 
 
-def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], dict[str, Any]] | None) -> dict[str, Any]:
+def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
     if lost is None:
         raise RacewayError(
             f"{item.name}: {answer.reason}, perhaps for want of memory; what is finished is kept: run the command again, with "

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.scene.tables import Scene
 from raceway.storage.cache_folder import source_key
+from raceway.storage.tables import ReadTables, Tables
 
 
 class RowStore:
@@ -26,7 +27,7 @@ class RowStore:
 
     def __init__(self, path: Path | None) -> None:
         self.path = path
-        self.rows: dict[str, dict[str, Any]] = {}
+        self.rows: dict[str, Tables] = {}
         #: Why rows are no longer written; the study goes on without.
         self.fault: RacewayError | None = None
         if path is not None and path.is_file():
@@ -46,10 +47,10 @@ class RowStore:
             except (ValueError, KeyError, TypeError):
                 continue  # cut off by a full disk, or not ours: that row is run again
 
-    def get(self, key: str) -> dict[str, Any] | None:
+    def get(self, key: str) -> Tables | None:
         return self.rows.get(key)
 
-    def put(self, key: str, row: dict[str, Any]) -> None:
+    def put(self, key: str, row: Tables) -> None:
         """Keep a row; a disk that takes no more is remembered in ``fault``, and what it took of the row is removed."""
         self.rows[key] = row
         if self.path is None or self.fault is not None:
@@ -84,7 +85,7 @@ def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | 
 
 
 def tables_key(
-    tables: Mapping[str, Any], registry: Registry, extra: Any = None, program: str | None = None, files: Iterable[str] = ()
+    tables: ReadTables, registry: Registry, extra: Any = None, program: str | None = None, files: Iterable[str] = ()
 ) -> str:
     """The same of a scene's tables, and of the files that they name."""
     digest = hashlib.sha256()

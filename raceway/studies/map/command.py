@@ -24,6 +24,7 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
+from raceway.storage.tables import Tables
 
 
 @click.command("map", short_help="Hardening or softening of k(speed) over axial load, tilt and contact angle.")
@@ -87,7 +88,7 @@ def study_map(
     return 0
 
 
-def _start(scene: Path | None, changes: tuple[str, ...], registry: Any) -> tuple[dict[str, Any], list[Any]]:
+def _start(scene: Path | None, changes: tuple[str, ...], registry: Any) -> tuple[Tables, list[Any]]:
     """Tables of the scene, or of the map's own, with the changes."""
     if scene is not None:
         return changed_tables(scene, changes, registry)
@@ -95,7 +96,7 @@ def _start(scene: Path | None, changes: tuple[str, ...], registry: Any) -> tuple
         return changed_tables(path, changes, registry)
 
 
-def _screen(content: dict[str, Any]) -> Any:
+def _screen(content: Tables) -> Any:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text

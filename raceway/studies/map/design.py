@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from math import pi
 from typing import Any
 
@@ -13,6 +13,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis, is_number, parse_axes
 from raceway.studies.many.points import tables_at
 
@@ -28,7 +29,7 @@ AXES: dict[str, tuple[Any, ...]] = {
     ),
 }  # fmt: skip
 #: How each method turns the ring: keys of the table [integrator].
-METHODS: dict[str, dict[str, Any]] = {
+METHODS: dict[str, Tables] = {
     # 72 samples: six a pitch of 12 balls; the 1x line is the mean over the pitches.
     "quasi_static": {"kind": "quasi_static", "turns": 1, "steps_per_turn": 72},
     "periodic": {"kind": "periodic", "turns": 1, "steps_per_turn": 360},
@@ -45,20 +46,20 @@ class Design:
     tables : the scene that all points share;  axes : key -> values, in the order of the rows;  method : of ``METHODS``
     """
 
-    tables: dict[str, Any]
+    tables: Tables
     axes: dict[str, tuple[Any, ...]]
     method: str
 
-    def points(self) -> list[dict[str, Any]]:
+    def points(self) -> list[Tables]:
         """Every point, speeds innermost."""
         return [dict(zip(self.axes, values, strict=True)) for values in itertools.product(*self.axes.values())]
 
-    def scene(self, point: Mapping[str, Any], registry: Registry) -> Scene:
+    def scene(self, point: ReadTables, registry: Registry) -> Scene:
         """The scene at a point."""
         return scene_from_dict(tables_at(self.tables, point, registry), registry)
 
 
-def design(tables: Mapping[str, Any], vary: Iterable[str], method: str, registry: Registry) -> Design:
+def design(tables: ReadTables, vary: Iterable[str], method: str, registry: Registry) -> Design:
     """A design whose scenes and axes have been looked at.
 
     Parameters

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cmath import exp
 from math import pi, radians
-from typing import Any
 
 import attrs
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
+from raceway.storage.tables import Tables
 from raceway.studies.measured.angle import Turning, turning
 from raceway.studies.measured.inversion import invert, scatter, sensitivities, values, with_tilt_of
 from raceway.studies.measured.orders import Order, order
@@ -54,7 +54,7 @@ class Found:
         """Half-widths at 95 %, all causes together (4,): K [N/m] and C [N s/m] with the rig's tilt, then with it locked."""
         return np.sqrt(sum(part**2 for part in self.parts.values()))
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Tables for JSON."""
         state, found, marked = self.state, self.order, self.order.marked
         z, rest = state.dynamic_stiffness, self.uncertainty

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway import __version__
 from raceway.plugins.reports.pictures import save_figure
+from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page
 from raceway.studies.measured.figures import orbits, signals, spectrum
 from raceway.studies.rig.figures import causes, procedures
@@ -110,11 +111,11 @@ def _rig_words(study: RigStudy) -> str:
     )
 
 
-def _name(row: dict[str, Any]) -> str:
+def _name(row: Tables) -> str:
     return f"{row['speed_rpm']:.0f} r/min, {row['axial_n']:.0f} N"
 
 
-def _truth(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+def _truth(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
     columns = ["point", "force [N]", "over m e w²/2", "bearing [µm]", "sensor [µm]", "true K [N/µm]", "identified", "uncertainty", "off [%]"]  # fmt: skip
     lines = []
     for row in rows:
@@ -126,7 +127,7 @@ def _truth(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
     return columns, lines
 
 
-def _printed(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+def _printed(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
     names = [one["correction"] for one in rows[0]["printed"]]
     lines = [
         [name, *(f"{one['over_true']:.3f}" for row in rows for one in row["printed"] if one["correction"] == name)]
@@ -135,7 +136,7 @@ def _printed(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
     return ["correction", *(_name(row) for row in rows)], lines
 
 
-def _split(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+def _split(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
     lines = []
     for place, cause in enumerate(rows[0]["split"]):
         errors = [f"{100 * row['split'][place]['error']:.3g}" for row in rows]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
 from raceway.commands.console import warn
 from raceway.commands.frame import PATH, attempt, common, show
 from raceway.commands.inputs import slug, writable
+from raceway.storage.tables import Tables
 from raceway.studies.sweep.store_command import at_option, head, selection_of, store_argument, told
 
 
@@ -67,7 +67,7 @@ def export(
     file = ross_file(table, generation, slug(selection.title), node, head(selection))
     files: list[str] = []
     failed = attempt(lambda: [file.write(ross)], files)
-    content: dict[str, Any] = {
+    content: Tables = {
         "store": str(store),
         "ross": generation,
         "source": table.source,
@@ -84,7 +84,7 @@ def export(
     return 0
 
 
-def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
+def export_rows(content: Tables) -> list[Tables]:
     """One row a point of a table over one axis; the ends of a table over two."""
     import numpy as np
 
@@ -98,9 +98,7 @@ def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
     for place in np.ndindex(shape):
         if len(shape) == 2 and any(0 < k < size - 1 for k, size in zip(place, shape, strict=True)):
             continue
-        row: dict[str, Any] = {
-            f"{name} (rad/s)": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)
-        }
+        row: Tables = {f"{name} (rad/s)": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
         for name in shown:
             scale, unit = (1e-6, "N/µm") if name[0] == "k" else (1.0, "N s/m")
             row[f"{name} ({unit})"] = float(columns[name][place]) * scale
@@ -108,6 +106,6 @@ def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
-def export_words(content: dict[str, Any]) -> list[str]:
+def export_words(content: Tables) -> list[str]:
     """Definition, assumptions, losses, file."""
     return [f"for ROSS {content['ross']}", *content["notes"], *(f"written: {name}" for name in content["files"])]

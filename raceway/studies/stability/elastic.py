@@ -15,12 +15,13 @@ import attrs
 
 from raceway.core.schemes.drivers import integrate
 from raceway.framework.registry import Registry
+from raceway.storage.tables import Tables
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
 
 #: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
-_TINY: dict[str, Any] = {
+_TINY: Tables = {
     "title": "three balls on few elements",
     "bearing": {"preset": "B7206C", "ball_count": 3},
     "bodies": {"kind": "elastic", "formulation": "one_point"},

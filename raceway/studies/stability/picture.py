@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import attrs
 
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen
@@ -39,7 +40,7 @@ class StabilityReport:
         ]
 
 
-def page(result: dict[str, Any]) -> str:
+def page(result: Tables) -> str:
     """The study as Markdown: what failed first, then a table for each case."""
     rows = result["rows"]
     bad = [row for row in rows if row["verdict"] == "failed"]
@@ -54,7 +55,7 @@ def page(result: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _table(rows: Iterable[dict[str, Any]]) -> list[str]:
+def _table(rows: Iterable[Tables]) -> list[str]:
     lines = ["| setting | quantity | expected | predicted | observed | energy drift | verdict | why |", "|---" * 8 + "|"]
     for row in rows:
         cells = [

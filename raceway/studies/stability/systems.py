@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -12,6 +11,7 @@ from raceway.framework.registry import Entry, Registry
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.points import tables_at
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from raceway.core.stepping.record import Motion
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
-BASE: dict[str, Any] = {
+BASE: Tables = {
     "title": "B7206C, 1 kN axial, rig unbalance at 12 000 r/min",
     "bearing": {"preset": "B7206C"},
     "rotor": {"mass": 2.0},
@@ -57,7 +57,7 @@ def pair_laws(registry: Registry) -> list[str]:
     return [e.name for e in entries if "resultant" in e.plugin.discretisations]
 
 
-def scene_at(tables: Mapping[str, Any], changes: Mapping[str, Any], registry: Registry) -> Scene:
+def scene_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Scene:
     """A scene with some keys changed; a value None takes the key out."""
     changed = tables_at(tables, {key: value for key, value in changes.items() if value is not None}, registry)
     for key in (key for key, value in changes.items() if value is None):

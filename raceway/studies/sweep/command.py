@@ -24,6 +24,7 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import changed_tables, has_netcdf, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
@@ -134,7 +135,7 @@ def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | No
     return 0
 
 
-def _row(row: dict[str, Any]) -> dict[str, Any]:
+def _row(row: Tables) -> Tables:
     """What does not change from one sweep to the next: no costs, no names of machines."""
     kept = {"point": row["point"], "status": row["status"], "values": row["values"]}
     return kept | {name: row[name] for name in ("reason", "warnings") if row[name]}
@@ -151,7 +152,7 @@ def _design(axes: Sequence[str], listed: Path | None, design: Path | None) -> De
     return design_file(design) if design is not None else grid(axes)
 
 
-def _executor(registry: Registry, name: str, given: dict[str, Any]) -> Any:
+def _executor(registry: Registry, name: str, given: Tables) -> Any:
     """An executor of that name, with the options that are given and that it has."""
     plugin = registry.find("executor", name).plugin
     options = {key: value for key, value in given.items() if value is not None}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from raceway.framework.contracts import Lost
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.planning.wall_time import START_S
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.engine import answers
 from raceway.studies.many.identity import differences, identity
 from raceway.studies.many.work import Work, registry_of
@@ -38,18 +39,16 @@ class Sweep:
     length : of chains [points]
     """
 
-    tables: dict[str, Any]
+    tables: Tables
     design: Design
     store: Path
     plugins: tuple[str, ...]
     survey: Survey
-    facts: dict[str, Any]
+    facts: Tables
     length: int
 
 
-def prepare(
-    tables: Mapping[str, Any], design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False
-) -> Sweep:
+def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False) -> Sweep:
     """Look over a sweep; nothing is computed or written.
 
     Parameters
@@ -152,7 +151,7 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
     return open_store(prepared.store)
 
 
-def _refuse_other(there: Store, facts: Mapping[str, Any], store: Path) -> None:
+def _refuse_other(there: Store, facts: ReadTables, store: Path) -> None:
     """A store that holds something else is named and left alone."""
     reasons = _changed(there.scene, facts["scene"]) or _changed(there.facts.get("tables", {}), facts.get("tables", {}))
     what = "another scene"

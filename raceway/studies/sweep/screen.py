@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from raceway.commands.screen.text import rows_table, written
+from raceway.storage.tables import ReadTables
 
 #: Points of a sweep that a screen shows one by one.
 _MOST_ROWS, _MOST_REASONS = 30, 5
@@ -17,7 +18,7 @@ _MOST_ROWS, _MOST_REASONS = 30, 5
 _NUMBER = re.compile(r"\d+(\.\d+)?(e[+-]?\d+)?")
 
 
-def sweep_screen(content: Mapping[str, Any], rows: Iterable[Mapping[str, Any]], files: Sequence[str]) -> RenderableType:
+def sweep_screen(content: ReadTables, rows: Iterable[ReadTables], files: Sequence[str]) -> RenderableType:
     """How many points are in each state, the first of them with their stiffness, why points failed, and what they warn of."""
     from raceway.studies.sweep.design import point_words
 
@@ -43,7 +44,7 @@ def sweep_screen(content: Mapping[str, Any], rows: Iterable[Mapping[str, Any]], 
     return Group(*parts, *written(files))
 
 
-def _sweep_row(row: Mapping[str, Any]) -> dict[str, str]:
+def _sweep_row(row: ReadTables) -> dict[str, str]:
     from raceway.studies.many.axes import shown
 
     values = row["values"]

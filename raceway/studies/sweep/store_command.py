@@ -9,6 +9,7 @@ import click
 
 from raceway.commands.frame import PATH, attempt, common, show
 from raceway.commands.inputs import require_matplotlib, slug, writable
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.studies.sweep.selection import Selection
@@ -92,7 +93,7 @@ def head(selection: Selection) -> tuple[str, ...]:
     return tuple(word.replace("\n", "; ") for word in words if word)
 
 
-def plot_words(content: dict[str, Any]) -> list[str]:
+def plot_words(content: Tables) -> list[str]:
     """What was drawn, in sentences."""
     axes = [content["x"], *(key for key in (content["y"], content["panels"]) if key)]
     lines = [f"{content['value']} over {', '.join(axes)} ({content['kind']})"]

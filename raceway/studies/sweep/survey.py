@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
 from raceway.scene.tables import TABLES, Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.identity import plugins_of
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.row_store import files_of
@@ -38,7 +39,7 @@ class Survey:
     notes: tuple[str, ...]
 
 
-def survey(tables: Mapping[str, Any], design: Design, registry: Registry) -> Survey:
+def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
     """Check every value of a grid, each at the first values of the others, or every point of a list.
 
     Raises
@@ -66,7 +67,7 @@ def survey(tables: Mapping[str, Any], design: Design, registry: Registry) -> Sur
     return Survey(first, frozenset(used), {name: _hash(name) for name in sorted(files)}, tuple(notes))
 
 
-def _blamed(mistakes: Iterable[Mistake], point: Mapping[str, Any], changed: str) -> list[Mistake]:
+def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> list[Mistake]:
     """Those that the changed value makes by itself: of a swept key, or of its whole table where no other axis has a part."""
     found = []
     for mistake in mistakes:
@@ -78,7 +79,7 @@ def _blamed(mistakes: Iterable[Mistake], point: Mapping[str, Any], changed: str)
     return found
 
 
-def _others(design: Design) -> Iterator[tuple[str, str, dict[str, Any]]]:
+def _others(design: Design) -> Iterator[tuple[str, str, Tables]]:
     """(where, key that differs from the first point, point)."""
     first = design.point(0)
     for axis in design.axes:

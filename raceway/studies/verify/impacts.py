@@ -24,6 +24,7 @@ from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.framework.registry import Entry, Registry
+from raceway.storage.tables import Tables
 from raceway.studies.many.reference import Case, Number
 
 #: Peak force and contact time of an integrator at this many steps a contact, and how close they have to come: 0.1 %.
@@ -59,7 +60,7 @@ class Impact:
         return _CONTACT_TIME * self.largest_approach / self.speed
 
 
-def impact_of(inputs: dict[str, Any]) -> Impact:
+def impact_of(inputs: Tables) -> Impact:
     """The impact that a case describes; its ``type`` says what the sphere meets."""
     radius, speed = inputs["R_m"], inputs["v_each_m_s"]
     mass = inputs["rho_kg_m3"] * 4.0 / 3.0 * pi * radius**3

@@ -13,6 +13,7 @@ from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.duties import traits_of
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.tables import Tables
 
 
 @click.command(short_help="Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.")
@@ -66,7 +67,7 @@ def _mesh(scene: Any, folder: Path) -> Path:
     return draw(mesh_scene(scene), f"{scene.title}\nthe mesh", folder / "mesh.png")
 
 
-def _screen(content: dict[str, Any]) -> Any:
+def _screen(content: Tables) -> Any:
     from rich.console import Group
     from rich.text import Text
 

@@ -26,6 +26,7 @@ from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.sources import blamed
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Entry
@@ -79,7 +80,7 @@ def mesh(
         from raceway.core.mesh.summary import summary
 
         progress("judging the cells", 0, 0)
-        content: dict[str, Any] = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
+        content: Tables = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
         files: list[str] = []
         failed = attempt(lambda: _write(written, meshes, folder, progress), files)
         if picture and failed is None:
@@ -96,7 +97,7 @@ def mesh(
     return 0
 
 
-def _write(form: Entry, meshes: dict[str, Any], folder: Path, progress: ProgressBar) -> list[Path]:
+def _write(form: Entry, meshes: Tables, folder: Path, progress: ProgressBar) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -112,7 +113,7 @@ def _write(form: Entry, meshes: dict[str, Any], folder: Path, progress: Progress
     return paths
 
 
-def _draw(meshes: dict[str, Any], content: dict[str, Any], folder: Path) -> Path:
+def _draw(meshes: Tables, content: Tables, folder: Path) -> Path:
     from raceway.studies.view.mesh_picture import draw
 
     size = f"{content['elements']} hexahedra, {content['nodes']} nodes, {len(meshes)} bodies"

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page, data_uri
 from raceway.studies.view.bearing import Bearing, Part, State
 from raceway.studies.view.scene import LOADS, PRESSURES
@@ -33,7 +34,7 @@ _COLUMNS = [
 ]  # fmt: skip
 
 
-def view_page(bearing: Bearing, state: State, words: dict[str, Any], pictures: Sequence[tuple[bytes, str, str]]) -> Page:
+def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[tuple[bytes, str, str]]) -> Page:
     """The page.
 
     Parameters
@@ -85,11 +86,11 @@ def _stage(bearing: Bearing, state: State) -> str:
     return Template(files("raceway").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts)
 
 
-def _scene(bearing: Bearing, state: State, top: float, peak: float) -> dict[str, Any]:
+def _scene(bearing: Bearing, state: State, top: float, peak: float) -> Tables:
     """Content that the script draws."""
     z, centres = len(state.azimuth), bearing.centres(state)
     shapes = {"ball": _packed(ball(bearing.diameter, 20, 32))}
-    parts: list[dict[str, Any]] = []
+    parts: list[Tables] = []
 
     def add(part: Part, shape: str, at: Any, colour: Any) -> None:
         parts.append(

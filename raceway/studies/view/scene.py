@@ -9,11 +9,12 @@ import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.tables import Tables
 from raceway.studies.view.bearing import Bearing, Part, State
 
 LOADS, PRESSURES = "viridis", "inferno"
 _INK = "#20262c"
-_BAR: dict[str, Any] = {
+_BAR: Tables = {
     "color": _INK,
     "title_font_size": 28,
     "label_font_size": 26,
@@ -67,7 +68,7 @@ def add_parts(pyvista: Any, plotter: Any, parts: Sequence[Part], top_load: float
         mesh.point_data["Normals"] = part.surface.normals
         mesh.point_data.active_normals_name = "Normals"
         # Loads are equal all over a part: as a field, so that all parts share one colour bar.
-        look: dict[str, Any] = {
+        look: Tables = {
             "smooth_shading": True,
             "split_sharp_edges": False,
             "opacity": part.opacity,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 from textwrap import wrap
-from typing import Any
 
 import attrs
 
@@ -12,6 +11,7 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.reports.pictures import ball_loads, orbit, save_figure
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page
 from raceway.studies.view.animation import animate
 from raceway.studies.view.bearing import Bearing, State
@@ -39,7 +39,7 @@ class Wanted:
 LARGEST_PAGE = 4_900_000
 
 
-def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) -> dict[str, Any]:
+def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) -> Tables:
     """Write the pictures of a result; ``files`` and what is shown on them.
 
     Raises
@@ -105,7 +105,7 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
     }
 
 
-def _page(bearing: Bearing, state: State, text: dict[str, Any], pictures: dict[str, tuple[Path, str, str]]) -> Page:
+def _page(bearing: Bearing, state: State, text: Tables, pictures: dict[str, tuple[Path, str, str]]) -> Page:
     """The page with all pictures, the animation among them where it has room."""
     images = {name: (path.read_bytes(), seen, told) for name, (path, seen, told) in pictures.items()}
     page = view_page(bearing, state, text, list(images.values()))
