@@ -154,7 +154,7 @@ def _origin(error: Exception) -> str:
     )
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> Any:
     """A value of a TOML file as JSON can carry it: dates and numbers that are not finite become text."""
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}

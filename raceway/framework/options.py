@@ -51,7 +51,7 @@ def nearest(word: str, choices: Iterable[str]) -> str:
 
 
 def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
-    def check(_instance: Any, _attribute: Any, value: Any) -> None:
+    def check(_instance: object, _attribute: object, value: object) -> None:
         if isinstance(value, float) and not math.isfinite(value):
             raise ValueError(f"must be a finite number: {words}")
         if not test(value):
@@ -102,7 +102,7 @@ def finite() -> Rule:
 def one_of(*choices: str) -> Rule:
     listed = ", ".join(repr(c) for c in choices)
 
-    def check(_instance: Any, _attribute: Any, value: Any) -> None:
+    def check(_instance: object, _attribute: object, value: str) -> None:
         if value not in choices:
             raise ValueError(f"must be one of {listed}{nearest(value, choices)}")
 
@@ -114,7 +114,7 @@ def word_or(rule: Rule, *choices: str) -> Rule:
     listed = ", ".join(repr(c) for c in choices)
     number = getattr(rule, "words", "a number")
 
-    def check(instance: Any, attribute: Any, value: Any) -> None:
+    def check(instance: object, attribute: Any, value: object) -> None:
         if isinstance(value, str):
             if value not in choices:
                 raise ValueError(f"must be {listed} or a number {number}{nearest(value, choices)}")
@@ -125,7 +125,7 @@ def word_or(rule: Rule, *choices: str) -> Rule:
 
 
 def optional(rule: Rule) -> Rule:
-    def check(instance: Any, attribute: Any, value: Any) -> None:
+    def check(instance: object, attribute: Any, value: object) -> None:
         if value is not None:
             rule(instance, attribute, value)
 

@@ -6,13 +6,17 @@ This takes less than a millisecond.  It finds what would corrupt a run; ``racewa
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.errors import PluginError
 from raceway.framework.plugin_kernel import check_compiled
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactLaw, Excitation
 
 #: Gaps [m] and rates [m/s] that are tried, all contacts at once.
 _GAPS = (1e-3, 1e-9, 0.0, -1e-9, -1e-6, -1e-5)
@@ -28,7 +32,12 @@ _MOST_PASSED = 4096
 
 
 def probe_law(
-    law: Any, kernel: Any, params: Any, state: Any, distribution: str | None = None, depths: Iterable[float] = ()
+    law: ContactLaw,
+    kernel: Kernel,
+    params: np.ndarray,
+    state: np.ndarray,
+    distribution: str | None = None,
+    depths: Iterable[float] = (),
 ) -> None:
     """Refuse a contact law that breaks its contract on a few gaps and rates.
 
@@ -73,7 +82,7 @@ def probe_law(
     _remember(mark)
 
 
-def _probe_slopes(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str) -> None:
+def _probe_slopes(kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: float, rate: float, who: str) -> None:
     """Refuse derivatives that differences of the force contradict: with them an iteration converges, if it does, to a wrong stiffness."""
     where = f"at gap {gap:g} m, rate {rate:g} m/s"
     force, *given, _ = _call_law(kernel, params, state, gap, rate, who, where)
@@ -95,7 +104,7 @@ def _probe_slopes(kernel: Any, params: Any, state: Any, gap: float, rate: float,
             )
 
 
-def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: str | None = None) -> None:
+def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray, distribution: str | None = None) -> None:
     """Refuse an excitation that breaks its contract at a few times.
 
     Parameters
@@ -124,7 +133,7 @@ def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: st
     _remember(mark)
 
 
-def _mark(kernel: Any, *given: Any) -> tuple[Any, ...]:
+def _mark(kernel: Kernel, *given: Any) -> tuple[Any, ...]:
     """A kernel, which stays alive in it, and what it is tried with, arrays by content."""
     return kernel, *(_content(one) for one in given)
 
@@ -141,7 +150,7 @@ def _remember(mark: tuple[Any, ...]) -> None:
     _PASSED.add(mark)
 
 
-def _probe_alone(kernel: Any, params: Any, state: Any, who: str) -> None:
+def _probe_alone(kernel: Kernel, params: np.ndarray, state: np.ndarray, who: str) -> None:
     """One contact whose parameters are followed by NaN in memory: a kernel that reads beyond its columns shows it."""
     if not len(state):
         return
@@ -161,7 +170,9 @@ def _probe_alone(kernel: Any, params: Any, state: Any, who: str) -> None:
             )
 
 
-def _call_law(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str, where: str) -> tuple[Any, ...]:
+def _call_law(
+    kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: float, rate: float, who: str, where: str
+) -> tuple[Any, ...]:
     n = len(state)
     force, d_gap, d_rate = np.full((3, n), _MARK)
     new, old = np.full_like(state, _MARK), state.copy()
@@ -171,7 +182,7 @@ def _call_law(kernel: Any, params: Any, state: Any, gap: float, rate: float, who
     return force, d_gap, d_rate, new
 
 
-def _guarded(kernel: Any, who: str, where: str, *arguments: Any) -> None:
+def _guarded(kernel: Kernel, who: str, where: str, *arguments: Any) -> None:
     try:
         kernel(*arguments)
     except Exception as why:  # the plug-in's own code

@@ -39,7 +39,7 @@ class Entry:
 
     kind: str
     name: str
-    plugin: type
+    plugin: type[Any]
     distribution: str
     version: str
     source: str = ""  # entry point, module or file
@@ -214,7 +214,7 @@ class Registry:
             No format has the ending (lists those that there are), or two have it.
         """
         name = Path(path).name.lower()
-        endings = [(ending, entry) for entry in self.all() if entry.kind == "format" for ending in entry.plugin.suffixes]  # type: ignore[attr-defined]
+        endings = [(ending, entry) for entry in self.all() if entry.kind == "format" for ending in entry.plugin.suffixes]
         fitting = [(ending, entry) for ending, entry in endings if name.endswith(ending)]
         if not fitting:
             told = ", ".join(sorted({ending for ending, _ in endings}))

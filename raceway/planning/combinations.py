@@ -19,7 +19,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
     faults: list[Mistake] = []
 
-    def refuse(bad: bool, path: str, value: Any, why: str) -> None:
+    def refuse(bad: bool, path: str, value: object, why: str) -> None:
         if bad:
             faults.append(Mistake(path, value, why))
 

@@ -23,7 +23,7 @@ class Fact:
     """One number of a preset: key of the [bearing] table, value, where it comes from."""
 
     key: str
-    value: Any
+    value: object
     source: str
     inferred: bool
 

@@ -157,12 +157,13 @@ def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, Any]]) ->
     return {**tables, "title": title}
 
 
-def _told(value: Any) -> str:
+def _told(value: object) -> str:
     """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
     if isinstance(value, str):
         return value
-    whole = isinstance(value, float) and value.is_integer() and abs(value) < 1e15
-    return json.dumps(int(value) if whole else value, default=str)
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        value = int(value)
+    return json.dumps(value, default=str)
 
 
 def parse_change(text: str) -> tuple[str, Any]:
@@ -180,7 +181,7 @@ def parse_value(text: str) -> Any:
         return text.strip()
 
 
-def with_value(tables: ReadTables, key: str, value: Any) -> Tables:
+def with_value(tables: ReadTables, key: str, value: object) -> Tables:
     """A copy of the tables with one value set at a dotted key; tables beside the key's are shared with the original."""
     result = dict(tables)
     *parents, last = key.split(".")

@@ -352,5 +352,5 @@ def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
     return tuple((field.name, "plugin" in field.metadata) for field in attrs.fields(cls))
 
 
-def _lists(value: Any) -> Any:
+def _lists(value: object) -> Any:
     return [_lists(part) for part in value] if isinstance(value, tuple) else value

@@ -133,7 +133,7 @@ def _key(kind: str, inputs: ReadTables, sources: tuple[str, ...]) -> str:
     return digest.hexdigest()[:32]
 
 
-def _add(digest: Any, value: Any) -> None:
+def _add(digest: Any, value: object) -> None:
     """One input into the digest, so that no two different inputs give the same bytes."""
     if value is None or isinstance(value, str | bool | int | float):
         digest.update(f"{type(value).__name__}:{value!r};".encode())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -20,6 +20,9 @@ from raceway.scene.tables import TABLES, Scene
 from raceway.storage.tables import Tables
 from raceway.testing.asked import Changes
 from raceway.testing.suite import ConformityError
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import BodiesKind
 
 #: For kinds that give no scene of their own.
 _USUAL = {
@@ -43,7 +46,7 @@ class _Only:
         return [self.kind]
 
 
-def registry_with(bodies: Any) -> Registry:
+def registry_with(bodies: BodiesKind) -> Registry:
     """What is installed, what else the kind's own package brings, and the kind itself."""
     registry, cls = Registry(), type(bodies)
     # A package's own contact laws may be all that its bodies run with.
@@ -56,13 +59,13 @@ def registry_with(bodies: Any) -> Registry:
     return registry
 
 
-def tables_of(bodies: Any) -> Tables:
+def tables_of(bodies: BodiesKind) -> Tables:
     """The kind's own ``example_scene()``, or a ball bearing of 30 mm bore under a skew load and a turning force."""
     own = getattr(type(bodies), "example_scene", None)
     return dict(_USUAL if own is None else own())
 
 
-def scene_of(bodies: Any, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
+def scene_of(bodies: BodiesKind, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
     """The scene with these bodies; ``changes`` : keys by table."""
     registry = registry or registry_with(bodies)
     tables = {name: table for name, table in tables_of(bodies).items() if name != "bodies"}

@@ -19,12 +19,17 @@ import inspect
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
 from raceway.storage.tables import Tables
 from raceway.testing.child import Died, apart
+
+if TYPE_CHECKING:
+    from numba.core.typing.templates import Signature
+
+    from raceway.core.jit import Kernel
 
 PASSED, FAILED, EXPECTED, UNEXPECTED = "passed", "failed", "expected failure", "unexpectedly passed"
 EXPECTED_FAILURES = "raceway_expected_failures.toml"
@@ -242,7 +247,7 @@ def _frozen(plugin: Any) -> bool:
     return False
 
 
-def check_kernel(kernel: Any, signature: Any, word: str) -> None:
+def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
     from raceway.core.jit import signature_words
 

@@ -91,7 +91,7 @@ def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
     return table
 
 
-def _cell(value: Any) -> str:
+def _cell(value: object) -> str:
     if isinstance(value, bool):
         return "[green]yes[/]" if value else "[red]no[/]"
     return escape(number(value) if isinstance(value, float) else "-" if value is None else str(value))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
-from typing import Any
 
 import attrs
 import numpy as np
@@ -30,11 +29,11 @@ CORNERS = np.array(
 BLOCK = 65536
 
 
-def _points(value: Any) -> np.ndarray:
+def _points(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.float64)
 
 
-def _cells(value: Any) -> np.ndarray:
+def _cells(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.int64)
 
 

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.storage.tables import Tables
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
 #: A symmetric elimination: pivots stay on the diagonal.
 _SYMMETRIC: Tables = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
-def factorised(matrix: Any, ordered: bool = True) -> Any:
+def factorised(matrix: csr_matrix, ordered: bool = True) -> Any:
     """scipy.sparse.linalg.SuperLU of a symmetric csc_matrix; ``ordered``: its rows already stand in an order of little fill."""
     from scipy.sparse.linalg import splu
 
     return splu(matrix, permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A", **_SYMMETRIC)
 
 
-def elimination_order(matrix: Any) -> np.ndarray:
+def elimination_order(matrix: csr_matrix) -> np.ndarray:
     """(m,) Rows of a symmetric matrix in an order of little fill (minimum degree)."""
     return np.argsort(factorised(matrix, ordered=False).perm_c)
 

@@ -13,6 +13,8 @@ from raceway.plugins.excitations.amplitude import Amplitude
 if TYPE_CHECKING:
     import numpy as np
 
+    from raceway.core.jit import Kernel
+
 
 @attrs.frozen(kw_only=True)
 class Bidirectional(Amplitude):
@@ -37,7 +39,7 @@ class Bidirectional(Amplitude):
         lag = radians(self.phase_lag_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, 1.0, 0.0, 0.0, float(self.sense)])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.excitations.harmonic import harmonic
 
         return harmonic

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi, radians
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -13,6 +13,8 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from raceway.core.jit import Kernel
 
 
 @attrs.frozen(kw_only=True)
@@ -80,7 +82,7 @@ class RunUp:
         share = self.load_share * self.unbalance
         return np.array([share, first, last, self.duration_s, radians(self.phase_lag_deg), float(self.sense)])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.excitations.run_up import run_up
 
         return run_up

@@ -13,6 +13,8 @@ from raceway.plugins.excitations.amplitude import Amplitude
 if TYPE_CHECKING:
     import numpy as np
 
+    from raceway.core.jit import Kernel
+
 
 @attrs.frozen(kw_only=True)
 class Unidirectional(Amplitude):
@@ -39,7 +41,7 @@ class Unidirectional(Amplitude):
         lag, direction = radians(self.phase_lag_deg), radians(self.direction_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, np.cos(direction), 0.0, np.sin(direction), 0.0])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.excitations.harmonic import harmonic
 
         return harmonic

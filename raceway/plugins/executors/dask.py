@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.errors import PluginError, extra
-from raceway.framework.contracts import Lost, Refused
+from raceway.framework.contracts import Answer, Lost, Refused, Work
 from raceway.framework.options import between, inside, option, optional
 from raceway.framework.orphans import deaf_to_terminals
 
@@ -50,7 +50,7 @@ class Dask:
         """Instances for the conformance suite."""
         return [cls(workers=1)]
 
-    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
         with self._client() as client:
             flight = _Flight(client, work, self.patience)
             yield from flight.answers(iter(batches))
@@ -84,7 +84,7 @@ class Dask:
 class _Flight:
     """What is computed at the moment, and who is fit for it."""
 
-    def __init__(self, client: Any, work: Any, patience: float) -> None:
+    def __init__(self, client: Any, work: Work, patience: float) -> None:
         self.client, self.work, self.patience = client, work, patience
         self.unfit: dict[str, str] = {}
         self.fit: set[str] = set()
@@ -93,7 +93,7 @@ class _Flight:
         self.refusals: dict[int, int] = {}
         self.looked, self.alone_since = -_LOOK_S, time.monotonic()
 
-    def answers(self, batches: Iterator[Batch]) -> Iterator[tuple[int, Any]]:
+    def answers(self, batches: Iterator[Batch]) -> Iterator[Answer]:
         from distributed import wait
 
         self._meet()
@@ -202,7 +202,7 @@ def _greet(address: str, patience: float) -> None:
         thread.submit(asyncio.run, meet()).result()
 
 
-def _fault(work: Any) -> str | None:
+def _fault(work: Work) -> str | None:
     return work.fault()
 
 

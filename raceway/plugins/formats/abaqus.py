@@ -41,7 +41,7 @@ class Abaqus:
         rule=one_of(*_TYPES),
     )
 
-    def read(self, path: Any) -> HexMesh:
+    def read(self, path: Path) -> HexMesh:
         """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
         exchange.readable(path)
         _refuse_other_files(path)
@@ -60,7 +60,7 @@ class Abaqus:
             )
         return exchange.used_only(path, content.points, cells, content.point_sets, facets)
 
-    def write(self, path: Any, what: HexMesh) -> None:
+    def write(self, path: Path, what: HexMesh) -> None:
         """Write a mesh; each facet set as element sets NAME_S1 to NAME_S6 and the *SURFACE made of them."""
         lines = ["*HEADING", "hexahedra written by raceway", "*NODE"]
         numbers = [", ".join(_NUMBER % x for x in point) for point in what.points]
@@ -82,7 +82,7 @@ class Abaqus:
         return exchange.example()
 
 
-def _refuse_other_files(path: Any) -> None:
+def _refuse_other_files(path: Path) -> None:
     """A mesh is one file: what *INCLUDE names may be anything, a device without end too."""
     with open(path, encoding="utf-8", errors="replace") as stream, memory_for(0):
         for number, line in enumerate(stream, 1):
@@ -114,7 +114,7 @@ def _surfaces(text: str) -> Iterator[tuple[str, list[tuple[str, str]]]]:
             yield options["NAME"], lines
 
 
-def _facets(path: Any, name: str, lines: list[tuple[str, str]], members: dict[str, np.ndarray]) -> np.ndarray:
+def _facets(path: Path, name: str, lines: list[tuple[str, str]], members: dict[str, np.ndarray]) -> np.ndarray:
     found = [np.zeros((0, 2), dtype=int)]
     for line in lines:
         word, face = (*line, "")[:2]

@@ -12,6 +12,7 @@ from raceway.framework.options import option, positive
 
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.scene.tables import Bearing
 
 BODIES = ("inner_ring", "outer_ring", "ball")
 
@@ -32,7 +33,7 @@ def file_unit(words: str) -> Any:
     return option(1.0, unit="m", help=f"one unit of {words}; 1e-3 for millimetres", rule=positive())
 
 
-def bodies(mesher: Any, bearing: Any, make: Callable[[str, str], HexMesh]) -> dict[str, HexMesh]:
+def bodies(mesher: Any, bearing: Bearing, make: Callable[[str, str], HexMesh]) -> dict[str, HexMesh]:
     """Meshes of the bodies whose paths the mesher's options name; the ball's mesh at each ball's place.
 
     Parameters

@@ -34,7 +34,7 @@ class ComparisonPicture:
 
     dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
 
-    def write(self, result: Any, folder: Any) -> list[Path]:
+    def write(self, result: Any, folder: Path) -> list[Path]:
         """Draw comparison.png.
 
         Parameters
@@ -197,11 +197,11 @@ def _by_interaction(keys: list[str], along: str, effects: list[Tables]) -> list[
     return sorted(keys, key=lambda key: -strength(key))
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

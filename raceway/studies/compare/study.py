@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
@@ -17,10 +17,13 @@ from raceway.scene.file import scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
-from raceway.studies.many.axes import parse_axes, points
+from raceway.studies.many.axes import Axis, parse_axes, points
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.points import refuse_mistakes, tables_at
 from raceway.studies.many.row_store import RowStore, row_key, tables_key
+
+if TYPE_CHECKING:
+    pass
 
 
 def compare(
@@ -64,7 +67,9 @@ def compare(
     return _comparison(title, axes, places, items, kept, notes)
 
 
-def _comparison(title: str, axes: Any, places: list[Any], items: list[Item], kept: RowStore, notes: list[str]) -> Comparison:
+def _comparison(
+    title: str, axes: tuple[Axis, ...], places: list[Tables], items: list[Item], kept: RowStore, notes: list[str]
+) -> Comparison:
     """Of the points that are finished."""
     found = [(point, kept.get(item.key)) for point, item in zip(places, items, strict=True)]
     rows = tuple(Row(point, result) for point, result in found if result is not None)

@@ -36,11 +36,11 @@ class Axis:
         return {"key": self.key, "values": list(self.values)}
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def shown(value: Any) -> str:
+def shown(value: object) -> str:
     """A value as people write it in a scene file, without quotes."""
     if isinstance(value, bool):
         return "true" if value else "false"

@@ -189,7 +189,7 @@ def _toned(cell: Cell) -> str:
     return f"{words} {_inline(cell.more)}" if cell.more else words
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     if value is None:
         return "–"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -104,7 +104,7 @@ def program_key(registry: Registry, used: Collection[tuple[str, str]] | None = N
     for entry in registry.all():
         if entry.distribution != "raceway" and (used is None or (entry.kind, entry.name) in used):
             digest.update(f"{entry.kind}:{entry.name}:{entry.version}".encode())
-            digest.update(_sources_of(entry.plugin).encode())
+            digest.update(_sources_of(entry.plugin.__module__).encode())
     return digest.hexdigest()
 
 
@@ -115,14 +115,14 @@ def _own_sources() -> str:
 
 
 @cache
-def _sources_of(plugin: type) -> str:
+def _sources_of(name: str) -> str:
     """Hash of a plug-in's module, or of its whole package."""
     import sys
 
-    module = sys.modules.get(plugin.__module__)
+    module = sys.modules.get(name)
     file = getattr(module, "__file__", None)
     if file is None:
-        return repr(plugin)
+        return name
     path = Path(file)
     return _hash(tuple(sorted(path.parent.rglob("*.py")))) if getattr(module, "__package__", "") else _hash((path,))
 

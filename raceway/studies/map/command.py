@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -25,6 +25,9 @@ from raceway.commands.frame import (
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.framework.registry import Registry
 
 
 @click.command("map", short_help="Hardening or softening of k(speed) over axial load, tilt and contact angle.")
@@ -88,7 +91,7 @@ def study_map(
     return 0
 
 
-def _start(scene: Path | None, changes: tuple[str, ...], registry: Any) -> tuple[Tables, list[Any]]:
+def _start(scene: Path | None, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Any]]:
     """Tables of the scene, or of the map's own, with the changes."""
     if scene is not None:
         return changed_tables(scene, changes, registry)

@@ -197,5 +197,5 @@ def curves_figure(content: Tables) -> Figure:
     return figure
 
 
-def _tilt(value: Any) -> str:
+def _tilt(value: object) -> str:
     return str(value) if isinstance(value, str) else f"{value:g} N m/rad"

@@ -11,6 +11,7 @@ from raceway.plugins.reports.pictures import new_figure, save_figure
 from raceway.studies.measured.identify import Found
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _Y, _Z, _GREY, _GREEN = "#0b5fa5", "#c8501e", "#8793a0", "#2a8f5b"
@@ -88,7 +89,7 @@ def orbits(found: Found) -> Figure:
     return figure
 
 
-def _label(axes: Any, x: str, y: str) -> None:
+def _label(axes: Axes, x: str, y: str) -> None:
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.grid(color="#d8dee4", linewidth=0.7)

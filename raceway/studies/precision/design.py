@@ -19,6 +19,7 @@ from itertools import product
 import attrs
 
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.contracts import Integrator
 from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
@@ -188,10 +189,9 @@ def default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]
     return found
 
 
-def is_steady(method: type) -> bool:
+def is_steady(method: type[Integrator]) -> bool:
     """Whether an integrator solves for the periodic motion itself."""
-    steady: bool = method.steady  # type: ignore[attr-defined]
-    return steady
+    return method.steady
 
 
 def short(text: str) -> str:

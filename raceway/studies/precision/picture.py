@@ -33,7 +33,7 @@ class PrecisionReport:
     picture: bool = option(True, help="whether to draw precision.png")
     dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
 
-    def write(self, result: Any, folder: Any) -> list[Path]:
+    def write(self, result: Any, folder: Path) -> list[Path]:
         """Write the files.
 
         Parameters

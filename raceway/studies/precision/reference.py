@@ -12,7 +12,7 @@ In this order:
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
@@ -22,6 +22,9 @@ from raceway.studies.many.measured_run import measured_once
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.precision.design import Setting, is_steady, needs_motion, setting_at
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator
 
 #: Steps of the reference over the finest steps of the rows, and its least steps and turns.
 FINER = 4
@@ -236,7 +239,7 @@ def _extrapolated(
     coarse, fine = (runner.at(first, {**at, "integrator.steps_per_turn": n}) for n in (steps // 2, steps))
     if coarse is None or fine is None:
         return None
-    method: Any = runner.registry.find("integrator", name).plugin
+    method: type[Integrator] = runner.registry.find("integrator", name).plugin
     gain = 1.0 / (2.0**method.order - 1.0)
     change = {key: gain * part for key, part in minus(fine["quantities"], coarse["quantities"]).items()}
     values = {key: fine["quantities"][key] + part for key, part in change.items()}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -244,7 +243,7 @@ def _ladders(rows: list[Row], key: str) -> list[list[int]]:
 def words_of(setting: Tables) -> str:
     """A setting for people: the keys' last parts, or what kind of table it is."""
 
-    def word(key: str, value: Any) -> str:
+    def word(key: str, value: object) -> str:
         table, _, last = key.rpartition(".")
         if key == "inertia":
             return "without inertia"

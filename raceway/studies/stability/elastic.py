@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
@@ -19,6 +19,9 @@ from raceway.storage.tables import Tables
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
+
+if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
 
 #: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
 _TINY: Tables = {
@@ -123,11 +126,11 @@ def _known(value: float) -> Measured:
     return value, None
 
 
-def _axial(equilibrium: Any) -> float:
+def _axial(equilibrium: Equilibrium) -> float:
     return float(equilibrium.displacement[0])
 
 
-def _radial(equilibrium: Any) -> float:
+def _radial(equilibrium: Equilibrium) -> float:
     return float(equilibrium.stiffness[1, 1])
 
 
@@ -181,7 +184,7 @@ def motion(case: Case, registry: Registry) -> list[Row]:
     ring: Any = model.system
     start = at_rest(ring, still.displacement, still.ball, False)
     limit = float(ring.critical_time_step(still.stiffness))
-    method: Any = registry.find("integrator", a["integrator"]).plugin()
+    method = registry.find("integrator", a["integrator"]).plugin()
     if "tolerance" in {field.name for field in attrs.fields(type(method))}:
         method = attrs.evolve(method, tolerance=1e-6)
     step = (_EXPLICIT if method.implicit else 1.0) * 0.9 * limit

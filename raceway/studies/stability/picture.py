@@ -19,7 +19,7 @@ class StabilityReport:
 
     name: ClassVar[str] = "stability"
 
-    def write(self, result: Any, folder: Any) -> list[Path]:
+    def write(self, result: Any, folder: Path) -> list[Path]:
         """Write the files.
 
         Parameters
@@ -72,7 +72,7 @@ def _table(rows: Iterable[Tables]) -> list[str]:
     return lines
 
 
-def _number(value: Any) -> str:
+def _number(value: object) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import click
@@ -27,6 +27,7 @@ from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneErr
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
     from raceway.framework.registry import Registry
     from raceway.studies.sweep import Design, Store
 
@@ -152,7 +153,7 @@ def _design(axes: Sequence[str], listed: Path | None, design: Path | None) -> De
     return design_file(design) if design is not None else grid(axes)
 
 
-def _executor(registry: Registry, name: str, given: Tables) -> Any:
+def _executor(registry: Registry, name: str, given: Tables) -> Executor:
     """An executor of that name, with the options that are given and that it has."""
     plugin = registry.find("executor", name).plugin
     options = {key: value for key, value in given.items() if value is not None}

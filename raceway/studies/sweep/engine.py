@@ -6,12 +6,12 @@ import warnings
 from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.framework.contracts import Lost
+from raceway.framework.contracts import Batch, Lost
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.planning.wall_time import START_S
@@ -23,6 +23,9 @@ from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.store import Store, exists, open_store, written
 from raceway.studies.sweep.survey import Survey, survey
 from raceway.studies.sweep.work import Chain, unfinished_row
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
 
 #: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
 _LONGEST, _CHAIN_S = 16, 1.0
@@ -100,7 +103,7 @@ def _chain_length(found: Survey, design: Design) -> int:
     return max(1, min(_LONGEST, by_time, design.size // _CHAINS))
 
 
-def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progress: OnProgress | None = None) -> Store:
+def sweep(prepared: Sweep, executor: Executor, retry_failed: bool = False, on_progress: OnProgress | None = None) -> Store:
     """Compute what is not finished; the store, open to be read.
 
     Parameters
@@ -127,7 +130,7 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
         done, total = design.size - len(waiting), design.size
         chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []
 
-        def batches() -> Iterator[tuple[int, list[Any]]]:
+        def batches() -> Iterator[Batch]:
             for number, chain in enumerate(chains):
                 left = [n for n in chain if n in waiting]
                 store.mark(left, "running")

@@ -156,7 +156,7 @@ def same(one: Any, other: Any) -> bool:
     return _text(one) == _text(other)
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     """What is no number has its JSON text on an axis."""
     return value if isinstance(value, str) else json.dumps(value)
 

@@ -347,7 +347,7 @@ def _damaged(folder: Path, how: str = "what it says of its scene and design is n
     return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
 
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.storage.files import write_whole
 from raceway.studies.view import scene, surfaces
 from raceway.studies.view.bearing import Bearing, Part
+
+if TYPE_CHECKING:
+    from types import ModuleType
 
 _SIZE = (640, 640)
 _SECONDS = 4.0
@@ -90,7 +93,7 @@ def _inside(bearing: Bearing, turn: Any, k: int, strongest: float) -> list[Part]
     return parts
 
 
-def _frame(pyvista: Any, parts: list[Part], heading: str, words: str, top: float, peak: float) -> np.ndarray:
+def _frame(pyvista: ModuleType, parts: list[Part], heading: str, words: str, top: float, peak: float) -> np.ndarray:
     plotter = scene.new_plotter(pyvista, _SIZE)
     scene.add_parts(pyvista, plotter, parts, top, peak)
     scene.colour_bar(pyvista, plotter, "ball load [N]", scene.LOADS, top, (0.075, 0.05))

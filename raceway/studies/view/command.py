@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,6 +14,9 @@ from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.duties import traits_of
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.scene.tables import Scene
 
 
 @click.command(short_help="Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.")
@@ -60,7 +63,7 @@ def view(
     return 0
 
 
-def _mesh(scene: Any, folder: Path) -> Path:
+def _mesh(scene: Scene, folder: Path) -> Path:
     from raceway.bodies.meshing import mesh_scene
     from raceway.studies.view.mesh_picture import draw
 

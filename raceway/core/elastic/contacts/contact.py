@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.core.contact.damping import add_damping, stored_energy
 from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps
 from raceway.core.elastic.contacts.traction import Friction
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
 
 #: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
 _STIFFER = 1.02
@@ -45,7 +48,7 @@ class Contact(ABC):
         area: np.ndarray,
         counts: np.ndarray,
         surfaces: np.ndarray,
-        law: Any,
+        law: Kernel,
         params: np.ndarray,
         state_size: int = 0,
         damping: float = 0.0,
