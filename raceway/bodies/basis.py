@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi, radians
-from typing import Any
 
 import attrs
 import numpy as np
@@ -56,7 +55,7 @@ def make_basis(scene: Scene) -> Basis:
     return Basis(geometry, modulus, inner, outer, np.tile(single, len(b.rows)), axial, max(ball_load, 1.0))
 
 
-def made_by(who: str, duty: str, make: Callable[[], Any]) -> np.ndarray:
+def made_by(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
     """An array from a plug-in's own code, whose failures are put to its name."""
     try:
         return np.ascontiguousarray(make(), dtype=float)

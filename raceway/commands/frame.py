@@ -106,7 +106,7 @@ def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError |
     return None
 
 
-def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[], Any]) -> None:
+def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[], object]) -> None:
     """JSON or tables on standard output; then the failure of writing them, if there was one."""
     if as_json:
         print_json(content if failed is None else {**content, "errors": described(failed)[1]})

@@ -43,7 +43,7 @@ def stopped_by() -> int | None:
     return _first
 
 
-def farewell(say: Callable[[str], Any]) -> int:
+def farewell(say: Callable[[str], object]) -> int:
     """Say once what stopped the command; the exit code."""
     global _told
     number = signal.SIGINT if _first is None else _first

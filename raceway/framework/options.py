@@ -50,7 +50,7 @@ def nearest(word: str, choices: Iterable[str]) -> str:
     return f" (did you mean '{by_lower[close[0]]}'?)" if close else ""
 
 
-def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
+def _rule(words: str, test: Callable[[Any], bool], **facts: object) -> Rule:
     def check(_instance: object, _attribute: object, value: object) -> None:
         if isinstance(value, float) and not math.isfinite(value):
             raise ValueError(f"must be a finite number: {words}")
@@ -114,7 +114,7 @@ def word_or(rule: Rule, *choices: str) -> Rule:
     listed = ", ".join(repr(c) for c in choices)
     number = getattr(rule, "words", "a number")
 
-    def check(instance: object, attribute: Any, value: object) -> None:
+    def check(instance: object, attribute: object, value: object) -> None:
         if isinstance(value, str):
             if value not in choices:
                 raise ValueError(f"must be {listed} or a number {number}{nearest(value, choices)}")
@@ -125,7 +125,7 @@ def word_or(rule: Rule, *choices: str) -> Rule:
 
 
 def optional(rule: Rule) -> Rule:
-    def check(instance: object, attribute: Any, value: object) -> None:
+    def check(instance: object, attribute: object, value: object) -> None:
         if value is not None:
             rule(instance, attribute, value)
 

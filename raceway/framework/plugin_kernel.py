@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.core.jit import signature_words
 from raceway.errors import PluginError, RacewayError
@@ -10,8 +10,11 @@ from raceway.errors import PluginError, RacewayError
 if TYPE_CHECKING:
     from numba.core.typing.templates import Signature
 
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactLaw, Excitation
 
-def plugin_kernel(plugin: Any, kind: str, signature: Signature, name: str) -> Any:
+
+def plugin_kernel(plugin: ContactLaw | Excitation, kind: str, signature: Signature, name: str) -> Kernel:
     """The kernel of a plug-in, compiled for the signature of its kind.
 
     Parameters
@@ -35,7 +38,7 @@ def plugin_kernel(plugin: Any, kind: str, signature: Signature, name: str) -> An
     return kernel
 
 
-def check_compiled(kernel: Any, label: str, signature: Signature, name: str) -> None:
+def check_compiled(kernel: object, label: str, signature: Signature, name: str) -> None:
     """Refuse what ``kernel()`` returned unless it is compiled for a signature; parameters as ``plugin_kernel``.
 
     Raises

@@ -5,7 +5,7 @@ This takes less than a millisecond.  It finds what would corrupt a run; ``racewa
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,7 +27,7 @@ _STEP, _SLOPE = 1e-4, 1e-3
 #: Stands in outputs before a call; no force is so small.
 _MARK = -7.25e-301
 #: Probes that found nothing, by all that their outcome follows from: neighbours in a study repeat them.  How many are remembered.
-_PASSED: set[tuple[Any, ...]] = set()
+_PASSED: set[tuple[Hashable, ...]] = set()
 _MOST_PASSED = 4096
 
 
@@ -133,18 +133,18 @@ def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray,
     _remember(mark)
 
 
-def _mark(kernel: Kernel, *given: Any) -> tuple[Any, ...]:
+def _mark(kernel: Kernel, *given: object) -> tuple[Hashable, ...]:
     """A kernel, which stays alive in it, and what it is tried with, arrays by content."""
     return kernel, *(_content(one) for one in given)
 
 
-def _content(given: Any) -> Any:
+def _content(given: object) -> Hashable:
     if not isinstance(given, np.ndarray):
         return repr(given)
     return given.dtype.str, given.shape, given.flags.c_contiguous, given.tobytes()
 
 
-def _remember(mark: tuple[Any, ...]) -> None:
+def _remember(mark: tuple[Hashable, ...]) -> None:
     if len(_PASSED) >= _MOST_PASSED:
         _PASSED.clear()
     _PASSED.add(mark)
@@ -172,7 +172,7 @@ def _probe_alone(kernel: Kernel, params: np.ndarray, state: np.ndarray, who: str
 
 def _call_law(
     kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: float, rate: float, who: str, where: str
-) -> tuple[Any, ...]:
+) -> tuple[np.ndarray, ...]:
     n = len(state)
     force, d_gap, d_rate = np.full((3, n), _MARK)
     new, old = np.full_like(state, _MARK), state.copy()
@@ -182,7 +182,7 @@ def _call_law(
     return force, d_gap, d_rate, new
 
 
-def _guarded(kernel: Kernel, who: str, where: str, *arguments: Any) -> None:
+def _guarded(kernel: Kernel, who: str, where: str, *arguments: object) -> None:
     try:
         kernel(*arguments)
     except Exception as why:  # the plug-in's own code
@@ -213,7 +213,7 @@ def _check_array(values: Any, who: str, source: str, wanted: str, shape: tuple[i
         raise PluginError(f"{who}: {source} returned values that are not finite")
 
 
-def _who(words: str, kind: str, plugin: Any, distribution: str | None) -> str:
+def _who(words: str, kind: str, plugin: ContactLaw | Excitation, distribution: str | None) -> str:
     if distribution is None:
         from raceway.framework.registry import default_registry
 

@@ -304,7 +304,7 @@ class Registry:
             same.append(entry)
 
 
-def _shown(thing: Any) -> str:
+def _shown(thing: object) -> str:
     """A third party's object in words; its type where it has none."""
     try:
         return repr(thing)

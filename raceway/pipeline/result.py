@@ -196,7 +196,7 @@ def without_nan(value: Any) -> Any:
     return value
 
 
-def write_json(content: Any, path: Path) -> Path:
+def write_json(content: object, path: Path) -> Path:
     """Write JSON so that a reader sees the old file or the whole new one.
 
     Raises

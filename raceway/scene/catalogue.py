@@ -9,7 +9,6 @@ from __future__ import annotations
 import tomllib
 from functools import cache
 from importlib.resources import files
-from typing import Any
 
 import attrs
 
@@ -69,7 +68,7 @@ def _facts(tables: Tables, prefix: str) -> list[Fact]:
     return facts
 
 
-def preset(name: Any) -> Tables:
+def preset(name: object) -> Tables:
     """The [bearing] table of a preset.
 
     Raises

@@ -9,7 +9,7 @@ import tomllib
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
@@ -23,6 +23,9 @@ from raceway.scene.structure import structure
 from raceway.scene.tables import TABLES, Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
 
 #: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
 PLUGIN_TABLES = {
@@ -139,7 +142,7 @@ def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
     return result
 
 
-def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, Any]]) -> Tables:
+def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]]) -> Tables:
     """The tables with a title that says what was changed, in its second line: the first one tells of the file.
 
     Parameters
@@ -197,7 +200,7 @@ def with_value(tables: ReadTables, key: str, value: object) -> Tables:
 
 
 def scene_from_dict(
-    tables: ReadTables, registry: Registry | None = None, known_parts: dict[Any, Any] | None = None
+    tables: ReadTables, registry: Registry | None = None, known_parts: dict[Hashable, Any] | None = None
 ) -> Scene:
     """A scene from plain tables, as a TOML file would give them.
 
@@ -234,7 +237,7 @@ def scene_from_dict(
     parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 
-    def read(name: str, table: Any, make: Callable[[], Any]) -> Any:
+    def read(name: str, table: object, make: Callable[[], Any]) -> Any:
         mark, before = (name, repr(table)), len(mistakes)  # not the table itself: 1, 1.0 and true are equal, and not alike
         if mark in known_parts:
             return known_parts[mark]

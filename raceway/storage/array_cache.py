@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from uuid import uuid4
 
 import attrs
@@ -133,7 +133,7 @@ def _key(kind: str, inputs: ReadTables, sources: tuple[str, ...]) -> str:
     return digest.hexdigest()[:32]
 
 
-def _add(digest: Any, value: object) -> None:
+def _add(digest: hashlib._Hash, value: object) -> None:
     """One input into the digest, so that no two different inputs give the same bytes."""
     if value is None or isinstance(value, str | bool | int | float):
         digest.update(f"{type(value).__name__}:{value!r};".encode())

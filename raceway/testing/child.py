@@ -78,7 +78,7 @@ def _import_compiler() -> None:
     import_module("raceway.core.contact_laws.power").three_halves.compile()
 
 
-def _serve(work: Callable[[], Any], writer: int) -> None:
+def _serve(work: Callable[[], object], writer: int) -> None:
     """What the child does; it does not come back."""
     code = 1
     try:

@@ -54,7 +54,9 @@ class Driven:
         """(n, m) memory of contacts that have never touched."""
         return np.zeros((self.n, self.law.state_size))
 
-    def __call__(self, gap: Any, rate: Any = 0.0, state: np.ndarray | None = None, dt: float = 1e-5) -> tuple[Any, ...]:
+    def __call__(
+        self, gap: np.ndarray | float, rate: np.ndarray | float = 0.0, state: np.ndarray | None = None, dt: float = 1e-5
+    ) -> tuple[np.ndarray, ...]:
         """force, d_gap, d_rate (n,) and state_new (n, m); outputs are full of NaN before the call."""
         state = self.rest() if state is None else state
         gap, rate = (np.ascontiguousarray(v) if np.ndim(v) else np.full(self.n, float(v)) for v in (gap, rate))

@@ -22,6 +22,7 @@ from raceway.testing.signals import (
 from raceway.testing.suite import Suite, check_class, duty, require
 
 if TYPE_CHECKING:
+    from raceway.core.stepping.record import Record
     from raceway.framework.contracts import Identifier
 
 #: (sense, direction [rad]) of the forces that are tried.
@@ -101,12 +102,12 @@ class IdentifierSuite(Suite):
         for record, (x, f) in zip(records, before, strict=True):
             require(np.array_equal(record.displacement, x) and np.array_equal(record.force, f), "a record was changed")
 
-    def _records(self, identifier: Identifier, spoilt: Tables) -> list[Any]:
+    def _records(self, identifier: Identifier, spoilt: Tables) -> list[Record]:
         if "speeds" in identifier.needs:
             return [synthetic_record(frequency=r * FREQUENCY, seed=k, **spoilt) for k, r in enumerate(_SPEEDS)]
         return [synthetic_record(**spoilt)] if "record" in identifier.needs else []
 
-    def _identify(self, identifier: Identifier, sense: int = 1, direction: float = 0.0, **spoilt: Any) -> Any:
+    def _identify(self, identifier: Identifier, sense: int = 1, direction: float = 0.0, **spoilt: Any) -> Identification:
         records = self._records(identifier, {"sense": sense, "direction": direction, **spoilt})
         return identifier.identify(records, equilibrium_at_rest(), model_of(sense, direction))
 

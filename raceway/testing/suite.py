@@ -39,7 +39,7 @@ class ConformityError(AssertionError):
     """A duty of the contract that a plug-in does not fulfil."""
 
 
-def require(condition: Any, message: str) -> None:
+def require(condition: object, message: str) -> None:
     """Raise ``ConformityError`` with a message for the plug-in's author unless the condition holds."""
     if not condition:
         raise ConformityError(message)
@@ -222,7 +222,7 @@ class Suite:
             raise ConformityError(f"{plugin!r}: raises {type(why).__name__}: {why}") from why
 
 
-def check_class(kind: str, plugin: Any) -> None:
+def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
     """The duties that every kind shares: attributes that exist, a frozen attrs class, options that declare themselves."""
     from raceway.framework.contracts import broken_duties
 

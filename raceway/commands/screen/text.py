@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import floor, log10
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -14,6 +14,9 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.storage.tables import ReadTables
+
+if TYPE_CHECKING:
+    from raceway.storage.tables import Tables
 
 Row = tuple[str, str, str]
 
@@ -64,7 +67,7 @@ def written(files: Sequence[str]) -> list[RenderableType]:
 def grouped(bodies: ReadTables) -> list[tuple[str, Any]]:
     """Bodies with what is said of them; balls of which the same is said share a line, ``balls (12)``."""
     rows: list[tuple[str, Any]] = []
-    balls: list[tuple[Any, int]] = []
+    balls: list[tuple[Tables, int]] = []
     for name, said in bodies.items():
         if not name.startswith("ball"):
             rows.append((name, said))

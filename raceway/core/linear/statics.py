@@ -17,6 +17,8 @@ from raceway.core.linear.rigid_motions import MOTIONS, free_motions, rigid_motio
 from raceway.errors import ConvergenceError, RacewayError
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from scipy.sparse import csr_matrix
 
 #: Unknowns up to which a factorisation is faster than setting up the hierarchy (measured on solid bodies).
@@ -227,7 +229,7 @@ def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray
             )
 
 
-def _pyamg() -> Any:
+def _pyamg() -> ModuleType:
     try:
         import pyamg
     except ImportError:

@@ -13,6 +13,8 @@ from raceway.core.revolution.sector import Pencil, Sector
 from raceway.errors import MeshError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from scipy.sparse import csr_matrix
 
 #: Hourglass stiffness of "one_point": in the flat elements of a patch ten times more spoils the answer by percents.
@@ -146,7 +148,7 @@ class Revolution:
                 out += odd[:, part] @ (block * turn).reshape(len(block), -1)
         return out.reshape(len(steps), len(seen), len(load))
 
-    def frequencies(self, harmonics: Any, count: int) -> np.ndarray:
+    def frequencies(self, harmonics: Iterable[int], count: int) -> np.ndarray:
         """Natural frequencies.
 
         Parameters

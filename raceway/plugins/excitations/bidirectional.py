@@ -11,6 +11,8 @@ from raceway.framework.options import one_of, option
 from raceway.plugins.excitations.amplitude import Amplitude
 
 if TYPE_CHECKING:
+    from typing import Self
+
     import numpy as np
 
     from raceway.core.jit import Kernel
@@ -25,7 +27,7 @@ class Bidirectional(Amplitude):
     whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
 
     @classmethod
-    def examples(cls, **options: Any) -> list[Any]:
+    def examples(cls, **options: Any) -> list[Self]:
         first, second = (super(Bidirectional, cls).examples(whirl=whirl, **options) for whirl in ("forward", "backward"))
         return first + second
 

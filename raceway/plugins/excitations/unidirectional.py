@@ -11,6 +11,8 @@ from raceway.framework.options import finite, option
 from raceway.plugins.excitations.amplitude import Amplitude
 
 if TYPE_CHECKING:
+    from typing import Self
+
     import numpy as np
 
     from raceway.core.jit import Kernel
@@ -25,7 +27,7 @@ class Unidirectional(Amplitude):
     direction_deg: float = option(0.0, unit="deg", help="direction of the force, from +y towards +z", rule=finite())
 
     @classmethod
-    def examples(cls, **options: Any) -> list[Any]:
+    def examples(cls, **options: Any) -> list[Self]:
         first, second = (
             super(Unidirectional, cls).examples(direction_deg=direction_deg, **options) for direction_deg in (0.0, 130.0)
         )

@@ -75,7 +75,7 @@ class _Worker:
     """One process and the batch that it works at."""
 
     def __init__(self, work: Work) -> None:
-        context: Any = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
+        context = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
         self.pipe, child = context.Pipe()
         self.process = context.Process(target=_serve, args=(child, work, os.getpid()), daemon=True)
         with deaf_to_terminals():

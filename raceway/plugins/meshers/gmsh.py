@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import attrs
 import numpy as np
@@ -145,7 +145,7 @@ class Gmsh:
         refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
         return prediction
 
-    def _opened(self, path: str, work: Callable[[Any, str, float], Found]) -> Found:
+    def _opened(self, path: str, work: Callable[[ModuleType, str, float], Found]) -> Found:
         """What ``work(gmsh, path, scale)`` finds with the file open in Gmsh; all its failures are ``MeshError``."""
         _refuse_file(path)
         reader = _READERS.get(Path(path).suffix.lower())
@@ -295,7 +295,7 @@ def _cells_between_edges(gmsh: ModuleType, tag: int, volume: float, split: bool)
     return (8.0 * _SPLIT if split else 1.0) * volume / size**3 if size else 0.0
 
 
-def _nodes(gmsh: ModuleType, curve: int) -> tuple[Any, np.ndarray]:
+def _nodes(gmsh: ModuleType, curve: int) -> tuple[np.ndarray, np.ndarray]:
     """Tags and places of the nodes of a curve, its ends too."""
     tags, places, _ = gmsh.model.mesh.getNodes(1, curve, includeBoundary=True)
     return tags, places.reshape(-1, 3)

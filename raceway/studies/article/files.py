@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -52,7 +52,7 @@ def _tables(study: Article, content: ReadTables) -> dict[str, list[Tables]]:
     for one in study.trends:
         flat = attrs.asdict(one, filter=lambda field, _: field.name not in ("expected", "computed"))
         for name in ("expected", "computed"):
-            values: Sequence[Any] = getattr(one, name) or ()
+            values: Sequence[object] = getattr(one, name) or ()
             flat |= {f"{name}_{place}": value for place, value in enumerate(values)}
         trends.append({**flat, "off_in_last_digits": one.off, "holds": one.holds})
     return {

@@ -52,7 +52,7 @@ class Picture:
         return figure
 
 
-def _axes(figure: Figure, place: Any, solid: bool) -> Any:
+def _axes(figure: Figure, place: int | tuple[int, int, int], solid: bool) -> Any:
     words: Tables = {"projection": "3d"} if solid else {}
     return figure.add_subplot(*place, **words) if isinstance(place, tuple) else figure.add_subplot(place, **words)
 

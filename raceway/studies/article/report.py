@@ -239,7 +239,7 @@ def _trends(out: Page, study: Article) -> None:
         "digits."
     )
     columns = ["", "", "k(10 980) N/µm", *(f"k* {speed:g}" for speed in expected.SPEEDS[1:]), "off, last digit", ""]
-    rows: list[list[Any]] = []
+    rows: list[list[object]] = []
     for one in study.trends:
         balls = "ball inertia" if one.inertia else "weightless balls"
         rows.append([f"tilt {one.tilt}, {one.load:g} N, {balls}", "expected", f"{one.expected[0]:.4g}",
@@ -258,7 +258,7 @@ def _rig(out: Page, study: Article) -> None:
         "measured values are lost, so nothing is compared."
     )
     speeds = list(dict.fromkeys(row["speed_rpm"] for row in study.rig))
-    table: dict[tuple[Any, ...], list[str]] = {}
+    table: dict[tuple[str, ...], list[str]] = {}
     for row in study.rig:
         text = f"{row['k'] / 1e6:.4g}" if row["status"] == "completed" else row["status"]
         table.setdefault((row["axial_n"], row["tilt"], row["bodies"]), []).append(text)

@@ -6,7 +6,6 @@ import resource
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
@@ -44,7 +43,7 @@ def quantities(result: Tables) -> dict[str, float]:
     }
 
 
-def measured_once(scene: Scene, repeats: int, extra: Any, registry: Registry, store: RowStore) -> tuple[Tables, bool]:
+def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: RowStore) -> tuple[Tables, bool]:
     """``measured``, and whether it was kept from before; ``extra`` is a part of the row's key.
 
     In this process, with nothing beside it: times are what is asked for.

@@ -5,8 +5,6 @@ Swapping a plug-in's kind leaves out the options that only the other kind knows.
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 
 from raceway.errors import PluginError, SceneError
@@ -34,7 +32,7 @@ def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: 
     return changed
 
 
-def _strange_options(tables: ReadTables, name: str, kind: Any, registry: Registry) -> list[str]:
+def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registry) -> list[str]:
     """Options in a table that its present kind knows and the new kind does not; typing mistakes are not among them."""
     table = tables.get(name)
     role, default = PLUGIN_TABLES[name]

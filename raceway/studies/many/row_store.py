@@ -11,7 +11,6 @@ import json
 from collections.abc import Collection, Iterable
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -74,7 +73,7 @@ class RowStore:
             )
 
 
-def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | None = None) -> str:
+def row_key(scene: Scene, registry: Registry, extra: object = None, program: str | None = None) -> str:
     """Hash of all that decides the numbers of one scene's run; its title does not.
 
     Parameters
@@ -85,7 +84,7 @@ def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | 
 
 
 def tables_key(
-    tables: ReadTables, registry: Registry, extra: Any = None, program: str | None = None, files: Iterable[str] = ()
+    tables: ReadTables, registry: Registry, extra: object = None, program: str | None = None, files: Iterable[str] = ()
 ) -> str:
     """The same of a scene's tables, and of the files that they name."""
     digest = hashlib.sha256()

@@ -27,6 +27,8 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from raceway.framework.registry import Registry
 
 
@@ -99,7 +101,7 @@ def _start(scene: Path | None, changes: tuple[str, ...], registry: Registry) -> 
         return changed_tables(path, changes, registry)
 
 
-def _screen(content: Tables) -> Any:
+def _screen(content: Tables) -> RenderableType:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text

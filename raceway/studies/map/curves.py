@@ -23,7 +23,7 @@ def curves(rows: Sequence[Tables]) -> list[Tables]:
     ``change`` of a row: k(w) / k(w0) - 1, with w0 the curve's lowest speed; None where that point failed.
     ``exponent`` of a row: n between it and the next lower speed of the curve; None where either failed.
     """
-    groups: dict[tuple[Any, ...], list[Tables]] = {}
+    groups: dict[tuple[object, ...], list[Tables]] = {}
     for row in rows:
         groups.setdefault((row["point"][ANGLE], str(row["point"][TILT]), row["point"][AXIAL]), []).append(row)
     return [_curve(sorted(group, key=lambda row: row["point"][SPEED])) for group in groups.values()]
@@ -92,7 +92,7 @@ def _ratio(a: float | None, b: float | None) -> float | None:
 def words(found: Sequence[Tables], rows: Sequence[Tables]) -> list[str]:
     """What the map says, a sentence or two for each angle and tilt."""
     out = []
-    groups: dict[tuple[Any, str], list[Tables]] = {}
+    groups: dict[tuple[object, str], list[Tables]] = {}
     for curve in found:
         groups.setdefault((curve["contact_angle_deg"], str(curve["tilt"])), []).append(curve)
     for (angle, tilt), members in groups.items():

@@ -14,6 +14,8 @@ from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -131,7 +133,7 @@ def _models(models: list[Tables]) -> str:
     return "\n".join(lines)
 
 
-def _line(cells: Any) -> str:
+def _line(cells: Sequence[object]) -> str:
     return "| " + " | ".join(str(cell).replace("|", "\\|") if cell != "\\*" else cell for cell in cells) + " |"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 
@@ -140,7 +139,7 @@ def unexpected(
     return Row(*head, None, None, FAILED, expectation.reason, f"refused, unexpectedly: {short(why)}")
 
 
-def refused(case: str, setting: Tables, words: str, reason: str, measure: Callable[[], Any]) -> Row:
+def refused(case: str, setting: Tables, words: str, reason: str, measure: Callable[[], object]) -> Row:
     """A row of what must be refused, with a message that holds ``words``."""
     head = (case, setting, "message", f"refused: '{words}'", None, None, None)
     try:

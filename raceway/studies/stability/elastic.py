@@ -21,7 +21,10 @@ from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, R
 from raceway.studies.stability.systems import scene_at, transient
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from raceway.bodies.equilibrium import Equilibrium
+    from raceway.pipeline.result import Result
 
 #: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
 _TINY: Tables = {
@@ -72,7 +75,7 @@ _MORE = 0.02
 
 def elastic_cases(base: Changes, registry: Registry) -> Iterator[Case]:
     """Whole contacts and pressures at points, with every law that both can have."""
-    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
     both = [one.name for one in entries if {"nodal", "resultant"} <= set(one.plugin.discretisations)]
     for law in both:
         for name, changes in _RESULTANTS if law == "hertz" else _RESULTANTS[:1]:
@@ -134,7 +137,7 @@ def _radial(equilibrium: Equilibrium) -> float:
     return float(equilibrium.stiffness[1, 1])
 
 
-def _carried(case: Case, load: float, result: Any) -> Row:
+def _carried(case: Case, load: float, result: Callable[[], Result]) -> Row:
     def reaction() -> Measured:
         return -float(result().as_dict()["model"]["reaction_n"]["x"]), None
 
@@ -150,7 +153,7 @@ def points_at_rest(case: Case, registry: Registry) -> list[Row]:
     scene = scene_at(a["tables"], a["changes"], registry)
     load = scene.load.axial
 
-    def settled(axial: float) -> tuple[float, float, Any]:
+    def settled(axial: float) -> tuple[float, float, Result]:
         found = run(scene_at(a["tables"], {**a["changes"], "load.axial": axial}, registry), registry)
         stored = found.as_dict()["model"]["energies_j"]
         return float(found.equilibrium.displacement[0]), stored["elastic"] + stored["contact"], found

@@ -6,7 +6,7 @@ An equilibrium takes a second and a step a tenth of one, so there are few steps.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -48,7 +48,7 @@ _WARNED: tuple[tuple[str, Changes, str, str], ...] = (
 
 def surface_cases(base: Changes, registry: Registry) -> Iterator[Case]:
     """Condensed bodies with every law that surface points can have."""
-    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
     laws = [entry for entry in entries if "nodal" in entry.plugin.discretisations]
     for law in (entry.name for entry in laws):
         shown: Changes = {"law": law, "bodies": "condensed, points"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from raceway.bodies.model import Model
     from raceway.core.ring.system import System
     from raceway.core.stepping.record import Motion
+    from raceway.framework.contracts import Integrator
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
 BASE: Tables = {
@@ -47,13 +48,13 @@ def transient(registry: Registry) -> list[str]:
 
 
 def is_transient(entry: Entry) -> bool:
-    plugin: Any = entry.plugin
+    plugin: type[Integrator] = entry.plugin
     return plugin.inertial and not plugin.steady
 
 
 def pair_laws(registry: Registry) -> list[str]:
     """Names of the laws that rigid bodies can use, without memory: they have a stored energy."""
-    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
     return [e.name for e in entries if "resultant" in e.plugin.discretisations]
 
 

@@ -7,7 +7,7 @@ import io
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import attrs
 import numpy as np
@@ -23,8 +23,12 @@ from raceway.studies.sweep.survey import key_facts
 from raceway.studies.sweep.variables import ARRAYS, DOF, NUMBERS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import h5netcdf
     import xarray
+
+    from raceway.studies.sweep.design import Design
 
 RESULTS, TABLE = "results.nc", "results.csv"
 #: Words of any length, as HDF5 has them.
@@ -36,8 +40,8 @@ Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 class Rows(Protocol):
     """A store as it is read."""
 
-    design: Any
-    facts: Any
+    design: Design
+    facts: Tables
     path: Path
 
     @property
@@ -139,7 +143,7 @@ def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
     return found
 
 
-def _labels(values: Any) -> np.ndarray:
+def _labels(values: Sequence[object]) -> np.ndarray:
     """Numbers as numbers; anything else as text."""
     if all(is_number(value) for value in values):
         return np.array(values)
@@ -196,7 +200,7 @@ def write_csv(store: Rows, path: Path) -> Path:
     return path
 
 
-def _lines(store: Rows) -> Iterator[list[Any]]:
+def _lines(store: Rows) -> Iterator[list[object]]:
     keys = store.design.keys
     places: dict[str, list[tuple[str, ...]]] = {
         "displacement": [(name,) for name in DOF],

@@ -124,7 +124,7 @@ class Design:
         return f"{' x '.join(str(n) for n in self.shape)} points over {', '.join(self.keys)}"
 
 
-def _few(values: Sequence[Any]) -> str:
+def _few(values: Sequence[object]) -> str:
     """Values of an axis; of a long one the ends and how many."""
     if len(values) <= _MOST_SHOWN:
         return ", ".join(shown(value) for value in values)
@@ -204,7 +204,7 @@ def _csv_points(path: Path) -> list[Tables]:
     return [{key: parse_value(value) for key, value in zip(keys, row, strict=True)} for row in rows[1:]]
 
 
-def _json_points(path: Path) -> Any:
+def _json_points(path: Path) -> object:
     try:
         return json.loads(_text(path))
     except ValueError as why:
@@ -225,7 +225,7 @@ def _text(path: Path) -> str:
         raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
 
 
-def _listed(path: Path, points: Any) -> Design:
+def _listed(path: Path, points: object) -> Design:
     if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
         raise SceneError.at(str(path), None, "must hold a list of points, each with keys of the scene and their values")
     points = [dict(_dotted(point)) for point in points]

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -171,7 +171,7 @@ def _refuse_other(there: Store, facts: ReadTables, store: Path) -> None:
         )
 
 
-def _changed(old: Any, new: Any, place: str = "") -> list[str]:
+def _changed(old: object, new: object, place: str = "") -> list[str]:
     """``key: old, now new`` for every leaf of two trees of tables that differs."""
     if isinstance(old, dict) and isinstance(new, dict):
         keys = [*old, *(key for key in new if key not in old)]

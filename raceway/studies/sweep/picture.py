@@ -14,6 +14,8 @@ from raceway.plugins.reports.pictures import new_figure
 from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.collections import Collection
     from matplotlib.figure import Figure
@@ -204,7 +206,7 @@ def _places(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
     return np.array([names.index(_text(value)) for value in plain], dtype=float), names
 
 
-def _colour(place: int, values: list[Any]) -> Any:
+def _colour(place: int, values: list[Any]) -> str | tuple[float, float, float, float]:
     """Ordered colours for numbers, distinct ones for words."""
     if not _numeric(values) or len(values) == 1:
         return _WORDS[place % len(_WORDS)]
@@ -224,7 +226,7 @@ def _unit(data: DataArray, key: str, brackets: bool = False) -> str:
     return f" [{unit}]" if brackets else f" {unit}"
 
 
-def _numeric(values: list[Any]) -> bool:
+def _numeric(values: Sequence[object]) -> bool:
     return all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
 
 

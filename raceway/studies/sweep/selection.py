@@ -40,7 +40,7 @@ class Selection:
     """
 
     dataset: Dataset
-    axes: dict[str, list[Any]]
+    axes: Tables
     fixed: Tables
     unfinished: dict[str, int]
 
@@ -54,7 +54,7 @@ class Selection:
         found = json.loads(self.dataset.attrs.get("scene", "{}"))
         return found if isinstance(found, dict) else {}
 
-    def value(self, key: str, default: Any = None) -> Any:
+    def value(self, key: str, default: object = None) -> Any:
         """What a key of the scene is at all points of the selection; ``default`` where it is not given.
 
         Raises
@@ -138,7 +138,7 @@ def select(dataset: Dataset, at: ReadTables) -> Selection:
     if mistakes:
         raise SceneError(mistakes)
     part = _list_at(dataset, chosen) if LIST in dataset.dims else dataset.sel(chosen)
-    axes, fixed = dict[str, list[Any]](), Tables()
+    axes, fixed = Tables(), Tables()
     for key in keys:
         values = _values(part[key].values)
         if key in chosen or len(values) == 1:
@@ -161,7 +161,7 @@ def _text(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
-def listed(values: Sequence[Any]) -> str:
+def listed(values: Sequence[object]) -> str:
     """Values for a message; long lists are shortened in the middle."""
     texts = [shown(value) for value in values]
     if len(texts) > _SHOWN:
@@ -212,7 +212,7 @@ def _unfinished(dataset: Dataset) -> dict[str, int]:
     return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state != DONE}
 
 
-def _as_grid(part: Dataset, axes: Mapping[str, list[Any]], fixed: ReadTables) -> Dataset:
+def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
     """Axes that do not vary dropped, the others sorted; a list becomes a grid where it fills one."""
     keys = list(axes)
     if LIST not in part.dims:

@@ -215,7 +215,7 @@ class Store:
         """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
         return hashlib.blake2b(repr((self._origin, number, state, *rest)).encode(), digest_size=16).hexdigest()
 
-    def _sound(self, number: int, state: Any, rest: tuple[Any, ...], digest: Any) -> bool:
+    def _sound(self, number: int, state: object, rest: tuple[Any, ...], digest: object) -> bool:
         """Whether a row says what was written: finished ones have a digest, the others a state alone."""
         if state in ("waiting", "running"):
             return True

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -12,6 +12,8 @@ from raceway.commands.inputs import require_matplotlib, slug, writable
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from raceway.studies.sweep.selection import Selection
 
 store_argument = click.argument("store", type=PATH)
@@ -102,7 +104,7 @@ def plot_words(content: Tables) -> list[str]:
     return lines + [f"written: {name}" for name in content["files"]]
 
 
-def told(lines: list[str], *tables: Any) -> Any:
+def told(lines: list[str], *tables: RenderableType) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 

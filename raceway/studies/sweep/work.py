@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -36,16 +37,16 @@ class Chain:
     tables: Tables
     program: str
 
-    def __call__(self, points: list[Any], registry: Registry) -> list[Tables]:
+    def __call__(self, points: list[tuple[int, Tables]], registry: Registry) -> list[Tables]:
         before: Result | None = None
-        rows, parts = [], dict[Any, Any]()
+        rows, parts = [], dict[Hashable, Any]()
         for number, point in points:
             row, before = self._row(number, point, registry, before, parts)
             rows.append(row)
         return rows
 
     def _row(
-        self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Any, Any]
+        self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Hashable, Any]
     ) -> tuple[Tables, Result | None]:
         from raceway.pipeline.run import run
 

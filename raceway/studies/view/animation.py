@@ -16,6 +16,8 @@ from raceway.studies.view.bearing import Bearing, Part
 if TYPE_CHECKING:
     from types import ModuleType
 
+    from raceway.studies.view.bearing import State
+
 _SIZE = (640, 640)
 _SECONDS = 4.0
 _INK, _ORBIT, _FORCE = "#20262c", "#c8501e", "#0b5fa5"
@@ -60,7 +62,7 @@ def animate(
     return write_whole(_gif(frames), path)
 
 
-def _rings(bearing: Bearing, state: Any) -> list[Part]:
+def _rings(bearing: Bearing, state: State) -> list[Part]:
     """The outer ring, seen through, where it is, and the inner one where its motion takes it."""
     import attrs
 

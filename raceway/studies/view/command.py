@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -16,6 +16,8 @@ from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from raceway.scene.tables import Scene
 
 
@@ -70,7 +72,7 @@ def _mesh(scene: Scene, folder: Path) -> Path:
     return draw(mesh_scene(scene), f"{scene.title}\nthe mesh", folder / "mesh.png")
 
 
-def _screen(content: Tables) -> Any:
+def _screen(content: Tables) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 

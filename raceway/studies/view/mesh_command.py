@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import click
@@ -29,6 +29,9 @@ from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from raceway.framework.contracts import Format
     from raceway.framework.registry import Entry
 
 
@@ -88,7 +91,7 @@ def mesh(
             failed = attempt(lambda: [_draw(meshes, content, folder)], files)
     content["files"] = files
 
-    def screen() -> Any:
+    def screen() -> RenderableType:
         from raceway.studies.view.mesh_screen import mesh_screen
 
         return mesh_screen(content)
@@ -106,7 +109,7 @@ def _write(form: Entry, meshes: Tables, folder: Path, progress: ProgressBar) -> 
     for done, (name, body) in enumerate(meshes.items()):
         progress(f"writing {name}", done, len(meshes))
         with blamed(str(form), "write()"):
-            writer: Any = form.plugin()
+            writer: Format = form.plugin()
             path = folder / f"{slug(name)}{writer.suffixes[0]}"
             writer.write(path, body)
         paths.append(path)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def draw(meshes: Mapping[str, HexMesh], title: str, path: Path) -> Path:
 
 def _image(pyvista: ModuleType, meshes: Mapping[str, HexMesh], title: str) -> np.ndarray:
     """(rows, columns, 3) bytes."""
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(_SIZE))
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(_SIZE))
     plotter.background_color = "white"
     outside: dict[int, np.ndarray] = {}  # balls share one array of cells
     for name, mesh in meshes.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from raceway.studies.view.bearing import Bearing, Part, State
 if TYPE_CHECKING:
     from types import ModuleType
 
+T = TypeVar("T")
 LOADS, PRESSURES = "viridis", "inferno"
 _INK = "#20262c"
 _BAR: Tables = {
@@ -27,7 +28,7 @@ _BAR: Tables = {
 }
 
 
-def pyvista_of(otherwise: str) -> Any:
+def pyvista_of(otherwise: str) -> ModuleType:
     """The package.
 
     Raises
@@ -43,7 +44,7 @@ def pyvista_of(otherwise: str) -> Any:
     return pyvista
 
 
-def quietly(pyvista: ModuleType, draw: Callable[..., Any], *given: Any) -> Any:
+def quietly(pyvista: ModuleType, draw: Callable[..., T], *given: object) -> T:
     """Draw; without a display VTK says so on standard error, and then draws in memory as it was asked to.
 
     Raises

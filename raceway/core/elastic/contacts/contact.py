@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps
 from raceway.core.elastic.contacts.traction import Friction
 
 if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
     from raceway.core.jit import Kernel
 
 #: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
@@ -66,7 +68,7 @@ class Contact(ABC):
         self.normal, self.bend = np.zeros((n, 3)), np.zeros((n, 3, 3))
         self.force, self.stiffness, self.rate_stiffness = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
         self._stiffest = np.zeros(n)
-        self.move: Any = None
+        self.move: csr_matrix = None
 
     # What kinds of contacts differ in
 
@@ -144,7 +146,7 @@ class Contact(ABC):
         moved = (self.move @ u).reshape(-1, 3)
         return np.asarray(self.move.T @ np.einsum("iab,ib->ia", blocks, moved).reshape(-1))
 
-    def tangent(self, blocks: np.ndarray) -> Any:
+    def tangent(self, blocks: np.ndarray) -> csr_matrix:
         """(3 nodes, 3 nodes) sparse B^T D B, of the points whose block is not zero."""
         from scipy.sparse import bsr_array
 

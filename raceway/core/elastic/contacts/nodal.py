@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -13,6 +13,8 @@ from raceway.core.elastic.contacts.surface import SurfacePoints
 from raceway.core.elastic.contacts.traction import Friction
 
 if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
     from raceway.core.jit import Kernel
 
 #: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
@@ -72,7 +74,7 @@ class NodalContact(Contact):
         self.outside = np.zeros(len(area))
         self._projected = np.full((len(area), 3), np.inf)
         self._short = np.zeros(len(area))
-        self._weights: Any = None
+        self._weights: csr_matrix = None
         self.update(self.place)
 
     @property

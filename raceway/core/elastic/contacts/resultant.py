@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -12,6 +12,8 @@ from raceway.core.elastic.contacts.footprint import Footprint
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
     from raceway.core.jit import Kernel
 
 #: Newton's iterations of the law with the mesh's compliance, and their tolerance over the deepest gap.
@@ -149,7 +151,7 @@ class ResultantContact(Contact):
         return super().energy() - 0.5 * float(self.local @ self._carried**2)
 
 
-def _moves(touches: list[Touch], nodes: int) -> Any:
+def _moves(touches: list[Touch], nodes: int) -> csr_matrix:
     """(3 n, 3 nodes) sparse displacement of balls against races."""
     from scipy.sparse import coo_array
 
