@@ -216,24 +216,7 @@ def scene_from_dict(
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "requires", "title"]
-    for name in tables:
-        if name not in known:
-            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
-    title = tables.get("title", "untitled")
-    if not isinstance(title, str) or not title.strip():
-        mistakes.append(Mistake("title", title, "must be a string that is not empty"))
-        title = "untitled"
-    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
-    for name in list(plain):
-        if name != "title" and not isinstance(plain[name], dict):
-            mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
-            plain[name] = {}
-    check_requires(plain.get("requires", {}), registry, mistakes)
-    if "bearing" in plain:
-        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
-    else:
-        mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
+    title, plain = _plain_tables(tables, registry, mistakes)
     parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 
@@ -262,6 +245,29 @@ def scene_from_dict(
     if mistakes:
         raise SceneError(mistakes)
     return Scene(title=title, source=plain, **parts)
+
+
+def _plain_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
+    """Title, and a copy of the known tables with the bearing's preset in it."""
+    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "requires", "title"]
+    for name in tables:
+        if name not in known:
+            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
+    title = tables.get("title", "untitled")
+    if not isinstance(title, str) or not title.strip():
+        mistakes.append(Mistake("title", title, "must be a string that is not empty"))
+        title = "untitled"
+    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
+    for name in list(plain):
+        if name != "title" and not isinstance(plain[name], dict):
+            mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
+            plain[name] = {}
+    check_requires(plain.get("requires", {}), registry, mistakes)
+    if "bearing" in plain:
+        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
+    else:
+        mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
+    return title, plain
 
 
 def rig_of(scene: Scene) -> Rig:

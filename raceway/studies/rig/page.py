@@ -38,6 +38,15 @@ def write_page(study: RigStudy, folder: Path) -> list[Path]:
     return [page(study, drawn).write(folder / "rig.html"), *files]
 
 
+_ASSUMED = [
+    "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are left out.",
+    "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
+    "The bearing is the scene's, nonlinear: force and moment of the shaft act on it in a run of its own, until shaft and "
+    "bearing move alike. Motion at other orders than 1x is left out of the signals.",
+    "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
+]
+
+
 def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     """Words, tables and figures."""
     content = study.as_dict()
@@ -66,6 +75,14 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         "force is amplified, too, because the bow moves the disc outwards.",
     )
     out.table(*_printed(rows), caption="K over the true K, by the correction for the shaft")
+    _signals(out, study, drawn)
+    out.section("What is assumed")
+    out.listing(_ASSUMED)
+    return out
+
+
+def _signals(out: Page, study: RigStudy, drawn: dict[str, Figure]) -> None:
+    """Signals, spectrum and orbits; the error by its causes."""
     out.section("Signals")
     out.figures(
         [
@@ -88,18 +105,7 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         [(drawn["error-split"], "dots of error for each cause on a logarithmic scale", "Error of K by its causes")],
         wide=True,
     )
-    out.table(*_split(rows), caption="Error of K [%] by one cause at a time")
-    out.section("What is assumed")
-    out.listing(
-        [
-            "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are left out.",
-            "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
-            "The bearing is the scene's, nonlinear: force and moment of the shaft act on it in a run of its own, until shaft and "
-            "bearing move alike. Motion at other orders than 1x is left out of the signals.",
-            "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
-        ]
-    )
-    return out
+    out.table(*_split(study.as_dict()["rows"]), caption="Error of K [%] by one cause at a time")
 
 
 def _rig_words(study: RigStudy) -> str:

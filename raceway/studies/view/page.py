@@ -91,7 +91,7 @@ def _scene(bearing: Bearing, state: State, top: float, peak: float) -> Tables:
     shapes = {"ball": _packed(ball(bearing.diameter, 20, 32))}
     parts: list[Tables] = []
 
-    def add(part: Part, shape: str, at: np.ndarray, colour: np.ndarray) -> None:
+    def add(part: Part, shape: str, at: np.ndarray, colour: np.ndarray | list[float]) -> None:
         parts.append(
             {"name": part.name, "shape": shape, "at": _short(at), "colour": _short(colour), "opacity": part.opacity}
         )
@@ -190,5 +190,5 @@ def _hex(colour: str | None) -> list[float]:
     return [int(text[k : k + 2], 16) / 255.0 for k in (0, 2, 4)]
 
 
-def _short(values: np.ndarray) -> list[float]:
+def _short(values: np.ndarray | list[float]) -> list[float]:
     return [round(float(value), 4) for value in np.asarray(values).ravel()]
