@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -15,6 +16,8 @@ from raceway.framework.registry import default_registry
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
+
+R = TypeVar("R")
 
 #: Where results go unless --out says otherwise.
 RESULTS = Path("raceway-out")
@@ -84,6 +87,19 @@ def common(command: Callable[..., Any]) -> Callable[..., Any]:
     """--json and --debug, which every command takes; ``console`` reads both from the command line, too."""
     command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
+
+
+def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
+    """The innermost decorator of a command with many options: they come as one record, an attrs class with their names."""
+
+    def decorate(command: Callable[[R], int]) -> Callable[..., int]:
+        @wraps(command)
+        def filled(**given: Any) -> int:
+            return command(kind(**given))
+
+        return filled
+
+    return decorate
 
 
 def show_progress(remaining: bool = False, waiting: str | None = None) -> Any:

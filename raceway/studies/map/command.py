@@ -6,6 +6,7 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import attrs
 import click
 
 from raceway.commands.frame import (
@@ -16,6 +17,7 @@ from raceway.commands.frame import (
     out_folder,
     plugin_files,
     processes_at_a_time,
+    record,
     registry_with,
     scene_if_any,
     set_keys,
@@ -30,6 +32,21 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from raceway.framework.registry import Registry
+
+
+@attrs.frozen
+class MapOptions:
+    """What ``raceway study map`` is given."""
+
+    scene: Path | None
+    changes: tuple[str, ...]
+    vary: tuple[str, ...]
+    method: str
+    processes: int
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command("map", short_help="Hardening or softening of k(speed) over axial load, tilt and contact angle.")
@@ -48,10 +65,8 @@ if TYPE_CHECKING:
 @click.option("--pictures/--no-pictures", default=True, help="Write map.html and its pictures (default).")
 @plugin_files
 @common
-def study_map(
-    scene: Path | None, changes: tuple[str, ...], vary: tuple[str, ...], method: str, processes: int, out: Path | None,
-    pictures: bool, plugins: tuple[Path, ...], as_json: bool,
-) -> int:  # fmt: skip
+@record(MapOptions)
+def study_map(given: MapOptions) -> int:
     """Map where k(speed) hardens or softens, where balls lose contact, where the groove's edge is reached, where hardening
     saturates. Without SCENE: the article's B7206C under the rig's unbalance, half of it on this bearing.
 
@@ -65,13 +80,13 @@ def study_map(
     """
     from raceway.studies.map.design import design
 
-    registry = registry_with(plugins)
-    tables, mistakes = _start(scene, changes, registry)
+    registry = registry_with(given.plugins)
+    tables, mistakes = _start(given.scene, given.changes, registry)
     if mistakes:
         raise SceneError(mistakes)
-    planned = design(tables, vary, method, registry)
-    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-map")
-    pictures = pictures and has_matplotlib()
+    planned = design(tables, given.vary, given.method, registry)
+    folder = writable(given.out or RESULTS / f"{slug(str(tables['title']))}-map")
+    pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "map-rows.jsonl"
     with show_progress() as progress:
@@ -79,7 +94,7 @@ def study_map(
         from raceway.studies.map.study import study_map as study
 
         with keeping("points", kept):
-            found = study(planned, processes, kept, registry, plugins, progress)
+            found = study(planned, given.processes, kept, registry, given.plugins, progress)
         progress("writing", 0, 0)
         written: list[str] = []
         failed = attempt(lambda: write_data(found, folder), written)
@@ -89,7 +104,7 @@ def study_map(
     failed = failed or found.fault
     if failed is None and not any(row["status"] == "completed" for row in found.rows):
         failed = ConvergenceError(f"no point of the map gave a number; the first reason: {found.rows[0]['reason']}")
-    show(content, as_json, failed, lambda: _screen(content))
+    show(content, given.as_json, failed, lambda: _screen(content))
     return 0
 
 

@@ -4,13 +4,28 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import attrs
 import click
 
 from raceway.commands.console import warn
-from raceway.commands.frame import PATH, attempt, common, show
+from raceway.commands.frame import PATH, attempt, common, record, show
 from raceway.commands.inputs import slug, writable
 from raceway.storage.tables import Tables
 from raceway.studies.sweep.store_command import at_option, head, selection_of, store_argument, told
+
+
+@attrs.frozen
+class ExportOptions:
+    """What ``raceway export`` is given."""
+
+    store: Path
+    ross: Path
+    at: tuple[str, ...]
+    source: str | None
+    damping: float
+    ross_version: str | None
+    node: int
+    as_json: bool
 
 
 @click.command(short_help="Write a sweep's coefficients for a rotor program.")
@@ -33,16 +48,8 @@ from raceway.studies.sweep.store_command import at_option, head, selection_of, s
     "--node", type=click.IntRange(min=0), default=0, show_default=True, help="Of the rotor, where the bearing stands."
 )
 @common
-def export(
-    store: Path,
-    ross: Path,
-    at: tuple[str, ...],
-    source: str | None,
-    damping: float,
-    ross_version: str | None,
-    node: int,
-    as_json: bool,
-) -> int:
+@record(ExportOptions)
+def export(given: ExportOptions) -> int:
     """Write kyy, kyz, kzy, kzz, cyy, ... over speed, and over speed and frequency, for ROSS.
 
     ROSS's axes X, Y, Z are y, z, x here. The sweep has at least 5 values of excitation.speed_rpm; over
@@ -56,19 +63,19 @@ def export(
     from raceway.studies.ross.coefficients import coefficients
     from raceway.studies.ross.file import check_name, installed_generation, ross_file
 
-    check_name(ross)
-    writable(ross.parent)
-    selection = selection_of(store, at)
+    check_name(given.ross)
+    writable(given.ross.parent)
+    selection = selection_of(given.store, given.at)
     found = installed_generation()
-    generation = int(ross_version) if ross_version else found or 3
-    if ross_version is None and found is None:
+    generation = int(given.ross_version) if given.ross_version else found or 3
+    if given.ross_version is None and found is None:
         warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
-    table = coefficients(selection, source, damping)
-    file = ross_file(table, generation, slug(selection.title), node, head(selection))
+    table = coefficients(selection, given.source, given.damping)
+    file = ross_file(table, generation, slug(selection.title), given.node, head(selection))
     files: list[str] = []
-    failed = attempt(lambda: [file.write(ross)], files)
+    failed = attempt(lambda: [file.write(given.ross)], files)
     content: Tables = {
-        "store": str(store),
+        "store": str(given.store),
         "ross": generation,
         "source": table.source,
         "definition": table.definition,
@@ -80,7 +87,7 @@ def export(
     }
     from raceway.commands.screen.text import rows_table
 
-    show(content, as_json, failed, lambda: told(export_words(content), rows_table(export_rows(content))))
+    show(content, given.as_json, failed, lambda: told(export_words(content), rows_table(export_rows(content))))
     return 0
 
 
