@@ -8,7 +8,7 @@ import re
 import unicodedata
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.commands.console import warn
 from raceway.errors import Mistake, RacewayError, SceneError, extra
@@ -70,7 +70,7 @@ def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) ->
         raise SceneError.at(str(scene), None, f"is a folder{hint}")
     tables = read_toml(scene)
     mistakes: list[Mistake] = []
-    made: list[tuple[str, Any]] = []
+    made: list[tuple[str, object]] = []
     for change in changes:
         try:
             made.append(parse_change(change))

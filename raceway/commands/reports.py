@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.sources import blamed
 
 if TYPE_CHECKING:
+    from raceway.framework.contracts import Report
     from raceway.framework.registry import Entry, Registry
     from raceway.pipeline.result import Result
 
 #: A report's entry in the registry, and the report with its options' defaults.
-Chosen = tuple["Entry", Any]
+Chosen = tuple["Entry", "Report"]
 
 
 def chosen_reports(names: Sequence[str], registry: Registry) -> list[Chosen]:

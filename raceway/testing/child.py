@@ -17,7 +17,9 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import TypeVar
+
+T = TypeVar("T")
 
 #: Time [s] that a duty may take on busy cores, compiling too, and memory [bytes] that it may take beyond what is there.
 LIMIT_S, LIMIT_BYTES = 300.0, 8 * 2**30
@@ -27,7 +29,7 @@ class Died(Exception):
     """How the child ended without an answer, in words."""
 
 
-def apart(work: Callable[[], Any]) -> Any:
+def apart(work: Callable[[], T]) -> T:
     """What ``work()`` returns or raises, from a child process.
 
     Parameters

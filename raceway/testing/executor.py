@@ -28,7 +28,7 @@ class Doubling:
     def fault(self) -> str | None:
         return None
 
-    def __call__(self, points: list[Any]) -> Any:
+    def __call__(self, points: list[int]) -> Refused | list[int]:
         if self.broken in points:
             raise ArithmeticError("a fault of the work itself")
         return Refused("here", "a trial") if self.refused in points else [2 * point for point in points]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import floor, log10
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeVar
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -16,9 +16,11 @@ from rich.text import Text
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:
-    from raceway.storage.tables import Tables
+    pass
 
 Row = tuple[str, str, str]
+
+T = TypeVar("T")
 
 
 def sections(rows: Iterable[Row]) -> RenderableType:
@@ -64,10 +66,10 @@ def written(files: Sequence[str]) -> list[RenderableType]:
     return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
 
 
-def grouped(bodies: ReadTables) -> list[tuple[str, Any]]:
+def grouped(bodies: Mapping[str, T]) -> list[tuple[str, T]]:
     """Bodies with what is said of them; balls of which the same is said share a line, ``balls (12)``."""
-    rows: list[tuple[str, Any]] = []
-    balls: list[tuple[Tables, int]] = []
+    rows: list[tuple[str, T]] = []
+    balls: list[tuple[T, int]] = []
     for name, said in bodies.items():
         if not name.startswith("ball"):
             rows.append((name, said))

@@ -89,7 +89,7 @@ class _Worker:
         with suppress(OSError):  # it is dead, which is seen when its answer is waited for
             self.pipe.send(batch[1])
 
-    def answer(self, arrived: bool, patience: float) -> Any:
+    def answer(self, arrived: bool, patience: float) -> object:
         """What it has to say of its batch, which it is then done with; None where nothing yet."""
         if not arrived:
             return Lost(f"no answer within {patience:g} s: it hangs") if time.monotonic() - self.begun > patience else None

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import attrs
 
@@ -71,7 +70,7 @@ def last_digit(value: float) -> float:
     return float(10.0 ** (math.floor(math.log10(abs(value))) - 3))
 
 
-def secants(given: Sequence[Any], registry: Registry) -> list[Tables]:
+def secants(given: tuple[str, float, bool], registry: Registry) -> list[Tables]:
     """Secant stiffness [N/m] at the five speeds; a task of ``runs.work``.
 
     Parameters
@@ -101,7 +100,7 @@ def secants(given: Sequence[Any], registry: Registry) -> list[Tables]:
     return rows
 
 
-def trend(given: Sequence[Any], rows: Sequence[Tables]) -> Trend:
+def trend(given: tuple[str, float, bool], rows: Sequence[Tables]) -> Trend:
     """The row of a table from what ``secants`` found."""
     tilt, load, inertia = given
     first, ratios = TRENDS[tilt, load, inertia]

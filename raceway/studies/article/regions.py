@@ -61,7 +61,7 @@ def _leaves(items: list[tuple[Tables, bool]], keys: list[str]) -> list[str] | No
     return found
 
 
-def _named(key: str, chosen: list[Any], every: list[Any]) -> str:
+def _named(key: str, chosen: Sequence[Any], every: Sequence[Any]) -> str:
     if key == "tilt":
         words = [TILT_WORDS[value].removeprefix("tilt ") for value in chosen]
         return "tilt " + " or ".join(words)
@@ -76,7 +76,7 @@ def _named(key: str, chosen: list[Any], every: list[Any]) -> str:
     return " or ".join(str(value) for value in chosen)
 
 
-def _ranges(chosen: list[float], every: list[float], unit: str) -> str:
+def _ranges(chosen: Sequence[float], every: Sequence[float], unit: str) -> str:
     """Neighbours as one range."""
     runs: list[list[float]] = []
     for value in every:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -17,6 +17,7 @@ from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED
 from raceway.studies.many.page import Cell, Page
 
 if TYPE_CHECKING:
+    from raceway.storage.tables import ReadTables
     from raceway.studies.article.study import Article
 
 TONES = {HOLDS: "good", PARTLY: "partly", NOT: "bad", FAILED: "failed", UNTESTED: "partly"}
@@ -162,7 +163,7 @@ def _badge(one: Verdict) -> Cell:
 
 def _setting(out: Page, study: Article) -> None:
     made = study.curves.design
-    tables: Any = made.tables
+    tables: ReadTables = made.tables
     mass = tables.get("rotor", {}).get("mass", 0.0)
     given = tables["excitation"]
     constant = f"{given['force']:g} N" if "force" in given else f"that at {given['reference_speed_rpm']:g} r/min"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -34,7 +34,7 @@ class ComparisonPicture:
 
     dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
 
-    def write(self, result: Any, folder: Path) -> list[Path]:
+    def write(self, result: Tables, folder: Path) -> list[Path]:
         """Draw comparison.png.
 
         Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import click
@@ -31,6 +31,7 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from raceway.errors import Mistake
     from raceway.framework.registry import Registry
 
 
@@ -108,7 +109,7 @@ def study_map(given: MapOptions) -> int:
     return 0
 
 
-def _start(scene: Path | None, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Any]]:
+def _start(scene: Path | None, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Mistake]]:
     """Tables of the scene, or of the map's own, with the changes."""
     if scene is not None:
         return changed_tables(scene, changes, registry)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.storage.tables import Tables
 from raceway.studies.map.design import ANGLE, AXIAL, SPEED, TILT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 #: Local exponents n = d ln k / d ln w closer to 0 than this count as level.
 LEVEL = 0.02
@@ -79,7 +82,7 @@ def trend(exponents: Sequence[float]) -> str:
     return ", then ".join(words) if len(words) < 4 else f"{words[0]}, then changes its sign {len(words) - 1} times"
 
 
-def _from(rows: Sequence[Tables], holds: Any) -> float | None:
+def _from(rows: Sequence[Tables], holds: Callable[[Tables], bool]) -> float | None:
     """The lowest speed at which something holds."""
     return next((row["point"][SPEED] for row in rows if holds(row)), None)
 

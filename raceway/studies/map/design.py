@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable
 from math import pi
-from typing import Any
 
 import attrs
 
@@ -19,7 +18,7 @@ from raceway.studies.many.points import tables_at
 
 AXIAL, SPEED, TILT, ANGLE = "load.axial", "excitation.speed_rpm", "supports.tilt", "bearing.contact_angle_deg"
 #: The axes in the order of the rows, with their default values.
-AXES: dict[str, tuple[Any, ...]] = {
+AXES: dict[str, tuple[float | str, ...]] = {
     ANGLE: (15.0, 25.0, 40.0),
     TILT: ("locked", "free"),
     AXIAL: (50.0, 100.0, 200.0, 400.0, 700.0, 1000.0, 2000.0, 4000.0, 7000.0, 10000.0),
@@ -47,7 +46,7 @@ class Design:
     """
 
     tables: Tables
-    axes: dict[str, tuple[Any, ...]]
+    axes: dict[str, tuple[float | str, ...]]
     method: str
 
     def points(self) -> list[Tables]:

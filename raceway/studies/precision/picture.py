@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -35,7 +35,7 @@ class PrecisionReport:
     picture: bool = option(True, help="whether to draw precision.png")
     dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
 
-    def write(self, result: Any, folder: Path) -> list[Path]:
+    def write(self, result: Tables, folder: Path) -> list[Path]:
         """Write the files.
 
         Parameters

@@ -12,7 +12,7 @@ In this order:
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -24,7 +24,7 @@ from raceway.studies.many.row_store import RowStore
 from raceway.studies.precision.design import Setting, is_steady, needs_motion, setting_at
 
 if TYPE_CHECKING:
-    from raceway.framework.contracts import Integrator
+    from raceway.framework.contracts import Integrator, Mesher
 
 #: Steps of the reference over the finest steps of the rows, and its least steps and turns.
 FINER = 4
@@ -114,7 +114,7 @@ def find_reference(group: list[Setting], runner: Runner, given: ReadTables | Non
     return Reference(finer.values, bounds, how)
 
 
-def _mesh(setting: Setting) -> Any:
+def _mesh(setting: Setting) -> Mesher | None:
     return None if setting.scene is None else setting.scene.mesh
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 
@@ -19,7 +19,7 @@ class StabilityReport:
 
     name: ClassVar[str] = "stability"
 
-    def write(self, result: Any, folder: Path) -> list[Path]:
+    def write(self, result: Tables, folder: Path) -> list[Path]:
         """Write the files.
 
         Parameters

@@ -8,7 +8,6 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -179,7 +178,7 @@ def design_file(path: Path) -> Design:
     return grid(f"{key}={','.join(values)}" for key, values in words)
 
 
-def _dotted(table: ReadTables, before: str = "") -> Iterator[tuple[str, Any]]:
+def _dotted(table: ReadTables, before: str = "") -> Iterator[tuple[str, object]]:
     """``a.b`` for [grid] "a.b" and for [grid.a] b alike."""
     for key, value in table.items():
         if isinstance(value, dict):

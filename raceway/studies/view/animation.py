@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from raceway.studies.view.bearing import State
+    from raceway.studies.view.states import Turn
 
 _SIZE = (640, 640)
 _SECONDS = 4.0
@@ -24,7 +25,7 @@ _INK, _ORBIT, _FORCE = "#20262c", "#c8501e", "#0b5fa5"
 
 
 def animate(
-    bearing: Bearing, turn: Any, heading: str, path: Path, on_frame: Callable[[int, int], None] | None = None
+    bearing: Bearing, turn: Turn, heading: str, path: Path, on_frame: Callable[[int, int], None] | None = None
 ) -> Path:
     """Write a GIF that repeats itself.
 
@@ -77,7 +78,7 @@ def _rings(bearing: Bearing, state: State) -> list[Part]:
     return parts
 
 
-def _inside(bearing: Bearing, turn: Any, k: int, strongest: float) -> list[Part]:
+def _inside(bearing: Bearing, turn: Turn, k: int, strongest: float) -> list[Part]:
     """In the bore: the orbit as it is drawn, the ring's centre on it, the force as an arrow."""
     size, front = bearing.diameter, 500.0 * bearing.shape.width
     # As large as fits the bore, whatever the factor of the bodies is.
