@@ -15,9 +15,11 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import default_registry
 
 if TYPE_CHECKING:
+    from raceway.commands.progress import ProgressBar
     from raceway.framework.registry import Registry
 
 R = TypeVar("R")
+F = TypeVar("F", bound=Callable[..., object])
 
 #: Where results go unless --out says otherwise.
 RESULTS = Path("raceway-out")
@@ -35,9 +37,7 @@ processes_at_a_time = click.option(
 )
 
 
-def out_option(
-    default: str, what: str = "Folder", metavar: str = "DIR"
-) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def out_option(default: str, what: str = "Folder", metavar: str = "DIR") -> Callable[[F], F]:
     """--out; ``default`` is only shown, the command chooses it."""
     return click.option("--out", type=PATH, metavar=metavar, help=f"{what} [{default}].")
 
@@ -78,12 +78,12 @@ def registry_with(files: tuple[Path, ...]) -> Registry:
     return registry
 
 
-def on_scene(command: Callable[..., Any]) -> Callable[..., Any]:
+def on_scene(command: F) -> F:
     """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
     return scene_file(set_keys(command))
 
 
-def common(command: Callable[..., Any]) -> Callable[..., Any]:
+def common(command: F) -> F:
     """--json and --debug, which every command takes; ``console`` reads both from the command line, too."""
     command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
@@ -102,7 +102,7 @@ def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
     return decorate
 
 
-def show_progress(remaining: bool = False, waiting: str | None = None) -> Any:
+def show_progress(remaining: bool = False, waiting: str | None = None) -> ProgressBar:
     """A bar; ``waiting`` says what happens before the first step where that is not the start of this process."""
     from raceway.commands.progress import ProgressBar
     from raceway.storage.cache_folder import current_folder

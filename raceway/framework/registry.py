@@ -87,7 +87,7 @@ class Registry:
     def hook(self) -> Any:
         return self.manager.hook
 
-    def add(self, plugin: Any, source: str = "", distribution: str = "", version: str = "") -> None:
+    def add(self, plugin: object, source: str = "", distribution: str = "", version: str = "") -> None:
         """Register a module or object with hook implementations; a fault is kept, not raised."""
         source = source or str(getattr(plugin, "__name__", type(plugin).__qualname__))
         self._register(plugin, source, distribution or source, version)
@@ -122,7 +122,7 @@ class Registry:
             raise PluginError("; ".join(str(fault) for fault in faults))
         return added
 
-    def _remove(self, plugin: Any, entries: list[Entry]) -> None:
+    def _remove(self, plugin: object, entries: list[Entry]) -> None:
         if self.manager.is_registered(plugin):
             self.manager.unregister(plugin)
         for entry in entries:
@@ -250,7 +250,7 @@ class Registry:
             return
         self._register(plugin, point.name, distribution, version)
 
-    def _register(self, plugin: Any, source: str, distribution: str, version: str) -> None:
+    def _register(self, plugin: object, source: str, distribution: str, version: str) -> None:
         label = source if source == distribution else f"{source} ({distribution})"
         try:
             hash(plugin)  # pluggy keeps plug-ins in sets

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from typing import Any
 
 import attrs
 
@@ -32,7 +31,7 @@ def implausible(scene: Scene) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _numbers(table: Any, path: str) -> Iterator[tuple[str, str, float]]:
+def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str, float]]:
     """Path, unit and value of every number in a table and the tables in it."""
     cls: type = type(table)
     for name, unit in _units(cls):

@@ -220,7 +220,7 @@ def scene_from_dict(
     parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 
-    def read(name: str, table: object, make: Callable[[], Any]) -> Any:
+    def read(name: str, table: object, make: Callable[[], object]) -> Any:
         mark, before = (name, repr(table)), len(mistakes)  # not the table itself: 1, 1.0 and true are equal, and not alike
         if mark in known_parts:
             return known_parts[mark]

@@ -84,11 +84,11 @@ def _points(value: object, _type: object = None) -> tuple[tuple[float, float], .
     return tuple((_number(p[0]), _number(p[1])) for p in value)
 
 
-def _number_or_word(value: object, _type: object = None) -> Any:
+def _number_or_word(value: object, _type: object = None) -> float | str:
     return value if isinstance(value, str) else _number(value)
 
 
-def _integer_or_word(value: object, _type: object = None) -> Any:
+def _integer_or_word(value: object, _type: object = None) -> int | str:
     return value if isinstance(value, str) else _integer(value)
 
 
@@ -125,14 +125,14 @@ def _converter() -> cattrs.Converter:
         else:
             converter.register_structure_hook_func(_equal_to(kind), hook)
 
-    def factory(cls: type) -> Any:
+    def factory(cls: type) -> Callable[[object, object], object]:
         attrs.resolve_types(cls)
         overrides: Tables = {a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init}
         inner: Any = make_dict_structure_fn(
             cls, converter, _cattrs_forbid_extra_keys=True, _cattrs_detailed_validation=True, **overrides
         )
 
-        def structure(value: object, target: object) -> Any:
+        def structure(value: object, target: object) -> object:
             if not isinstance(value, dict):
                 raise ValueError(f"must be a table, not {_kind(value)}")
             return inner(value, target)

@@ -330,7 +330,7 @@ TABLES: dict[str, type] = {
 }
 
 
-def _plain(part: Any) -> Tables:
+def _plain(part: attrs.AttrsInstance) -> Tables:
     out: Tables = {}
     cls: type = type(part)
     for name, plugin in _keys(cls):
@@ -352,5 +352,5 @@ def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
     return tuple((field.name, "plugin" in field.metadata) for field in attrs.fields(cls))
 
 
-def _lists(value: object) -> Any:
+def _lists(value: object) -> object:
     return [_lists(part) for part in value] if isinstance(value, tuple) else value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -89,7 +89,7 @@ def is_key(scene: Scene, path: str) -> bool:
     table, *rest = path.split(".")
     if table not in (*TABLES, *PLUGIN_TABLES):
         return False
-    part: Any = getattr(scene, table)
+    part = getattr(scene, table)
     plugin = (
         next((getattr(part, f.name) for f in attrs.fields(type(part)) if "plugin" in f.metadata), None) if part else None
     )

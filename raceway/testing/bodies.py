@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -48,7 +48,7 @@ _STEPS, _OF_LIMIT = 12, 0.1
 def _nothing_built() -> Iterator[None]:
     """No bearing comes into being."""
 
-    def refuse(cls: type, *_args: Any, **_keys: Any) -> None:
+    def refuse(cls: type, *_args: object, **_keys: object) -> None:
         require(False, f"builds a {cls.__name__}: that is for build() alone")
 
     Bearing.__new__ = refuse  # type: ignore[assignment, method-assign]
@@ -209,7 +209,7 @@ class BodiesSuite(Suite):
         words = [*bearing.warnings(model, found), *edges]
         require(all(isinstance(one, str) and one for one in words), f"warnings are sentences, not {words!r}")
         for name in ("mesh_error", "contact_error"):
-            answer: Any = getattr(bearing, name)(model, found)
+            answer = getattr(bearing, name)(model, found)
             good = isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[1], str) and bool(answer[1])
             require(good, f"{name}() returns {answer!r}, not (number or None, how it was found)")
             require(answer[0] is None or 0.0 <= answer[0] < np.inf, f"{name}() is {answer[0]!r}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -107,11 +107,11 @@ class IdentifierSuite(Suite):
             return [synthetic_record(frequency=r * FREQUENCY, seed=k, **spoilt) for k, r in enumerate(_SPEEDS)]
         return [synthetic_record(**spoilt)] if "record" in identifier.needs else []
 
-    def _identify(self, identifier: Identifier, sense: int = 1, direction: float = 0.0, **spoilt: Any) -> Identification:
+    def _identify(self, identifier: Identifier, sense: int = 1, direction: float = 0.0, **spoilt: float) -> Identification:
         records = self._records(identifier, {"sense": sense, "direction": direction, **spoilt})
         return identifier.identify(records, equilibrium_at_rest(), model_of(sense, direction))
 
-    def _recovers(self, identifier: Identifier, tolerance: float, **spoilt: Any) -> str:
+    def _recovers(self, identifier: Identifier, tolerance: float, **spoilt: float) -> str:
         if spoilt and not identifier.needs & {"record", "speeds"}:
             return "no record is used"
         w, wanted = 2.0 * np.pi * FREQUENCY, dynamic_stiffness()

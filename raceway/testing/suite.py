@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from raceway.core.jit import Kernel
 
 PASSED, FAILED, EXPECTED, UNEXPECTED = "passed", "failed", "expected failure", "unexpectedly passed"
+
 EXPECTED_FAILURES = "raceway_expected_failures.toml"
 
 
@@ -80,10 +81,10 @@ class Conformity:
         }
 
 
-def duty(text: str) -> Callable[[Callable[..., str | None]], Any]:
+def duty(text: str) -> Callable[[Callable[..., str | None]], Callable[[Suite], None]]:
     """Make a check out of a method ``test_<name>(self, plugin)``."""
 
-    def decorate(function: Callable[..., str | None]) -> Any:
+    def decorate(function: Callable[..., str | None]) -> Callable[[Suite], None]:
         name = function.__name__.removeprefix("test_")
 
         def method(self: Suite) -> None:
@@ -213,7 +214,7 @@ class Suite:
         except Exception as why:  # the plug-in's own code
             raise ConformityError(f"no example can be made: {type(why).__name__}: {why}") from why
 
-    def _run(self, check: Callable[..., str | None], plugin: Any) -> str | None:
+    def _run(self, check: Callable[..., str | None], plugin: object) -> str | None:
         try:
             return check(self, plugin)
         except ConformityError as why:

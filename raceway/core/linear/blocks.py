@@ -10,10 +10,13 @@ from numba import float32, float64, int32, void
 from raceway.core.jit import jit
 
 if TYPE_CHECKING:
+    from numba.core.typing.templates import Signature
     from scipy.sparse import csr_matrix
 
+    from raceway.core.jit import Kernel
 
-def _signature(real: Any) -> Any:
+
+def _signature(real: Any) -> Signature:
     vector = real[::1]
     return void(int32[::1], int32[::1], vector, vector, vector, real, vector)
 
@@ -57,11 +60,11 @@ class BlockMatrix:
     real : numpy.float64 or numpy.float32, of the blocks and of all vectors
     """
 
-    def __init__(self, matrix: csr_matrix, real: Any = np.float64) -> None:
+    def __init__(self, matrix: csr_matrix, real: type[np.floating] = np.float64) -> None:
         blocks = matrix.tobsr((3, 3))
         self._starts, self._columns = blocks.indptr.astype(np.int32), blocks.indices.astype(np.int32)
         self._blocks = np.ascontiguousarray(blocks.data.reshape(-1), dtype=real)
-        self._kernel: Any = _multiply_double if real is np.float64 else _multiply_single
+        self._kernel: Kernel = _multiply_double if real is np.float64 else _multiply_single
         self._real = real
         self._nothing = np.zeros(matrix.shape[0], dtype=real)
 

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -18,6 +18,8 @@ from raceway.framework.options import between, inside, option, optional
 from raceway.framework.orphans import deaf_to_terminals
 
 if TYPE_CHECKING:
+    from distributed import Client, Future
+
     from raceway.framework.contracts import Batch
 
 #: How often the list of workers is looked at [s].
@@ -56,7 +58,7 @@ class Dask:
             yield from flight.answers(iter(batches))
 
     @contextmanager
-    def _client(self) -> Iterator[Any]:
+    def _client(self) -> Iterator[Client]:
         try:
             from distributed import Client, LocalCluster
         except ImportError as why:
@@ -84,12 +86,12 @@ class Dask:
 class _Flight:
     """What is computed at the moment, and who is fit for it."""
 
-    def __init__(self, client: Any, work: Work, patience: float) -> None:
+    def __init__(self, client: Client, work: Work, patience: float) -> None:
         self.client, self.work, self.patience = client, work, patience
         self.unfit: dict[str, str] = {}
         self.fit: set[str] = set()
         #: future -> its batch, and the workers that it is bound to (none: any)
-        self.flying: dict[Any, tuple[Batch, frozenset[str]]] = {}
+        self.flying: dict[Future, tuple[Batch, frozenset[str]]] = {}
         self.refusals: dict[int, int] = {}
         self.looked, self.alone_since = -_LOOK_S, time.monotonic()
 
@@ -206,7 +208,7 @@ def _fault(work: Work) -> str | None:
     return work.fault()
 
 
-def _outcome(future: Any) -> Any:
+def _outcome(future: Future) -> object:
     from distributed import KilledWorker
 
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -41,7 +41,7 @@ class Joblib:
             raise PluginError(f"executor 'joblib' needs joblib: {extra('sweep')} ({why})") from None
         with deaf_to_terminals():  # the process that clears up behind the workers must outlive them
             ensure_running()
-        left, flying = iter(batches), dict[int, list[Any]]()
+        left, flying = iter(batches), dict[int, list[object]]()
 
         def taken() -> Iterator[Batch]:
             for number, points in left:
@@ -84,5 +84,5 @@ class Joblib:
                     answers.close()
 
 
-def _answer(work: Work, number: int, points: list[Any]) -> Answer:
+def _answer(work: Work, number: int, points: list[object]) -> Answer:
     return number, work(points)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from raceway.core.mesh.hex_mesh import FACES, HexMesh
 from raceway.errors import MeshError, extra
 from raceway.storage.tables import ReadTables
 from raceway.storage.user_files import memory_for, size_of, told
+
+if TYPE_CHECKING:
+    from meshio import Mesh
 
 #: Bytes of the largest mesh file.
 LARGEST = 2**32
@@ -29,7 +32,7 @@ def meshio() -> ModuleType:
     return package
 
 
-def load(path: Path, reader: Callable[[Path], Any]) -> Any:
+def load(path: Path, reader: Callable[[Path], Mesh]) -> Mesh:
     """meshio's own mesh.
 
     Raises
@@ -71,7 +74,7 @@ def readable(path: Path | str) -> int:
     return size
 
 
-def store(path: Path, writer: Callable[[Path, Any], object], content: Any) -> None:
+def store(path: Path, writer: Callable[[Path, Mesh], object], content: Mesh) -> None:
     """Write meshio's mesh; ``MeshError`` names a place that cannot be written."""
     try:
         writer(path, content)
@@ -79,7 +82,7 @@ def store(path: Path, writer: Callable[[Path, Any], object], content: Any) -> No
         raise MeshError(f"'{path}' cannot be written: {why.strerror or why}") from why
 
 
-def hexahedra(path: Path, content: Any) -> tuple[np.ndarray, list[int | None]]:
+def hexahedra(path: Path, content: Mesh) -> tuple[np.ndarray, list[int | None]]:
     """Cells (m, 8), and for each of meshio's blocks the number of its first cell, None for blocks of other things.
 
     Raises

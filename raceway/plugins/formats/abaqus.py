@@ -6,7 +6,7 @@ import re
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -16,6 +16,9 @@ from raceway.errors import MeshError
 from raceway.framework.options import one_of, option
 from raceway.plugins.formats import _exchange as exchange
 from raceway.storage.user_files import memory_for
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 #: Element types that both programs know, by this program's word for the hexahedron.
 _TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}
@@ -98,7 +101,7 @@ def _entries(numbers: np.ndarray) -> Iterator[str]:
         yield ", ".join(map(str, (numbers[first : first + _ENTRIES] + 1).tolist()))
 
 
-def _members(blocks: Any, first: list[int | None]) -> np.ndarray:
+def _members(blocks: Sequence[np.ndarray], first: list[int | None]) -> np.ndarray:
     """(k,) hexahedra of an element set, which meshio gives block by block."""
     parts = [np.asarray(b, dtype=int) + start for b, start in zip(blocks, first, strict=False) if start is not None]
     return np.concatenate(parts) if parts else np.zeros(0, dtype=int)

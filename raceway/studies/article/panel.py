@@ -23,7 +23,7 @@ GRID = "#d8dee4"
 class Panel:
     """One pair of axes: how it is drawn, what is seen, and a caption; ``solid`` for three axes."""
 
-    draw: Callable[[Any], None]
+    draw: Callable[[Axes], None]
     alternative: str
     caption: str
     solid: bool = False

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import product
-from typing import Any
 
 import attrs
 import numpy as np
@@ -39,7 +38,7 @@ class Row:
 
     def value(self, quantity: str) -> float | None:
         """One of ``QUANTITIES`` [N/m]; None where the run has none."""
-        value: Any = self.result.get("identification")
+        value = self.result.get("identification")
         for name in QUANTITIES[quantity][1]:
             value = value.get(name) if isinstance(value, dict) else None
         return value

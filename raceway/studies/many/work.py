@@ -42,7 +42,7 @@ class Work:
     wanted: Tables | None = None
     own: Registry | None = None
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         return Work, (self.function, self.plugins, self.wanted)
 
     def fault(self) -> str | None:

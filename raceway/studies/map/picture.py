@@ -10,7 +10,10 @@ from raceway.plugins.reports.pictures import new_figure
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from matplotlib.axes import Axes
+    from matplotlib.colorbar import Colorbar
     from matplotlib.figure import Figure
 
 AXIAL, SPEED, TILT, ANGLE = "load.axial", "excitation.speed_rpm", "supports.tilt", "bearing.contact_angle_deg"
@@ -36,7 +39,7 @@ def at_angle(content: Tables, angle: float) -> Tables:
     return {**content, "axes": {**content["axes"], ANGLE: [angle]}}
 
 
-def _panels(axes: Tables, **shared: Any) -> tuple[Figure, Any, bool]:
+def _panels(axes: Tables, **shared: Any) -> tuple[Figure, np.ndarray, bool]:
     """A figure with a panel for each tilt and contact angle, and whether it is narrow."""
     tilts, angles = len(axes[TILT]), len(axes[ANGLE])
     narrow = angles == 1
@@ -44,7 +47,7 @@ def _panels(axes: Tables, **shared: Any) -> tuple[Figure, Any, bool]:
     return figure, figure.subplots(tilts, angles, squeeze=False, sharex=True, **shared), narrow
 
 
-def _bar(figure: Figure, shown: Any, panels: Any, label: str, narrow: bool) -> Any:
+def _bar(figure: Figure, shown: Any, panels: np.ndarray, label: str, narrow: bool) -> Colorbar:
     place = {"location": "bottom", "shrink": 0.95, "aspect": 35} if narrow else {"shrink": 0.85}
     return figure.colorbar(shown, ax=panels, extend="both", label=label, **place)
 
@@ -77,7 +80,9 @@ def exponent_map(content: Tables) -> Figure:
     return figure
 
 
-def _maps(content: Tables, quantity: str, change: Any, look: Tables, levels: tuple[float, ...]) -> Any:
+def _maps(
+    content: Tables, quantity: str, change: Callable[[np.ndarray], np.ndarray], look: Tables, levels: tuple[float, ...]
+) -> Any:
     """The figure, what its colours belong to, its panels, and whether it is narrow."""
     axes = content["axes"]
     tilts, angles = axes[TILT], axes[ANGLE]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def orbits(found: Found) -> Figure:
     plane = record.plane - record.plane.mean()
     axes.plot(_MICRO * plane[shown].real, _MICRO * plane[shown].imag, color="#d3dae1", linewidth=0.5, label="as measured")
     circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
-    found_lines: list[tuple[str, complex, str, Any]] = [
+    found_lines: list[tuple[str, complex, str, str | tuple[int, tuple[int, ...]]]] = [
         ("1x line", found.order.line, _GREY, "--"),
         ("less the run-out", state.sensor, _Y, "-"),
         ("shaft's bow", state.sensor - state.deflection, _Z, ":"),

@@ -6,7 +6,7 @@ and notes for the table's reader.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -137,7 +137,7 @@ def _errors(data: Dataset) -> np.ndarray:
     return np.asarray(np.nan_to_num(data["error_total"].values), dtype=float)
 
 
-def _across(data: Dataset, given: list[Any], h: dict[Hashable, np.ndarray]) -> dict[int, np.ndarray]:
+def _across(data: Dataset, given: list[float], h: dict[Hashable, np.ndarray]) -> dict[int, np.ndarray]:
     """Motion across a force along y (0) and z (90) over the motion along it."""
     found = {}
     for angle in (0, 90):

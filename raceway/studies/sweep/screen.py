@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from raceway.commands.screen.text import rows_table, written
 from raceway.storage.tables import ReadTables
+
+if TYPE_CHECKING:
+    from raceway.storage.tables import Tables
 
 #: Points of a sweep that a screen shows one by one.
 _MOST_ROWS, _MOST_REASONS = 30, 5
@@ -24,10 +27,13 @@ def sweep_screen(content: ReadTables, rows: Iterable[ReadTables], files: Sequenc
 
     shown: list[dict[str, str]] = []
     reasons: list[str] = []
-    told: dict[str, list[Any]] = {}  # warning without its numbers -> count, its words and the point that has it first
+    told: dict[
+        str, tuple[int, str, Tables]
+    ] = {}  # warning without its numbers -> count, its words and the point that has it first
     for row in rows:
         for text in row["warnings"]:
-            told.setdefault(_NUMBER.sub("#", text), [0, text, row["point"]])[0] += 1
+            count, first, point = told.get(key := _NUMBER.sub("#", text), (0, text, row["point"]))
+            told[key] = count + 1, first, point
         if len(shown) < _MOST_ROWS:
             shown.append(_sweep_row(row))
         if row["status"] == "failed" and len(reasons) < _MOST_REASONS:

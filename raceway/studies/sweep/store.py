@@ -211,11 +211,11 @@ class Store:
                 self._connection.execute("UPDATE points SET state = 'waiting', reason = NULL WHERE state = ?", (state,))
             self._commit()
 
-    def _digest(self, number: int, state: str, rest: tuple[Any, ...]) -> str:
+    def _digest(self, number: int, state: str, rest: tuple[object, ...]) -> str:
         """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
         return hashlib.blake2b(repr((self._origin, number, state, *rest)).encode(), digest_size=16).hexdigest()
 
-    def _sound(self, number: int, state: object, rest: tuple[Any, ...], digest: object) -> bool:
+    def _sound(self, number: int, state: object, rest: tuple[object, ...], digest: object) -> bool:
         """Whether a row says what was written: finished ones have a digest, the others a state alone."""
         if state in ("waiting", "running"):
             return True

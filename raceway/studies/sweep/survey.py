@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -98,13 +97,13 @@ def key_facts(scene: Scene, key: str) -> tuple[str, str]:
     """(unit, words) of a key of the scene; empty for one that declares none."""
     table, _, rest = key.partition(".")
     names = rest.split(".")
-    parts: list[Any] = [TABLES.get(table), type(getattr(scene, table, None))]
+    parts: list[type | None] = [TABLES.get(table), type(getattr(scene, table, None))]
     if table in PLUGIN_TABLES and table in TABLES:
         frame = getattr(scene, table)
         slot = next(f.name for f in attrs.fields(type(frame)) if "plugin" in f.metadata)
         parts.append(type(getattr(frame, slot)))
     for cls in parts:
-        holder: Any = cls
+        holder = cls
         for name in names[:-1]:
             holder = type(getattr(getattr(scene, table), name, None)) if holder is not None else None
         field = attrs.fields_dict(holder).get(names[-1]) if holder is not None and attrs.has(holder) else None
