@@ -87,13 +87,15 @@ def article(given: ArticleOptions) -> int:
       raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000
     """  # fmt: skip
     registry = registry_with(given.plugins)
+    from raceway.studies.article.design import ARTICLE, article_tables, design
+
     tables: Tables | None = None
     if given.scene is not None or given.changes:
-        from raceway.studies.article.design import ARTICLE
-
         tables, mistakes = changed_tables(given.scene or ARTICLE, given.changes, registry)
         if mistakes:
             raise SceneError(mistakes)
+    kinds = ("rigid", "condensed") if given.bodies == "both" else (given.bodies,)
+    made = design(tables or article_tables(), given.speeds, given.axial, given.shaft, kinds, given.friction)
     command = _command(click.get_current_context())
     name = "article" if given.scene is None else f"{slug(str((tables or {})['title']))}-article"
     folder = writable(given.out or RESULTS / name)
@@ -104,21 +106,8 @@ def article(given: ArticleOptions) -> int:
         from raceway.studies.article.files import write
         from raceway.studies.article.study import article as study
 
-        kinds = ("rigid", "condensed") if given.bodies == "both" else (given.bodies,)
         with keeping("curves", kept):
-            found = study(
-                tables,
-                given.speeds,
-                given.axial,
-                given.shaft,
-                kinds,
-                given.friction,
-                given.processes,
-                kept,
-                registry,
-                given.plugins,
-                progress,
-            )
+            found = study(made, given.processes, kept, registry, given.plugins, progress)
         progress("writing", 0, 0)
         content, files = found.as_dict(), list[str]()
         failed = attempt(lambda: write(found, folder, pictures, command), files) or found.fault

@@ -86,15 +86,16 @@ def _excitations(curves: Curves, kind: str) -> list[Picture]:
         for tilt in TILTS:
             settings = {pair: Setting(*pair, tilt, True, kind) for pair in _PAIRS}
             lines = {pair: setting for pair, setting in settings.items() if (setting, load) in curves.rows}
-            panels.append(_excitation_panel(curves, w, lines, load, measure, star, label, TILT_WORDS[tilt]))
+            panels.append(_excitation_panel(curves, w, lines, load, measure, star, label))
         found.append(Picture(name, f"{title}, {load:g} N, {kind} bodies", tuple(panels)))
     return found
 
 
 def _excitation_panel(
-    curves: Curves, w: np.ndarray, lines: dict[tuple[str, str], Setting], load: float, measure: str, star: bool,
-    label: str, tilt: str,
+    curves: Curves, w: np.ndarray, lines: dict[tuple[str, str], Setting], load: float, measure: str, star: bool, label: str
 ) -> Panel:  # fmt: skip
+    tilt = TILT_WORDS[next(iter(lines.values())).tilt]
+
     def taken(setting: Setting, values: np.ndarray) -> np.ndarray:
         return np.asarray(values / curves.values(setting, load, measure)[0] if star else values / 1e6)
 
