@@ -10,6 +10,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import attrs
 import click
 
 from raceway import __version__
@@ -23,6 +24,7 @@ from raceway.commands.frame import (
     out_folder,
     plugin_files,
     programs,
+    record,
     registry_with,
     show,
     show_progress,
@@ -69,6 +71,20 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
+@attrs.frozen
+class RunOptions:
+    """What ``raceway run`` is given."""
+
+    scene: Path
+    changes: tuple[str, ...]
+    out: Path | None
+    reports: tuple[str, ...]
+    pictures: bool
+    patience: float
+    plugins: tuple[Path, ...]
+    as_json: bool
+
+
 @main.command(short_help="Compute one scene.")
 @on_scene
 @out_folder
@@ -81,16 +97,8 @@ def main() -> None:
 @programs
 @plugin_files
 @common
-def run(
-    scene: Path,
-    changes: tuple[str, ...],
-    out: Path | None,
-    reports: tuple[str, ...],
-    pictures: bool,
-    patience: float,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
+@record(RunOptions)
+def run(given: RunOptions) -> int:
     """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
 
     Writes DIR/result.json, or DIR/failure.json and DIR/last-good-state.npz when the numbers fail (exit code 1).  Reports are
@@ -100,10 +108,10 @@ def run(
     Example:
       raceway run examples/b7206.toml --set excitation.speed_rpm=15000 --set supports.tilt=free --pictures
     """
-    registry = registry_with(plugins)
-    loaded = load(scene, changes, registry)
-    folder = writable(out or RESULTS / slug(loaded.title))
-    chosen = chosen_reports((*reports, "pictures") if pictures else reports, registry)
+    registry = registry_with(given.plugins)
+    loaded = load(given.scene, given.changes, registry)
+    folder = writable(given.out or RESULTS / slug(loaded.title))
+    chosen = chosen_reports((*given.reports, "pictures") if given.pictures else given.reports, registry)
     if any(entry.name == "pictures" for entry, _ in chosen):
         require_matplotlib("leave out --pictures")
     tell_faults(registry)
@@ -111,7 +119,7 @@ def run(
         from raceway.pipeline.run import run as compute
 
         try:
-            result = compute(loaded, registry, progress, patience=patience)
+            result = compute(loaded, registry, progress, patience=given.patience)
         except (ConvergenceError, BeyondPlanError) as error:
             _keep_state(error, loaded, folder)
             raise
@@ -125,7 +133,7 @@ def run(
         failed = write_reports(chosen, result, folder, files)
     from raceway.commands.screen.result import run_screen
 
-    show(content, as_json, failed, lambda: run_screen(content, files))
+    show(content, given.as_json, failed, lambda: run_screen(content, files))
     return 0
 
 

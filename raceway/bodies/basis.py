@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi, radians
-from typing import Any
 
 import attrs
 import numpy as np
@@ -20,6 +19,7 @@ from raceway.planning.closed_form import axial_approach
 from raceway.planning.plan import Plan
 from raceway.scene.inner_ring import radial_growth, ring_inertia
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen(eq=False)
@@ -55,7 +55,7 @@ def make_basis(scene: Scene) -> Basis:
     return Basis(geometry, modulus, inner, outer, np.tile(single, len(b.rows)), axial, max(ball_load, 1.0))
 
 
-def made_by(who: str, duty: str, make: Callable[[], Any]) -> np.ndarray:
+def made_by(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
     """An array from a plug-in's own code, whose failures are put to its name."""
     try:
         return np.ascontiguousarray(make(), dtype=float)
@@ -105,7 +105,7 @@ def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
     }
 
 
-def excitation(scene: Scene) -> dict[str, Any]:
+def excitation(scene: Scene) -> Tables:
     """The excitation's kernel and parameters."""
     if scene.excitation is None:
         from raceway.core.excitations.harmonic import no_force

@@ -5,15 +5,16 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from math import log10
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import attrs
 import numpy as np
 
 from raceway.errors import MeshError
 
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.framework.contracts import Mesher
+    from raceway.scene.tables import Bearing
 
 #: Larger or smaller by more than this is another unit (inches for millimetres are 25), not another bearing.
 _OTHER_UNIT = 5.0
@@ -21,7 +22,7 @@ _OTHER_UNIT = 5.0
 _OTHER_SIZE = 0.05
 
 
-def check_size(mesher: Any, bearing: Any, meshes: Mapping[str, HexMesh]) -> None:
+def check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh]) -> None:
     """Compare rings and balls with the scene's [bearing]; warn of another size.
 
     Parameters
@@ -48,30 +49,34 @@ def check_size(mesher: Any, bearing: Any, meshes: Mapping[str, HexMesh]) -> None
                 )
 
 
-def _sizes(bearing: Any, name: str, points: np.ndarray) -> list[tuple[str, float, float]]:
+def _sizes(bearing: Bearing, name: str, points: np.ndarray) -> list[tuple[str, float, float]]:
     """What is compared: its name, the bearing's and the mesh's [m]."""
     if name.startswith("ball"):
         return [("`ball_diameter`", bearing.ball_diameter, float(np.ptp(points, axis=0).max()))]
     reach = 2.0 * np.hypot(points[:, 1], points[:, 2])
     if name.startswith("outer_ring"):
         outer = bearing.outer_diameter
-        exact = [("`outer_diameter`", outer, float(reach.max()))]
-        return exact if outer else [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
+        return (
+            [("`outer_diameter`", outer, float(reach.max()))]
+            if outer
+            else [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
+        )
     if name.startswith("inner_ring"):
         rough = [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
         return rough + ([("`bore`", bearing.bore, float(reach.min()))] if bearing.bore and reach.min() > 0.0 else [])
     return []
 
 
-def _refusal(mesher: Any, name: str, told: str, ratio: float) -> MeshError:
+def _refusal(mesher: Mesher, name: str, told: str, ratio: float) -> MeshError:
     path = str(getattr(mesher, "ball" if name.startswith("ball") else name, ""))
     if path.lower().endswith((".step", ".stp")):
         return MeshError(f"{told}: '{path}' names its own unit; write it again in the right one")
-    if not any(field.name == "scale" for field in attrs.fields(type(mesher))):
+    given: float | None = getattr(mesher, "scale", None)
+    if given is None:
         return MeshError(f"{told}: mesher '{mesher.name}' must return metres")
     # Powers of ten are units; anything else is told as it is.
     power = round(log10(1.0 / ratio))
     exact = abs(log10(1.0 / ratio) - power) < 0.2
-    scale = mesher.scale * (10.0**power if exact else 1.0 / ratio)
+    scale = given * (10.0**power if exact else 1.0 / ratio)
     unit = " (the file is in millimetres)" if abs(scale / 1e-3 - 1.0) < 1e-6 else ""
-    return MeshError.at("mesh.scale", mesher.scale, f"{told}: write mesh.scale = {scale:.3g}{unit}")
+    return MeshError.at("mesh.scale", given, f"{told}: write mesh.scale = {scale:.3g}{unit}")

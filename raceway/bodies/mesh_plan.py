@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.bodies.meshing import scene_mesher
 from raceway.errors import MeshError, Mistake, PluginError
 from raceway.framework.sources import blamed
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.core.mesh.size import Prediction
@@ -38,7 +39,7 @@ def refined(scene: Scene) -> bool:
     return bool(getattr(scene.mesh, "nodes_per_semi_axis", 1))
 
 
-def predicted_mesh(scene: Scene) -> dict[str, Any] | None:
+def predicted_mesh(scene: Scene) -> Tables | None:
     """Predicted size of the scene's mesh.
 
     Returns

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -15,9 +15,10 @@ from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.framework.contracts import Mesher
 
 
-def scene_mesher(scene: Scene) -> Any:
+def scene_mesher(scene: Scene) -> Mesher:
     """The scene's mesher; an option ``ball_load`` that is left out becomes the static load of a ball under the axial load.
 
     Raises

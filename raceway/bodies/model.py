@@ -25,6 +25,7 @@ from raceway.framework.contracts import Traits
 from raceway.framework.duties import bodies, traits_of
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -141,7 +142,7 @@ class Bearing(ABC):
         """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,)."""
         return {}
 
-    def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json; empty where there is nothing to tell."""
         return {}
 

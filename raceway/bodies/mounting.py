@@ -5,7 +5,7 @@ Both are set at standstill, before anything has grown; speed and temperature the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import attrs
 import numpy as np
@@ -18,6 +18,7 @@ from raceway.errors import ConvergenceError
 from raceway.planning.recording import turns_of
 from raceway.scene.inner_ring import radial_growth
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -128,7 +129,7 @@ def _follow_spring(scene: Scene, basis: Basis, system: Ring, guess: np.ndarray) 
     )
 
 
-def preload_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any] | None:
+def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
     """``equilibrium.preload`` of result.json; None without preload.
 
     Notes

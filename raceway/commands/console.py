@@ -22,6 +22,7 @@ import click
 from raceway.commands.interrupt import Interrupts, farewell, stopped_by
 from raceway.errors import MeshError, RacewayError, SceneError
 from raceway.framework.options import nearest
+from raceway.storage.tables import Tables
 
 
 class _Stopped(BaseException):
@@ -38,20 +39,20 @@ class Commands(click.Group):
         extra["standalone_mode"] = False
         sys.exit(guarded(lambda: super(Commands, self).main(words, prog_name="raceway", **extra), words))
 
-    def invoke(self, ctx: click.Context) -> Any:
+    def invoke(self, ctx: click.Context) -> object:
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt as stop:
             raise _Stopped from stop
 
-    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
         known = self.list_commands(ctx)
         if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
             raise click.UsageError(f"no command '{args[0]}'{nearest(args[0], known)}; commands: {', '.join(known)}", ctx)
         return super().resolve_command(ctx, args)
 
 
-def guarded(command: Callable[[], Any], words: list[str]) -> int:
+def guarded(command: Callable[[], object], words: list[str]) -> int:
     """Run a command; report what it raises; return the exit code.
 
     Parameters
@@ -102,7 +103,7 @@ def report(error: Exception, as_json: bool) -> int:
     return code
 
 
-def described(error: Exception) -> tuple[int, list[dict[str, Any]]]:
+def described(error: Exception) -> tuple[int, list[Tables]]:
     """Exit code and ``[{path, value, message}]`` of an exception."""
     if isinstance(error, SceneError):
         return error.exit_code, [{"path": m.path, "value": plain(m.value), "message": m.message} for m in error.mistakes]
@@ -124,7 +125,7 @@ def described(error: Exception) -> tuple[int, list[dict[str, Any]]]:
     return code, [{"path": None, "value": None, "message": message}]
 
 
-def _where(item: dict[str, Any]) -> str:
+def _where(item: Tables) -> str:
     if item["path"] is None:
         return ""
     if item["value"] is None:
@@ -153,7 +154,7 @@ def _origin(error: Exception) -> str:
     )
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> Any:
     """A value of a TOML file as JSON can carry it: dates and numbers that are not finite become text."""
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}
@@ -164,7 +165,7 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, str | int | float | bool | None) else str(value)
 
 
-def print_json(content: Any) -> None:
+def print_json(content: object) -> None:
     click.echo(json.dumps(content, indent=1, allow_nan=False))
 
 
@@ -176,7 +177,7 @@ def _say(text: str) -> None:
     warn(text, label="")
 
 
-def _show_warning(message: Warning | str, category: type[Warning], *_rest: Any, **_named: Any) -> None:
+def _show_warning(message: Warning | str, category: type[Warning], *_rest: object, **_named: object) -> None:
     """Python's warnings, for people: the text without file and line."""
     if not issubclass(category, DeprecationWarning | PendingDeprecationWarning):
         warn(str(message))

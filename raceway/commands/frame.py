@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -14,7 +15,11 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import default_registry
 
 if TYPE_CHECKING:
+    from raceway.commands.progress import ProgressBar
     from raceway.framework.registry import Registry
+
+R = TypeVar("R")
+F = TypeVar("F", bound=Callable[..., object])
 
 #: Where results go unless --out says otherwise.
 RESULTS = Path("raceway-out")
@@ -32,9 +37,7 @@ processes_at_a_time = click.option(
 )
 
 
-def out_option(
-    default: str, what: str = "Folder", metavar: str = "DIR"
-) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def out_option(default: str, what: str = "Folder", metavar: str = "DIR") -> Callable[[F], F]:
     """--out; ``default`` is only shown, the command chooses it."""
     return click.option("--out", type=PATH, metavar=metavar, help=f"{what} [{default}].")
 
@@ -75,18 +78,31 @@ def registry_with(files: tuple[Path, ...]) -> Registry:
     return registry
 
 
-def on_scene(command: Callable[..., Any]) -> Callable[..., Any]:
+def on_scene(command: F) -> F:
     """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
     return scene_file(set_keys(command))
 
 
-def common(command: Callable[..., Any]) -> Callable[..., Any]:
+def common(command: F) -> F:
     """--json and --debug, which every command takes; ``console`` reads both from the command line, too."""
     command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
 
 
-def show_progress(remaining: bool = False, waiting: str | None = None) -> Any:
+def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
+    """The innermost decorator of a command with many options: they come as one record, an attrs class with their names."""
+
+    def decorate(command: Callable[[R], int]) -> Callable[..., int]:
+        @wraps(command)
+        def filled(**given: Any) -> int:
+            return command(kind(**given))
+
+        return filled
+
+    return decorate
+
+
+def show_progress(remaining: bool = False, waiting: str | None = None) -> ProgressBar:
     """A bar; ``waiting`` says what happens before the first step where that is not the start of this process."""
     from raceway.commands.progress import ProgressBar
     from raceway.storage.cache_folder import current_folder
@@ -106,7 +122,7 @@ def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError |
     return None
 
 
-def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[], Any]) -> None:
+def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[], object]) -> None:
     """JSON or tables on standard output; then the failure of writing them, if there was one."""
     if as_json:
         print_json(content if failed is None else {**content, "errors": described(failed)[1]})

@@ -8,10 +8,11 @@ import re
 import unicodedata
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.commands.console import warn
 from raceway.errors import Mistake, RacewayError, SceneError, extra
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
@@ -59,7 +60,7 @@ def tell_faults(registry: Registry) -> None:
         warn(f"{text} (not used here)")
 
 
-def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[dict[str, Any], list[Mistake]]:
+def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Mistake]]:
     """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
     from raceway.scene.file import parse_change, read_toml, titled, with_paths, with_value
 
@@ -69,7 +70,7 @@ def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) ->
         raise SceneError.at(str(scene), None, f"is a folder{hint}")
     tables = read_toml(scene)
     mistakes: list[Mistake] = []
-    made: list[tuple[str, Any]] = []
+    made: list[tuple[str, object]] = []
     for change in changes:
         try:
             made.append(parse_change(change))
@@ -129,7 +130,7 @@ def require_matplotlib(otherwise: str) -> None:
 
 def has_netcdf() -> bool:
     """Whether labelled results can be written; says what is missing."""
-    missing = [name for name in ("xarray", "h5netcdf", "h5py") if find_spec(name) is None]
+    missing = [name for name in ("h5netcdf", "h5py") if find_spec(name) is None]
     if missing:
         warn(f"no results.nc: it needs {', '.join(missing)}; {extra('sweep')}; points.sqlite holds everything")
     return not missing

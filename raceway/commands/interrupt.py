@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
-from typing import Any, NoReturn, Self
+from typing import NoReturn, Self
 
 #: Time after which a signal is delivered again [s]: longer than a callback, short for a person.
 _AGAIN_S = 0.05
@@ -43,7 +43,7 @@ def stopped_by() -> int | None:
     return _first
 
 
-def farewell(say: Callable[[str], Any]) -> int:
+def farewell(say: Callable[[str], object]) -> int:
     """Say once what stopped the command; the exit code."""
     global _told
     number = signal.SIGINT if _first is None else _first
@@ -67,7 +67,7 @@ class Interrupts:
 
     def __init__(self) -> None:
         self._timer: threading.Timer | None = None
-        self._before: dict[signal.Signals, Any] = {}
+        self._before: dict[signal.Signals, Callable[[int, FrameType | None], object] | int | None] = {}
         self._until = 0.0
 
     def __enter__(self) -> Self:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
@@ -13,13 +13,14 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.framework.contracts import plural
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Entry
     from raceway.testing.suite import Conformity
 
 
-def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:
+def plugin_rows(entries: Iterable[Entry]) -> list[Tables]:
     """``[{kind, name, distribution, version, options[{name, unit, default, help}]}]``."""
     from raceway.scene.schema import key_schema, keys
 
@@ -43,7 +44,7 @@ def plugin_rows(entries: Iterable[Entry]) -> list[dict[str, Any]]:
     return rows
 
 
-def plugins_screen(rows: Sequence[Mapping[str, Any]]) -> RenderableType:
+def plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:
     parts: list[RenderableType] = []
     for kind in dict.fromkeys(row["kind"] for row in rows):
         parts.append(Text(plural(kind), style="bold"))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.progress import Progress
 
 _PATIENCE_S = 1.0
 
@@ -30,7 +31,7 @@ class ProgressBar:
 
         self.console = console or Console(stderr=True)
         self._what, self._remaining = what, remaining
-        self._bar: Any = None
+        self._bar: Progress | None = None
         self._over = threading.Event()
         self._lock = threading.Lock()
         self._timer = threading.Timer(patience, self._draw)
@@ -76,5 +77,5 @@ class ProgressBar:
 
     def _draw(self) -> None:
         with self._lock:
-            if not self._over.is_set():
+            if self._bar is not None and not self._over.is_set():
                 self._bar.start()

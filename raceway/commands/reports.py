@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.sources import blamed
 
 if TYPE_CHECKING:
+    from raceway.framework.contracts import Report
     from raceway.framework.registry import Entry, Registry
+    from raceway.pipeline.result import Result
 
 #: A report's entry in the registry, and the report with its options' defaults.
-Chosen = tuple["Entry", Any]
+Chosen = tuple["Entry", "Report"]
 
 
 def chosen_reports(names: Sequence[str], registry: Registry) -> list[Chosen]:
@@ -32,7 +34,7 @@ def chosen_reports(names: Sequence[str], registry: Registry) -> list[Chosen]:
     return found
 
 
-def write_reports(reports: Sequence[Chosen], result: Any, folder: Path, files: list[str]) -> RacewayError | None:
+def write_reports(reports: Sequence[Chosen], result: Result, folder: Path, files: list[str]) -> RacewayError | None:
     """Write every report; one that fails stops no other and is told at the end, by name."""
     failures = []
     for entry, report in reports:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -12,6 +12,7 @@ from raceway.framework.options import option, optional, positive
 if TYPE_CHECKING:
     import numpy as np
 
+    from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactPairs
 
 
@@ -65,7 +66,7 @@ class Penalty:
             factor = load / np.cbrt(load / pairs.hertz_factor) ** 4
         return np.asarray(factor)[:, np.newaxis]
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.contact_laws.penalty import square_or_linear
 
         return square_or_linear

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -11,6 +11,7 @@ from raceway.contact_laws.stiffness import point_stiffness
 if TYPE_CHECKING:
     import numpy as np
 
+    from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactPairs
 
 
@@ -37,7 +38,7 @@ class Unilateral:
         stiffness = 100.0 * point_stiffness(pairs, pairs.reference_load)
         return np.column_stack([np.zeros_like(stiffness), stiffness])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.contact_laws.penalty import square_or_linear
 
         return square_or_linear

@@ -7,20 +7,35 @@ compiled.  These protocols are one level deep: nothing has to inherit from them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import attrs
 
+from raceway.storage.tables import Tables
+
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    import click
     import numpy as np
 
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Bearing as BuiltBearing
+    from raceway.bodies.model import Model
+    from raceway.core.jit import Kernel
+    from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.schemes.drivers import Scheme
     from raceway.core.signals.identification import Identification
     from raceway.core.stepping.record import Record
+    from raceway.errors import Mistake
+    from raceway.planning.decisions import Balls, Motion
+    from raceway.planning.parts import Decisions
+    from raceway.planning.plan import Plan
+    from raceway.scene.tables import Bearing, Scene
 
 
-class ContactLaw(Protocol):
+class ContactLaw(attrs.AttrsInstance, Protocol):
     """Normal force of a contact as a function of gap and gap rate.  Damping and friction are the core's.
 
     1. ``discretisations``: a subset of {"resultant", "nodal"}: what the force means (N a pair, or Pa a point).
@@ -42,7 +57,7 @@ class ContactLaw(Protocol):
     dissipative: ClassVar[bool]
 
     def build(self, pairs: ContactPairs) -> np.ndarray: ...
-    def kernel(self) -> Any: ...
+    def kernel(self) -> Kernel: ...
 
 
 @attrs.frozen(eq=False)
@@ -68,7 +83,7 @@ class ContactPairs:
     length: np.ndarray | None = None
 
 
-class Excitation(Protocol):
+class Excitation(attrs.AttrsInstance, Protocol):
     """A force on the inner ring's reference point as a function of time.
 
     1. ``frequency_hz``, ``period_s``, ``amplitude_n``: the fundamental line; ``period_s`` None when not periodic.
@@ -95,10 +110,10 @@ class Excitation(Protocol):
     @property
     def sense(self) -> int: ...
     def parameters(self) -> np.ndarray: ...
-    def kernel(self) -> Any: ...
+    def kernel(self) -> Kernel: ...
 
 
-class Integrator(Protocol):
+class Integrator(attrs.AttrsInstance, Protocol):
     """A way through time.
 
     1. ``order``: the exponent of the step in the error, for smooth motions.
@@ -131,7 +146,7 @@ class Integrator(Protocol):
     def scheme(self) -> Scheme: ...
 
 
-class Identifier(Protocol):
+class Identifier(attrs.AttrsInstance, Protocol):
     """From recorded motion, or from the equilibrium, to a dynamic stiffness.
 
     1. ``needs``: a subset of {"record", "speeds", "equilibrium", "period", "phase"}: recorded motion; a record for each
@@ -150,10 +165,10 @@ class Identifier(Protocol):
     needs: ClassVar[frozenset[str]]
     definition: ClassVar[str]
 
-    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification: ...
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification: ...
 
 
-class Mesher(Protocol):
+class Mesher(attrs.AttrsInstance, Protocol):
     """Bodies to hexahedra.
 
     1. ``mesh(bearing)``: body -> mesh with ``points`` (n, 3) [m] and ``cells`` (m, 8) in VTK's order, best a
@@ -170,10 +185,10 @@ class Mesher(Protocol):
 
     name: ClassVar[str]
 
-    def mesh(self, bearing: Any) -> Mapping[str, Any]: ...
+    def mesh(self, bearing: Bearing) -> Mapping[str, HexMesh]: ...
 
 
-class Format(Protocol):
+class Format(attrs.AttrsInstance, Protocol):
     """A file format, of meshes (``HexMesh``) or of anything else.
 
     1. ``suffixes``: file endings with the dot.
@@ -184,11 +199,11 @@ class Format(Protocol):
     name: ClassVar[str]
     suffixes: ClassVar[tuple[str, ...]]
 
-    def read(self, path: Any) -> Any: ...
-    def write(self, path: Any, what: Any) -> None: ...
+    def read(self, path: Path) -> Any: ...
+    def write(self, path: Path, what: Any) -> None: ...
 
 
-class Report(Protocol):
+class Report(attrs.AttrsInstance, Protocol):
     """A result for a person.
 
     1. ``write(result, folder)``: writes files into the folder and returns their paths.
@@ -196,11 +211,20 @@ class Report(Protocol):
 
     name: ClassVar[str]
 
-    def write(self, result: Any, folder: Any) -> list[Any]: ...
+    def write(self, result: Any, folder: Path) -> list[Path]: ...
 
 
 #: A batch of a study: its number, and what is computed in it as plain values.
 Batch = tuple[int, list[Any]]
+#: Number of a batch, and what the work returned for it, or ``Refused``, or ``Lost``.
+Answer = tuple[int, Any]
+
+
+class Work(Protocol):
+    """What an executor computes with: duty 2 of ``Executor``."""
+
+    def fault(self) -> str | None: ...
+    def __call__(self, points: list[Any], /) -> Any: ...
 
 
 @attrs.frozen
@@ -218,7 +242,7 @@ class Lost:
     reason: str
 
 
-class Executor(Protocol):
+class Executor(attrs.AttrsInstance, Protocol):
     """Where the runs of a study are computed: in this process, in others, on other machines.
 
     1. ``compute(work, batches)`` yields ``(number, answer)`` for every ``(number, points)`` of ``batches``, each as soon as
@@ -235,7 +259,7 @@ class Executor(Protocol):
 
     name: ClassVar[str]
 
-    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]: ...
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]: ...
 
 
 @attrs.frozen
@@ -272,11 +296,11 @@ class Cost:
     seconds: float
     once: float = 0.0
     unknowns: int | None = None
-    mesh: dict[str, Any] | None = None
+    mesh: Tables | None = None
     scales: bool = True
 
 
-class BodiesKind(Protocol):
+class BodiesKind(attrs.AttrsInstance, Protocol):
     """What rings and balls are made of: what deforms, and how the ring follows its loads.
 
     1. ``faults(scene)``: mistakes of the scene that these bodies cannot run, each with the remedy; nothing is built.
@@ -296,17 +320,17 @@ class BodiesKind(Protocol):
     name: ClassVar[str]
     modules: ClassVar[tuple[str, ...]]
 
-    def faults(self, scene: Any) -> list[Any]: ...
-    def traits(self, scene: Any) -> Traits: ...
-    def stable_step(self, scene: Any) -> float | None: ...
-    def decide(self, scene: Any, parts: Any) -> None: ...
-    def unused(self, scene: Any) -> list[tuple[str, str]]: ...
-    def cost(self, scene: Any, balls: Any, motion: Any, parts: Any) -> Cost: ...
-    def imports(self, scene: Any, balls: Any) -> Mapping[str, str]: ...
-    def build(self, scene: Any, plan: Any) -> Any: ...
+    def faults(self, scene: Scene) -> list[Mistake]: ...
+    def traits(self, scene: Scene) -> Traits: ...
+    def stable_step(self, scene: Scene) -> float | None: ...
+    def decide(self, scene: Scene, parts: Decisions) -> None: ...
+    def unused(self, scene: Scene) -> list[tuple[str, str]]: ...
+    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost: ...
+    def imports(self, scene: Scene, balls: Balls) -> Mapping[str, str]: ...
+    def build(self, scene: Scene, plan: Plan) -> BuiltBearing: ...
 
 
-class Study(Protocol):
+class Study(attrs.AttrsInstance, Protocol):
     """Many runs made into one answer: the command ``raceway study NAME``.
 
     1. ``help``: what it is about, one line.
@@ -318,7 +342,7 @@ class Study(Protocol):
     name: ClassVar[str]
     help: ClassVar[str]
 
-    def command(self) -> Any: ...
+    def command(self) -> click.Command: ...
 
 
 #: kind -> (registration hook, what a class of that kind must have)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import pluggy
+
+if TYPE_CHECKING:
+    from raceway.pipeline.result import Result
+    from raceway.planning.plan import Plan
 
 # A specification has no body: pluggy never calls it.  Mypy misses the return of those that declare one: empty-body.
 hookspec = pluggy.HookspecMarker("raceway")
@@ -62,7 +66,7 @@ def raceway_studies() -> list[type]:  # type: ignore[empty-body]
 
 
 @hookspec
-def raceway_plan_made(plan: Any) -> None:
+def raceway_plan_made(plan: Plan) -> None:
     """A plan is ready; nothing has been built yet."""
 
 
@@ -72,7 +76,7 @@ def raceway_chunk_done(done: int, total: int) -> None:
 
 
 @hookspec
-def raceway_run_finished(result: Any) -> None:
+def raceway_run_finished(result: Result) -> None:
     """A run ended with a result."""
 
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import attrs
 
 from raceway.errors import PluginError
+from raceway.storage.tables import ReadTables
 
 Rule = Callable[[Any, Any, Any], None]
 
@@ -49,8 +50,8 @@ def nearest(word: str, choices: Iterable[str]) -> str:
     return f" (did you mean '{by_lower[close[0]]}'?)" if close else ""
 
 
-def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
-    def check(_instance: Any, _attribute: Any, value: Any) -> None:
+def _rule(words: str, test: Callable[[Any], bool], **facts: object) -> Rule:
+    def check(_instance: object, _attribute: object, value: object) -> None:
         if isinstance(value, float) and not math.isfinite(value):
             raise ValueError(f"must be a finite number: {words}")
         if not test(value):
@@ -59,7 +60,7 @@ def _rule(words: str, test: Callable[[Any], bool], **facts: Any) -> Rule:
     return worded(check, words, facts)
 
 
-def worded(check: Rule, words: str, facts: Mapping[str, Any] | None = None) -> Rule:
+def worded(check: Rule, words: str, facts: ReadTables | None = None) -> Rule:
     """A rule of one's own with what ``--help``, the documents and the JSON schema say of it."""
     # Functions take attributes, but their type has none.
     check.words = words  # type: ignore[attr-defined]
@@ -101,7 +102,7 @@ def finite() -> Rule:
 def one_of(*choices: str) -> Rule:
     listed = ", ".join(repr(c) for c in choices)
 
-    def check(_instance: Any, _attribute: Any, value: Any) -> None:
+    def check(_instance: object, _attribute: object, value: str) -> None:
         if value not in choices:
             raise ValueError(f"must be one of {listed}{nearest(value, choices)}")
 
@@ -113,7 +114,7 @@ def word_or(rule: Rule, *choices: str) -> Rule:
     listed = ", ".join(repr(c) for c in choices)
     number = getattr(rule, "words", "a number")
 
-    def check(instance: Any, attribute: Any, value: Any) -> None:
+    def check(instance: object, attribute: object, value: object) -> None:
         if isinstance(value, str):
             if value not in choices:
                 raise ValueError(f"must be {listed} or a number {number}{nearest(value, choices)}")
@@ -124,7 +125,7 @@ def word_or(rule: Rule, *choices: str) -> Rule:
 
 
 def optional(rule: Rule) -> Rule:
-    def check(instance: Any, attribute: Any, value: Any) -> None:
+    def check(instance: object, attribute: object, value: object) -> None:
         if value is not None:
             rule(instance, attribute, value)
 

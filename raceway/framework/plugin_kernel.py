@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.core.jit import signature_words
 from raceway.errors import PluginError, RacewayError
 
+if TYPE_CHECKING:
+    from numba.core.typing.templates import Signature
 
-def plugin_kernel(plugin: Any, kind: str, signature: Any, name: str) -> Any:
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactLaw, Excitation
+
+
+def plugin_kernel(plugin: ContactLaw | Excitation, kind: str, signature: Signature, name: str) -> Kernel:
     """The kernel of a plug-in, compiled for the signature of its kind.
 
     Parameters
@@ -32,7 +38,7 @@ def plugin_kernel(plugin: Any, kind: str, signature: Any, name: str) -> Any:
     return kernel
 
 
-def check_compiled(kernel: Any, label: str, signature: Any, name: str) -> None:
+def check_compiled(kernel: object, label: str, signature: Signature, name: str) -> None:
     """Refuse what ``kernel()`` returned unless it is compiled for a signature; parameters as ``plugin_kernel``.
 
     Raises

@@ -5,13 +5,18 @@ This takes less than a millisecond.  It finds what would corrupt a run; ``racewa
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Hashable, Iterable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.errors import PluginError
 from raceway.framework.plugin_kernel import check_compiled
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactLaw, Excitation
 
 #: Gaps [m] and rates [m/s] that are tried, all contacts at once.
 _GAPS = (1e-3, 1e-9, 0.0, -1e-9, -1e-6, -1e-5)
@@ -22,12 +27,17 @@ _STEP, _SLOPE = 1e-4, 1e-3
 #: Stands in outputs before a call; no force is so small.
 _MARK = -7.25e-301
 #: Probes that found nothing, by all that their outcome follows from: neighbours in a study repeat them.  How many are remembered.
-_PASSED: set[tuple[Any, ...]] = set()
+_PASSED: set[tuple[Hashable, ...]] = set()
 _MOST_PASSED = 4096
 
 
 def probe_law(
-    law: Any, kernel: Any, params: Any, state: Any, distribution: str | None = None, depths: Iterable[float] = ()
+    law: ContactLaw,
+    kernel: Kernel,
+    params: np.ndarray,
+    state: np.ndarray,
+    distribution: str | None = None,
+    depths: Iterable[float] = (),
 ) -> None:
     """Refuse a contact law that breaks its contract on a few gaps and rates.
 
@@ -72,7 +82,7 @@ def probe_law(
     _remember(mark)
 
 
-def _probe_slopes(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str) -> None:
+def _probe_slopes(kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: float, rate: float, who: str) -> None:
     """Refuse derivatives that differences of the force contradict: with them an iteration converges, if it does, to a wrong stiffness."""
     where = f"at gap {gap:g} m, rate {rate:g} m/s"
     force, *given, _ = _call_law(kernel, params, state, gap, rate, who, where)
@@ -94,7 +104,7 @@ def _probe_slopes(kernel: Any, params: Any, state: Any, gap: float, rate: float,
             )
 
 
-def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: str | None = None) -> None:
+def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray, distribution: str | None = None) -> None:
     """Refuse an excitation that breaks its contract at a few times.
 
     Parameters
@@ -123,24 +133,24 @@ def probe_excitation(excitation: Any, kernel: Any, params: Any, distribution: st
     _remember(mark)
 
 
-def _mark(kernel: Any, *given: Any) -> tuple[Any, ...]:
+def _mark(kernel: Kernel, *given: object) -> tuple[Hashable, ...]:
     """A kernel, which stays alive in it, and what it is tried with, arrays by content."""
     return kernel, *(_content(one) for one in given)
 
 
-def _content(given: Any) -> Any:
+def _content(given: object) -> Hashable:
     if not isinstance(given, np.ndarray):
         return repr(given)
     return given.dtype.str, given.shape, given.flags.c_contiguous, given.tobytes()
 
 
-def _remember(mark: tuple[Any, ...]) -> None:
+def _remember(mark: tuple[Hashable, ...]) -> None:
     if len(_PASSED) >= _MOST_PASSED:
         _PASSED.clear()
     _PASSED.add(mark)
 
 
-def _probe_alone(kernel: Any, params: Any, state: Any, who: str) -> None:
+def _probe_alone(kernel: Kernel, params: np.ndarray, state: np.ndarray, who: str) -> None:
     """One contact whose parameters are followed by NaN in memory: a kernel that reads beyond its columns shows it."""
     if not len(state):
         return
@@ -160,7 +170,9 @@ def _probe_alone(kernel: Any, params: Any, state: Any, who: str) -> None:
             )
 
 
-def _call_law(kernel: Any, params: Any, state: Any, gap: float, rate: float, who: str, where: str) -> tuple[Any, ...]:
+def _call_law(
+    kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: float, rate: float, who: str, where: str
+) -> tuple[np.ndarray, ...]:
     n = len(state)
     force, d_gap, d_rate = np.full((3, n), _MARK)
     new, old = np.full_like(state, _MARK), state.copy()
@@ -170,7 +182,7 @@ def _call_law(kernel: Any, params: Any, state: Any, gap: float, rate: float, who
     return force, d_gap, d_rate, new
 
 
-def _guarded(kernel: Any, who: str, where: str, *arguments: Any) -> None:
+def _guarded(kernel: Kernel, who: str, where: str, *arguments: object) -> None:
     try:
         kernel(*arguments)
     except Exception as why:  # the plug-in's own code
@@ -180,7 +192,7 @@ def _guarded(kernel: Any, who: str, where: str, *arguments: Any) -> None:
         ) from why
 
 
-def _check_outputs(outputs: dict[str, Any], who: str, where: str) -> None:
+def _check_outputs(outputs: Tables, who: str, where: str) -> None:
     for word, values in outputs.items():
         if (values == _MARK).any():
             raise PluginError(
@@ -201,7 +213,7 @@ def _check_array(values: Any, who: str, source: str, wanted: str, shape: tuple[i
         raise PluginError(f"{who}: {source} returned values that are not finite")
 
 
-def _who(words: str, kind: str, plugin: Any, distribution: str | None) -> str:
+def _who(words: str, kind: str, plugin: ContactLaw | Excitation, distribution: str | None) -> str:
     if distribution is None:
         from raceway.framework.registry import default_registry
 

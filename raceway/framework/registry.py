@@ -39,7 +39,7 @@ class Entry:
 
     kind: str
     name: str
-    plugin: type
+    plugin: type[Any]
     distribution: str
     version: str
     source: str = ""  # entry point, module or file
@@ -87,7 +87,7 @@ class Registry:
     def hook(self) -> Any:
         return self.manager.hook
 
-    def add(self, plugin: Any, source: str = "", distribution: str = "", version: str = "") -> None:
+    def add(self, plugin: object, source: str = "", distribution: str = "", version: str = "") -> None:
         """Register a module or object with hook implementations; a fault is kept, not raised."""
         source = source or str(getattr(plugin, "__name__", type(plugin).__qualname__))
         self._register(plugin, source, distribution or source, version)
@@ -122,7 +122,7 @@ class Registry:
             raise PluginError("; ".join(str(fault) for fault in faults))
         return added
 
-    def _remove(self, plugin: Any, entries: list[Entry]) -> None:
+    def _remove(self, plugin: object, entries: list[Entry]) -> None:
         if self.manager.is_registered(plugin):
             self.manager.unregister(plugin)
         for entry in entries:
@@ -214,7 +214,7 @@ class Registry:
             No format has the ending (lists those that there are), or two have it.
         """
         name = Path(path).name.lower()
-        endings = [(ending, entry) for entry in self.all() if entry.kind == "format" for ending in entry.plugin.suffixes]  # type: ignore[attr-defined]
+        endings = [(ending, entry) for entry in self.all() if entry.kind == "format" for ending in entry.plugin.suffixes]
         fitting = [(ending, entry) for ending, entry in endings if name.endswith(ending)]
         if not fitting:
             told = ", ".join(sorted({ending for ending, _ in endings}))
@@ -250,7 +250,7 @@ class Registry:
             return
         self._register(plugin, point.name, distribution, version)
 
-    def _register(self, plugin: Any, source: str, distribution: str, version: str) -> None:
+    def _register(self, plugin: object, source: str, distribution: str, version: str) -> None:
         label = source if source == distribution else f"{source} ({distribution})"
         try:
             hash(plugin)  # pluggy keeps plug-ins in sets
@@ -304,7 +304,7 @@ class Registry:
             same.append(entry)
 
 
-def _shown(thing: Any) -> str:
+def _shown(thing: object) -> str:
     """A third party's object in words; its type where it has none."""
     try:
         return repr(thing)

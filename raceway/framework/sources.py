@@ -69,24 +69,29 @@ def foreign_words() -> Iterator[None]:
         yield
 
 
-@contextmanager
-def blamed(who: str, duty: str) -> Iterator[None]:
-    """Put what a plug-in's own code raises to its name.
+class blamed:
+    """Put what a plug-in's own code raises to its name; what it prints goes to standard error.
 
     Raises
     ------
     PluginError
         Instead of anything but a ``RacewayError`` and a lack of memory, which pass through.
+
+    Notes
+    -----
+    A class, as ``contextlib.suppress`` is one: a run calls plug-ins some twenty times.
     """
-    try:
-        with foreign_words():
-            yield
-    except (RacewayError, MemoryError):
-        raise
-    except BaseException as why:
-        if not is_foreign_fault(why):
-            raise
-        raise PluginError(f"{who}: {duty} raises {type(why).__name__}: {why}") from why
+
+    def __init__(self, who: str, duty: str) -> None:
+        self._who, self._duty = who, duty
+
+    def __enter__(self) -> None:
+        self._out, sys.stdout = sys.stdout, sys.stderr
+
+    def __exit__(self, kind: type[BaseException] | None, why: BaseException | None, _: object) -> None:
+        sys.stdout = self._out
+        if why is not None and not isinstance(why, RacewayError | MemoryError) and is_foreign_fault(why):
+            raise PluginError(f"{self._who}: {self._duty} raises {type(why).__name__}: {why}") from why
 
 
 def import_file(path: Path) -> tuple[Any, str]:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from raceway.bodies.model import Model
 from raceway.core.stepping.record import Record
+from raceway.storage.tables import Tables
 
 
-def motion_table(model: Model, record: Record) -> dict[str, Any]:
+def motion_table(model: Model, record: Record) -> Tables:
     """Mean axial displacement, and the largest ball loads with their pressure, in the turns that are used.
 
     Parameters

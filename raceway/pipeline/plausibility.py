@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -11,6 +9,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
+from raceway.storage.tables import Tables
 
 #: Samples of the last turn that are looked at.
 _SAMPLES = 60
@@ -79,7 +78,7 @@ def _turn(record: Record) -> int:
     return max(record.schedule.steps_per_turn // record.schedule.stride, 1)
 
 
-def inertia_warnings(table: dict[str, Any] | None, total: float | None) -> list[str]:
+def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:
     """Where motions that follow at once are off by more than a result's stated error says, and by more than 1 %."""
     found = {} if table is None else table.get("inertia") or {}
     parts = {

@@ -20,6 +20,7 @@ from raceway.core.signals.lines import Line
 from raceway.pipeline.motion import motion_table
 from raceway.pipeline.simulate import Simulation
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 
 SCHEMA = 1
 
@@ -40,19 +41,19 @@ class Result:
     equilibrium: Equilibrium
     identification: Identification | None
     simulation: Simulation | None
-    error: dict[str, Any]
-    cost: dict[str, Any]
-    stability: dict[str, Any]
-    environment: dict[str, Any]
+    error: Tables
+    cost: Tables
+    stability: Tables
+    environment: Tables
     lines: list[Line]
     warnings: tuple[str, ...]
-    bodies: dict[str, Any] | None = None
+    bodies: Tables | None = None
 
     @property
     def title(self) -> str:
         return self.model.scene.title
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return without_nan(
             {
                 "schema": SCHEMA,
@@ -71,11 +72,11 @@ class Result:
             }
         )
 
-    def _motion(self) -> dict[str, Any] | None:
+    def _motion(self) -> Tables | None:
         found = self.simulation
         return None if found is None else {**motion_table(self.model, found.record), "orbits": found.orbits}
 
-    def _identification(self) -> dict[str, Any] | None:
+    def _identification(self) -> Tables | None:
         found = self.identification
         if found is None:
             return None
@@ -137,7 +138,7 @@ class Result:
         return write_json(self.as_dict(), folder / "result.json")
 
 
-def equilibrium_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
     """The table ``equilibrium`` of result.json."""
     z = model.system.ball_count
     load_inner, load_outer = equilibrium.contact_force[:z], equilibrium.contact_force[z:]
@@ -195,7 +196,7 @@ def without_nan(value: Any) -> Any:
     return value
 
 
-def write_json(content: Any, path: Path) -> Path:
+def write_json(content: object, path: Path) -> Path:
     """Write JSON so that a reader sees the old file or the whole new one.
 
     Raises

@@ -5,11 +5,13 @@ from __future__ import annotations
 import platform
 import resource
 import sys
-from typing import Any
+from collections.abc import Callable
+from functools import partial
 
 import attrs
 import numpy as np
 
+from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.jit import take_compile_seconds, working_clock
 from raceway.core.ring.energy import energy_balance
@@ -35,6 +37,7 @@ from raceway.planning.implausible import implausible
 from raceway.planning.plan import make_plan
 from raceway.planning.unused import unused
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 
 def run(
@@ -90,7 +93,7 @@ def _run(
     stay: bool,
 ) -> Result:
     plan = make_plan(scene, registry=registry)
-    allowance, warned = Allowance.of(plan, patience), []
+    allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
     built = working_clock()
@@ -102,73 +105,104 @@ def _run(
         allowance.check(what, done, total)
 
     equilibrium = settle(model, progress, None if near is None else near.equilibrium.displacement)
-    simulation: Simulation | None = None
-    identification: Identification | None = None
-    motions: list[tuple[Model, Simulation]] = []
-    error, error_s = no_error("the scene is static: nothing is identified"), 0.0
-    error["mesh"], error["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
     if scene.excitation is None:
-        error["contact"], error["how"]["contact"] = contact_error(model, equilibrium)
+        found = _static(model, equilibrium)
     else:
-        method = scene.identifier.method
-        records = []
-        if "speeds" in method.needs:
-            motions = simulate_speeds(model, progress)
-            simulation, records = motions[-1][1], [one.record for _, one in motions]
-        elif "record" in method.needs:
-            simulation = simulate(model, equilibrium, progress, near=_followed(scene, near), stay=stay)
-            motions, records = [(model, simulation)], [simulation.record]
-        for one, motion in motions:
-            refuse_impossible(one, equilibrium, motion.whole)
-        identification = method.identify(records, equilibrium, model)
-        _refuse_no_number(identification)
-        identified = working_clock()
-        steady = Settled(model)
-        if allowance.spent:  # what is computed is kept
-            warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
-            error = no_error("the run went far beyond its plan")
-        else:
-            error = error_table(model, equilibrium, motions, identification, steady, allowance.check)
-        identification = with_series_error(model, identification, error, steady, allowance.check)
-        error_s = working_clock() - identified
+        found = _dynamic(model, equilibrium, allowance, partial(_moved, model, equilibrium, progress, near, stay))
     done = working_clock()
     compile_s = take_compile_seconds()
     bodies = model.bearing.report(model, equilibrium) or None
+    times = {"wall_s": done - wall, "compile_s": compile_s, "build_s": built - wall, "solve_s": done - built}
     result = Result(
         model=model,
         equilibrium=equilibrium,
-        identification=identification,
-        simulation=simulation,
-        error=error,
-        cost=_cost([one for _, one in motions], done - wall, compile_s, built - wall, done - built, error_s),
-        stability=_stability(motions),
+        identification=found.identification,
+        simulation=found.simulation,
+        error=found.error,
+        cost=_cost([one for _, one in found.motions], times, found.error_s),
+        stability=_stability(found.motions),
         environment=_environment(scene, registry),
-        lines=_lines(model, simulation),
+        lines=_lines(model, found.simulation),
         bodies=bodies,
-        warnings=tuple(
-            dict.fromkeys(
-                # A mesh too coarse for its answer comes first, keys without effect last.
-                [
-                    *warned,
-                    *_unresolved(error),
-                    *misfit_warnings(model, error),
-                    *start_warnings(model, error),
-                    *series_warnings(identification),
-                    *model.bearing.warnings(model, equilibrium),
-                    *([] if identification is None else inertia_warnings(bodies, error["total"])),
-                    *equilibrium.warnings,
-                    *_motion_warnings(motions),
-                    *unused(scene),
-                    *implausible(scene),
-                ]
-            )
-        ),
+        warnings=_warnings(model, equilibrium, found, bodies),
     )
     try:
         registry.notify("raceway_run_finished", result=result)
     except RacewayError as why:  # what is computed is kept
         return attrs.evolve(result, warnings=(*result.warnings, f"after the run: {why}"))
     return result
+
+
+@attrs.frozen
+class _Found:
+    """What a run found beside the equilibrium; ``warned``: what went wrong on the way; ``error_s``: time of the error [s]."""
+
+    error: Tables
+    identification: Identification | None = None
+    motions: list[tuple[Model, Simulation]] = attrs.field(factory=list)
+    error_s: float = 0.0
+    warned: tuple[str, ...] = ()
+
+    @property
+    def simulation(self) -> Simulation | None:
+        return self.motions[-1][1] if self.motions else None
+
+
+def _static(model: Model, equilibrium: Equilibrium) -> _Found:
+    error = no_error("the scene is static: nothing is identified")
+    error["mesh"], error["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
+    error["contact"], error["how"]["contact"] = contact_error(model, equilibrium)
+    return _Found(error)
+
+
+def _dynamic(
+    model: Model, equilibrium: Equilibrium, allowance: Allowance, move: Callable[[], list[tuple[Model, Simulation]]]
+) -> _Found:
+    """Motion, what is identified from it, and the error of that."""
+    motions = move()
+    for one, motion in motions:
+        refuse_impossible(one, equilibrium, motion.whole)
+    identification = model.scene.identifier.method.identify([one.record for _, one in motions], equilibrium, model)
+    _refuse_no_number(identification)
+    begun, warned, steady = working_clock(), [], Settled(model)
+    if allowance.spent:  # what is computed is kept
+        warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
+        error = no_error("the run went far beyond its plan")
+    else:
+        error = error_table(model, equilibrium, motions, identification, steady, allowance.check)
+    identification = with_series_error(model, identification, error, steady, allowance.check)
+    return _Found(error, identification, motions, working_clock() - begun, tuple(warned))
+
+
+def _moved(
+    model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: bool
+) -> list[tuple[Model, Simulation]]:
+    """The motions that the identifier needs, each with its model."""
+    needs = model.scene.identifier.method.needs
+    if "speeds" in needs:
+        return simulate_speeds(model, progress)
+    if "record" in needs:
+        return [(model, simulate(model, equilibrium, progress, near=_followed(model.scene, near), stay=stay))]
+    return []
+
+
+def _warnings(model: Model, equilibrium: Equilibrium, found: _Found, bodies: Tables | None) -> tuple[str, ...]:
+    """Each once: a mesh too coarse for its answer comes first, keys without effect last."""
+    error, identification = found.error, found.identification
+    every = [
+        *found.warned,
+        *_unresolved(error),
+        *misfit_warnings(model, error),
+        *start_warnings(model, error),
+        *series_warnings(identification),
+        *model.bearing.warnings(model, equilibrium),
+        *([] if identification is None else inertia_warnings(bodies, error["total"])),
+        *equilibrium.warnings,
+        *_motion_warnings(found.motions),
+        *unused(model.scene),
+        *implausible(model.scene),
+    ]
+    return tuple(dict.fromkeys(every))
 
 
 def _followed(scene: Scene, near: Result | None) -> Simulation | None:
@@ -189,7 +223,7 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
     return lines(simulation.record.time, simulation.record.displacement, wanted)
 
 
-def _unresolved(error: dict[str, Any]) -> list[str]:
+def _unresolved(error: Tables) -> list[str]:
     """The first thing to say of a number that is smaller than its error."""
     total = error["total"]
     if total is None or total < 1.0:
@@ -206,16 +240,14 @@ def _refuse_no_number(found: Identification) -> None:
         raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
 
 
-def _cost(
-    simulations: list[Simulation], wall: float, compile_s: float, build: float, solve: float, error: float
-) -> dict[str, Any]:
+def _cost(simulations: list[Simulation], times: dict[str, float], error_s: float) -> Tables:
+    """``times``: wall time, and those of compiling, building and solving, the error's in the last [s]."""
     scale = 1 if sys.platform == "darwin" else 1024
     return {
-        "wall_s": wall,
-        "compile_s": compile_s,
-        "build_s": max(build, 0.0),
-        "solve_s": solve - error,
-        "error_s": error,
+        **times,
+        "build_s": max(times["build_s"], 0.0),
+        "solve_s": times["solve_s"] - error_s,
+        "error_s": error_s,
         "steps": sum(one.whole.counts["steps"] for one in simulations),
         "newton_iterations": sum(one.whole.counts["evaluations"] for one in simulations),
         "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,
@@ -223,7 +255,7 @@ def _cost(
     }
 
 
-def _stability(motions: list[tuple[Model, Simulation]]) -> dict[str, Any]:
+def _stability(motions: list[tuple[Model, Simulation]]) -> Tables:
     """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
     drifts = [one for one in (_drift(*motion) for motion in motions) if one is not None]
     rubbing = [_friction(m, s) for m, s in motions if m.scene.contact.friction > 0.0]
@@ -265,7 +297,7 @@ def _drift(model: Model, simulation: Simulation) -> float | None:
     return None if ring is None else energy_balance(ring, simulation.whole).drift
 
 
-def _environment(scene: Scene, registry: Registry) -> dict[str, Any]:
+def _environment(scene: Scene, registry: Registry) -> Tables:
     import numba
 
     from raceway import __version__

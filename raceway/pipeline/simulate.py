@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import ceil
-from typing import Any
 
 import attrs
 import numpy as np
@@ -19,6 +18,7 @@ from raceway.pipeline.settle import settle
 from raceway.pipeline.starting import Start, chosen_start
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
+from raceway.storage.tables import Tables
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
 OnProgress = Callable[[str, int, int], None]
@@ -43,7 +43,7 @@ class Simulation:
     warnings: tuple[str, ...]
 
     @property
-    def orbits(self) -> list[dict[str, Any]]:
+    def orbits(self) -> list[Tables]:
         """``motion.orbits`` of result.json: the steady motions that were found; empty where none were looked for."""
         return list(self.whole.counts.get("orbits", self.start.orbits))
 
@@ -79,18 +79,7 @@ def simulate(
     critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
     dt = period / steps_per_turn
-    if not method.implicit and critical is not None and dt >= critical:
-        least = int(period / (SAFETY * critical)) + 1
-        raise StabilityError(
-            f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s, above the stable limit of "
-            f"'{scene.integrator.kind}', {critical:.3g} s. Take at least {least}, or 'auto'.",
-            {"q": equilibrium.displacement, "ball": equilibrium.ball},
-        )
-    if not method.implicit and critical is not None and dt > SAFETY * critical * (1.0 + 1e-9):
-        warnings += (
-            f"the step is {dt / critical:.2f} of the stable limit, which belongs to one state: balls that lose and regain contact "
-            f"each turn can make the motion grow above {SAFETY} of it. Take {ceil(period / (SAFETY * critical))} steps per turn",
-        )
+    warnings += _step_warnings(model, equilibrium, period, steps_per_turn, critical)
     ramp_turns = _ramp_turns(model) if start == "ramp" else 0.0
     ramp_turns = min(ramp_turns, float(model.plan.turns))
     schedule = Schedule(
@@ -111,6 +100,28 @@ def simulate(
         used = max(model.plan.turns // 3, 1)
     warnings += tuple(whole.counts.get("warnings", ()))
     return Simulation(whole.last(max(used, 1)), whole, critical, begin, warnings)
+
+
+def _step_warnings(
+    model: Model, equilibrium: Equilibrium, period: float, steps_per_turn: int, critical: float | None
+) -> tuple[str, ...]:
+    """Refuse explicit steps above the stable limit; warn of those near to it."""
+    scene, dt = model.scene, period / steps_per_turn
+    if scene.integrator.method.implicit or critical is None:
+        return ()
+    if dt >= critical:
+        least = int(period / (SAFETY * critical)) + 1
+        raise StabilityError(
+            f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s, above the stable limit of "
+            f"'{scene.integrator.kind}', {critical:.3g} s. Take at least {least}, or 'auto'.",
+            {"q": equilibrium.displacement, "ball": equilibrium.ball},
+        )
+    if dt > SAFETY * critical * (1.0 + 1e-9):
+        return (
+            f"the step is {dt / critical:.2f} of the stable limit, which belongs to one state: balls that lose and regain contact "
+            f"each turn can make the motion grow above {SAFETY} of it. Take {ceil(period / (SAFETY * critical))} steps per turn",
+        )
+    return ()
 
 
 def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:

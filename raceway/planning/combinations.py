@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 
@@ -14,12 +13,15 @@ from raceway.planning.recording import predicted_steps_per_turn, recorded_per_tu
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.tables import Scene
 
+#: Called as ``refuse(bad, path, value, why)``.
+_Refuse = Callable[[bool, str, object, str], None]
+
 
 def refuse_what_cannot_run(scene: Scene) -> None:
     """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
     faults: list[Mistake] = []
 
-    def refuse(bad: bool, path: str, value: Any, why: str) -> None:
+    def refuse(bad: bool, path: str, value: object, why: str) -> None:
         if bad:
             faults.append(Mistake(path, value, why))
 
@@ -68,7 +70,7 @@ def _slow(scene: Scene) -> tuple[str, str]:
     return "contact.discretisation", scene.contact.discretisation
 
 
-def _refuse_driver(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+def _refuse_driver(scene: Scene, refuse: _Refuse) -> None:
     """A method without the driver that the bodies ask for."""
     missing = missing_driver(scene.integrator.method.scheme, traits_of(scene).compiled)
     key, value = _slow(scene)
@@ -79,7 +81,7 @@ def _refuse_driver(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) 
     refuse(bool(missing), "integrator.kind", scene.integrator.kind, why)
 
 
-def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+def _refuse_identifier(scene: Scene, refuse: _Refuse) -> None:
     """Requirements of the identifier on the excitation."""
     needs, kind = scene.identifier.method.needs, scene.identifier.kind
     name, excitation = scene.excitation.name, scene.excitation
@@ -111,7 +113,7 @@ def _refuse_identifier(scene: Scene, refuse: Callable[[bool, str, Any, str], Non
                 break
 
 
-def _refuse_steady(scene: Scene, refuse: Callable[[bool, str, Any, str], None]) -> None:
+def _refuse_steady(scene: Scene, refuse: _Refuse) -> None:
     """Scenes without a motion that repeats itself every turn and depends on the force alone."""
     kind, excitation = scene.integrator.kind, scene.excitation
     other = "use 'newmark'"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from functools import cache
 
 import attrs
 
@@ -31,16 +31,24 @@ def implausible(scene: Scene) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _numbers(table: Any, path: str) -> Iterator[tuple[str, str, float]]:
+def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str, float]]:
     """Path, unit and value of every number in a table and the tables in it."""
-    if table is None or not attrs.has(type(table)):
-        return
-    for field in attrs.fields(type(table)):
-        value = getattr(table, field.name)
-        if attrs.has(type(value)):
-            yield from _numbers(value, f"{path}.{field.name}")
-        elif isinstance(value, float) and "unit" in field.metadata:
-            yield f"{path}.{field.name}", field.metadata["unit"], value
+    cls: type = type(table)
+    for name, unit in _units(cls):
+        value = getattr(table, name)
+        if isinstance(value, float):
+            if unit is not None:
+                yield f"{path}.{name}", unit, value
+        elif attrs.has(type(value)):
+            yield from _numbers(value, f"{path}.{name}")
+
+
+@cache
+def _units(cls: type) -> tuple[tuple[str, str | None], ...]:
+    """Names of a table's keys, each with its unit; none of what is no table."""
+    if not attrs.has(cls):
+        return ()
+    return tuple((field.name, field.metadata.get("unit")) for field in attrs.fields(cls))
 
 
 def foreseen(scene: Scene) -> list[Mistake]:

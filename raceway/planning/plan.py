@@ -7,8 +7,8 @@ predicts seconds.
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Any
+from collections.abc import Callable, Collection
+from functools import partial
 
 import attrs
 
@@ -21,6 +21,7 @@ from raceway.planning.modules import Module, as_dicts, optional_modules
 from raceway.planning.parts import Decisions, Part
 from raceway.planning.recording import refuse_memory
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen
@@ -54,14 +55,19 @@ class Plan:
     predicted_wall_s: float
     predicted_work_s: float
     predicted_once_s: float = 0.0
-    mesh: dict[str, Any] | None = None
-    modules: tuple[Module, ...] = ()
+    mesh: Tables | None = None
+    _modules: Callable[[], tuple[Module, ...]] = attrs.field(default=tuple, eq=False, repr=False)
+
+    @property
+    def modules(self) -> tuple[Module, ...]:
+        """Made when it is asked for: no run asks."""
+        return self._modules()
 
     def keeps(self, part: str) -> bool:
         """Whether a part is kept, by its name."""
         return any(one.part == part for one in self.kept)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {
             "kept": [attrs.asdict(p) for p in self.kept],
             "left_out": [attrs.asdict(p) for p in self.left_out],
@@ -115,7 +121,7 @@ def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | No
         predicted_work_s=cost.seconds,
         predicted_once_s=cost.once,
         mesh=cost.mesh,
-        modules=optional_modules(scene, registry or default_registry(), balls, motion.recorded),
+        modules=partial(optional_modules, scene, registry or default_registry(), balls, motion.recorded),
     )
 
 

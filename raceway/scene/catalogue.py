@@ -9,12 +9,12 @@ from __future__ import annotations
 import tomllib
 from functools import cache
 from importlib.resources import files
-from typing import Any
 
 import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen
@@ -22,7 +22,7 @@ class Fact:
     """One number of a preset: key of the [bearing] table, value, where it comes from."""
 
     key: str
-    value: Any
+    value: object
     source: str
     inferred: bool
 
@@ -34,9 +34,9 @@ class Preset:
     facts: tuple[Fact, ...]
 
     @property
-    def table(self) -> dict[str, Any]:
+    def table(self) -> Tables:
         """The [bearing] table that the preset stands for."""
-        out: dict[str, Any] = {}
+        out: Tables = {}
         for fact in self.facts:
             table = out
             *parents, last = fact.key.split(".")
@@ -58,7 +58,7 @@ def catalogue() -> dict[str, Preset]:
     return found
 
 
-def _facts(tables: dict[str, Any], prefix: str) -> list[Fact]:
+def _facts(tables: Tables, prefix: str) -> list[Fact]:
     facts: list[Fact] = []
     for key, table in tables.items():
         if "value" in table:
@@ -68,7 +68,7 @@ def _facts(tables: dict[str, Any], prefix: str) -> list[Fact]:
     return facts
 
 
-def preset(name: Any) -> dict[str, Any]:
+def preset(name: object) -> Tables:
     """The [bearing] table of a preset.
 
     Raises

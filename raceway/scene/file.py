@@ -6,10 +6,10 @@ import copy
 import difflib
 import json
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
@@ -21,7 +21,11 @@ from raceway.scene.requires import check_requires
 from raceway.scene.rig import Rig
 from raceway.scene.structure import structure
 from raceway.scene.tables import TABLES, Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
 
 #: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
 PLUGIN_TABLES = {
@@ -60,7 +64,7 @@ def _scenes_in(folder: Path) -> list[str]:
     return found
 
 
-def read_toml(path: str | Path) -> dict[str, Any]:
+def read_toml(path: str | Path) -> Tables:
     """The tables of a TOML file.
 
     Raises
@@ -121,7 +125,7 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
     return scene_from_dict(with_paths(tables, Path(path).parent, registry), registry)
 
 
-def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> dict[str, Any]:
+def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
     """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
     result = copy.deepcopy(dict(tables))
     for name, (kind, default) in PLUGIN_TABLES.items():
@@ -138,7 +142,7 @@ def with_paths(tables: Mapping[str, Any], folder: Path, registry: Registry) -> d
     return result
 
 
-def titled(tables: Mapping[str, Any], name: str, changes: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]]) -> Tables:
     """The tables with a title that says what was changed, in its second line: the first one tells of the file.
 
     Parameters
@@ -156,12 +160,13 @@ def titled(tables: Mapping[str, Any], name: str, changes: Iterable[tuple[str, An
     return {**tables, "title": title}
 
 
-def _told(value: Any) -> str:
+def _told(value: object) -> str:
     """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
     if isinstance(value, str):
         return value
-    whole = isinstance(value, float) and value.is_integer() and abs(value) < 1e15
-    return json.dumps(int(value) if whole else value, default=str)
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        value = int(value)
+    return json.dumps(value, default=str)
 
 
 def parse_change(text: str) -> tuple[str, Any]:
@@ -179,7 +184,7 @@ def parse_value(text: str) -> Any:
         return text.strip()
 
 
-def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+def with_value(tables: ReadTables, key: str, value: object) -> Tables:
     """A copy of the tables with one value set at a dotted key; tables beside the key's are shared with the original."""
     result = dict(tables)
     *parents, last = key.split(".")
@@ -195,7 +200,7 @@ def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any
 
 
 def scene_from_dict(
-    tables: Mapping[str, Any], registry: Registry | None = None, known_parts: dict[Any, Any] | None = None
+    tables: ReadTables, registry: Registry | None = None, known_parts: dict[Hashable, Any] | None = None
 ) -> Scene:
     """A scene from plain tables, as a TOML file would give them.
 
@@ -211,28 +216,11 @@ def scene_from_dict(
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "requires", "title"]
-    for name in tables:
-        if name not in known:
-            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
-    title = tables.get("title", "untitled")
-    if not isinstance(title, str) or not title.strip():
-        mistakes.append(Mistake("title", title, "must be a string that is not empty"))
-        title = "untitled"
-    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
-    for name in list(plain):
-        if name != "title" and not isinstance(plain[name], dict):
-            mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
-            plain[name] = {}
-    check_requires(plain.get("requires", {}), registry, mistakes)
-    if "bearing" in plain:
-        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
-    else:
-        mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
-    parts: dict[str, Any] = {}
+    title, plain = _plain_tables(tables, registry, mistakes)
+    parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 
-    def read(name: str, table: Any, make: Callable[[], Any]) -> Any:
+    def read(name: str, table: object, make: Callable[[], object]) -> Any:
         mark, before = (name, repr(table)), len(mistakes)  # not the table itself: 1, 1.0 and true are equal, and not alike
         if mark in known_parts:
             return known_parts[mark]
@@ -259,6 +247,29 @@ def scene_from_dict(
     return Scene(title=title, source=plain, **parts)
 
 
+def _plain_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
+    """Title, and a copy of the known tables with the bearing's preset in it."""
+    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "requires", "title"]
+    for name in tables:
+        if name not in known:
+            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
+    title = tables.get("title", "untitled")
+    if not isinstance(title, str) or not title.strip():
+        mistakes.append(Mistake("title", title, "must be a string that is not empty"))
+        title = "untitled"
+    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
+    for name in list(plain):
+        if name != "title" and not isinstance(plain[name], dict):
+            mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
+            plain[name] = {}
+    check_requires(plain.get("requires", {}), registry, mistakes)
+    if "bearing" in plain:
+        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
+    else:
+        mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
+    return title, plain
+
+
 def rig_of(scene: Scene) -> Rig:
     """The table ``[rig]`` of a scene.
 
@@ -278,7 +289,7 @@ def rig_of(scene: Scene) -> Rig:
     return rig
 
 
-def _with_preset(table: dict[str, Any], mistakes: list[Mistake]) -> dict[str, Any]:
+def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     name = table.get("preset")
     if name is None:
         return table
@@ -309,7 +320,7 @@ _PLACEHOLDER = {
 
 
 def _plugin_table(
-    name: str, kind: str, default: str | None, table: dict[str, Any], registry: Registry, mistakes: list[Mistake]
+    name: str, kind: str, default: str | None, table: Tables, registry: Registry, mistakes: list[Mistake]
 ) -> Any:
     """The plug-in's options, or the core's table with the plug-in in its last attribute."""
     word = table.get("kind", default)

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.scene.tables import Scene
+
+if TYPE_CHECKING:
+    from raceway.core.contact.hertz import Ellipse
+    from raceway.scene.tables import Bearing
 
 
 def ring_inertia(scene: Scene) -> tuple[float, float, float]:
@@ -25,7 +29,7 @@ def ring_inertia(scene: Scene) -> tuple[float, float, float]:
 
 
 @cache
-def _moments(b: Any, depth: float) -> tuple[float, float, float] | None:
+def _moments(b: Bearing, depth: float) -> tuple[float, float, float] | None:
     """Volume [m3] of one inner ring, transverse and polar inertia over density [m5]; None when bore or width are not known."""
     if b.inner_profile is not None:
         from raceway.core.mesh.ring_shape import ring_shape
@@ -58,14 +62,14 @@ def radial_growth(scene: Scene) -> float:
 
 
 @cache
-def _growth(b: Any, depth: float) -> float:
+def _growth(b: Bearing, depth: float) -> float:
     """Centrifugal growth [m] for 1 kg/m3 and 1 rad/s; ``b`` is a scene's [bearing], ``depth`` that of its grooves."""
     young, poisson = b.rings.young, b.rings.poisson
     if b.width is not None:
         from raceway.core.mesh.ring_section import RingSection
 
         return RingSection.of(b, depth).growth(young, poisson)
-    bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + depth
+    bore, land = 0.5 * (b.bore or 0.0), 0.5 * (b.pitch_diameter - b.ball_diameter) + depth
     return float(land / (4.0 * young) * ((1.0 - poisson) * land**2 + (3.0 + poisson) * bore**2))
 
 
@@ -74,7 +78,7 @@ def shoulder_height(scene: Scene) -> float:
     return scene.bearing.shoulder_height or 0.2 * scene.bearing.ball_diameter
 
 
-def load_at_edge(ellipse: Any, ball_radius: float, angle: float) -> float:
+def load_at_edge(ellipse: Ellipse, ball_radius: float, angle: float) -> float:
     """Load of a ball [N] at which its contact ellipse reaches the groove's edge.
 
     Parameters

@@ -12,15 +12,17 @@ from __future__ import annotations
 import difflib
 import os
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.errors import Mistake
 
 if TYPE_CHECKING:
+    from packaging.specifiers import SpecifierSet
+
     from raceway.framework.registry import Registry
 
 
-def check_requires(table: Any, registry: Registry, mistakes: list[Mistake]) -> None:
+def check_requires(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
     """Append a mistake for every requirement that is missing, too old, or not a requirement at all.
 
     Parameters
@@ -73,7 +75,9 @@ def _like(name: str, installed: Iterable[str]) -> str:
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 
-def _unmet(name: str, specifier: str, wanted: Any, installed: dict[str, tuple[str, str]], registry: Registry) -> str:
+def _unmet(
+    name: str, specifier: str, wanted: SpecifierSet, installed: dict[str, tuple[str, str]], registry: Registry
+) -> str:
     """Fault of one requirement, and the way out; empty when it is met."""
     from packaging.utils import canonicalize_name
     from packaging.version import InvalidVersion, Version

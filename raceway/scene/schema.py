@@ -16,15 +16,16 @@ from raceway.scene.catalogue import catalogue
 from raceway.scene.file import PLUGIN_TABLES as PLUGIN_TABLES
 from raceway.scene.file import STUDY_TABLES
 from raceway.scene.tables import TABLES
+from raceway.storage.tables import Tables
 
 _TYPES = {float: "number", int: "integer", str: "string", bool: "boolean"}
 _LIMITS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
 
 
-def scene_schema(registry: Registry | None = None) -> dict[str, Any]:
+def scene_schema(registry: Registry | None = None) -> Tables:
     """The schema of everything that this installation accepts, third-party plug-ins included."""
     registry = registry or default_registry()
-    tables: dict[str, Any] = {"title": {"type": "string", "minLength": 1, "description": "for people and folder names"}}
+    tables: Tables = {"title": {"type": "string", "minLength": 1, "description": "for people and folder names"}}
     for name, cls in TABLES.items():
         if name not in PLUGIN_TABLES:
             tables[name] = _bearing(cls) if name == "bearing" else _table(cls)
@@ -43,7 +44,7 @@ def scene_schema(registry: Registry | None = None) -> dict[str, Any]:
     }
 
 
-def _table(cls: type) -> dict[str, Any]:
+def _table(cls: type) -> Tables:
     fields = keys(cls)
     return {
         "type": "object",
@@ -53,7 +54,7 @@ def _table(cls: type) -> dict[str, Any]:
     }
 
 
-def _bearing(cls: type) -> dict[str, Any]:
+def _bearing(cls: type) -> Tables:
     """Geometry is required unless a preset gives it."""
     table = _table(cls)
     table["anyOf"] = [{"required": ["preset"]}, {"required": table.pop("required")}]
@@ -61,7 +62,7 @@ def _bearing(cls: type) -> dict[str, Any]:
     return table
 
 
-def _plugin_table(name: str, kind: str, default: str | None, registry: Registry) -> dict[str, Any]:
+def _plugin_table(name: str, kind: str, default: str | None, registry: Registry) -> Tables:
     """One branch for each installed plug-in, told apart by ``kind``."""
     usable = [e for e in registry.all() if e.kind == kind and (e.kind, e.name) not in registry.shadowed()]
     branches = []
@@ -73,10 +74,10 @@ def _plugin_table(name: str, kind: str, default: str | None, registry: Registry)
         if entry.name != default:
             branch["required"].insert(0, "kind")
         branches.append({"title": f"{name}: {entry.name}", **branch})
-    schema: dict[str, Any] = {"type": "object"}
+    schema: Tables = {"type": "object"}
     if not branches:
         return {**schema, "not": {}, "description": f"no {kind.replace('_', ' ')} is installed"}
-    kinds: dict[str, Any] = {"enum": [e.name for e in usable], **({} if default is None else {"default": default})}
+    kinds: Tables = {"enum": [e.name for e in usable], **({} if default is None else {"default": default})}
     return {**schema, "properties": {"kind": kinds}, "oneOf": branches}
 
 
@@ -86,7 +87,7 @@ def keys(cls: type) -> list[Any]:
     return [field for field in attrs.fields(cls) if "plugin" not in field.metadata and field.init]
 
 
-def key_schema(field: Any) -> dict[str, Any]:
+def key_schema(field: Any) -> Tables:
     """The schema of one key: type, range or words, default, help and unit."""
     if attrs.has(field.type):
         return {**_table(field.type), "description": field.metadata.get("help", "")}
@@ -97,7 +98,7 @@ def key_schema(field: Any) -> dict[str, Any]:
     forms = [_form(kind, limits if kind in (float, int) else {}) for kind in kinds]
     if words is not None:
         forms.append({"enum": words})
-    schema: dict[str, Any] = forms[0] if len(forms) == 1 else {"anyOf": forms}
+    schema: Tables = forms[0] if len(forms) == 1 else {"anyOf": forms}
     if "enum" in facts:
         schema["enum"] = facts["enum"]
     unit, text = field.metadata.get("unit", ""), field.metadata.get("help", "")
@@ -113,7 +114,7 @@ def _members(kind: Any) -> list[Any]:
     return [kind]
 
 
-def _form(kind: Any, limits: dict[str, float]) -> dict[str, Any]:
+def _form(kind: Any, limits: dict[str, float]) -> Tables:
     if get_origin(kind) is tuple and get_args(kind)[-1] is Ellipsis:
         item = get_args(kind)[0]
         return {"type": "array", "items": _form(item, limits)}

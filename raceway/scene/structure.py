@@ -16,12 +16,13 @@ from cattrs.gen import make_dict_structure_fn, override
 
 from raceway.errors import Mistake
 from raceway.framework.options import nearest
+from raceway.storage.tables import Tables
 
 T = TypeVar("T")
 _MISSING = "is required"
 
 
-def _number(value: Any, _type: Any = None) -> float:
+def _number(value: object, _type: object = None) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"must be a number, not {_kind(value)}")
     try:
@@ -33,25 +34,25 @@ def _number(value: Any, _type: Any = None) -> float:
     return number
 
 
-def _integer(value: Any, _type: Any = None) -> int:
+def _integer(value: object, _type: object = None) -> int:
     if isinstance(value, bool) or not isinstance(value, int):
         raise ValueError(f"must be a whole number, not {_kind(value)}")
     return value
 
 
-def _word(value: Any, _type: Any = None) -> str:
+def _word(value: object, _type: object = None) -> str:
     if not isinstance(value, str):
         raise ValueError(f"must be a string, not {_kind(value)}")
     return value
 
 
-def _switch(value: Any, _type: Any = None) -> bool:
+def _switch(value: object, _type: object = None) -> bool:
     if not isinstance(value, bool):
         raise ValueError(f"must be true or false, not {_kind(value)}")
     return value
 
 
-def _kind(value: Any) -> str:
+def _kind(value: object) -> str:
     names = {
         bool: "true or false",
         int: "a whole number",
@@ -63,7 +64,7 @@ def _kind(value: Any) -> str:
     return names.get(type(value), type(value).__name__)
 
 
-def _numbers(value: Any, _type: Any = None) -> tuple[float, ...]:
+def _numbers(value: object, _type: object = None) -> tuple[float, ...]:
     kinds = get_args(_type)
     if len(kinds) == 2 and kinds[1] is Ellipsis:
         if not isinstance(value, list | tuple):
@@ -75,7 +76,7 @@ def _numbers(value: Any, _type: Any = None) -> tuple[float, ...]:
     return tuple(_number(v) for v in value)
 
 
-def _points(value: Any, _type: Any = None) -> tuple[tuple[float, float], ...] | None:
+def _points(value: object, _type: object = None) -> tuple[tuple[float, float], ...] | None:
     if value is None:
         return None
     if not isinstance(value, list | tuple) or not all(isinstance(p, list | tuple) and len(p) == 2 for p in value):
@@ -83,11 +84,11 @@ def _points(value: Any, _type: Any = None) -> tuple[tuple[float, float], ...] | 
     return tuple((_number(p[0]), _number(p[1])) for p in value)
 
 
-def _number_or_word(value: Any, _type: Any = None) -> Any:
+def _number_or_word(value: object, _type: object = None) -> float | str:
     return value if isinstance(value, str) else _number(value)
 
 
-def _integer_or_word(value: Any, _type: Any = None) -> Any:
+def _integer_or_word(value: object, _type: object = None) -> int | str:
     return value if isinstance(value, str) else _integer(value)
 
 
@@ -112,7 +113,7 @@ _HOOKS: dict[Any, Any] = {
 }
 
 
-def _equal_to(kind: Any) -> Callable[[Any], bool]:
+def _equal_to(kind: object) -> Callable[[object], bool]:
     return lambda other: bool(other == kind)
 
 
@@ -124,16 +125,14 @@ def _converter() -> cattrs.Converter:
         else:
             converter.register_structure_hook_func(_equal_to(kind), hook)
 
-    def factory(cls: type) -> Any:
+    def factory(cls: type) -> Callable[[object, object], object]:
         attrs.resolve_types(cls)
-        overrides: dict[str, Any] = {
-            a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init
-        }
+        overrides: Tables = {a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init}
         inner: Any = make_dict_structure_fn(
             cls, converter, _cattrs_forbid_extra_keys=True, _cattrs_detailed_validation=True, **overrides
         )
 
-        def structure(value: Any, target: Any) -> Any:
+        def structure(value: object, target: object) -> object:
             if not isinstance(value, dict):
                 raise ValueError(f"must be a table, not {_kind(value)}")
             return inner(value, target)
@@ -147,7 +146,7 @@ def _converter() -> cattrs.Converter:
 def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
     """Type first, then the field's own rule, so that every field of a table is looked at."""
 
-    def hook(value: Any, _type: Any) -> Any:
+    def hook(value: object, _type: object) -> Any:
         if isinstance(value, list | dict) and attribute.metadata.get("no_list"):
             raise ValueError(attribute.metadata["no_list"])
         result = converter.structure(value, attribute.type)
@@ -161,7 +160,7 @@ def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
 _CONVERTER = _converter()
 
 
-def structure(table: Any, cls: type[T], path: str, mistakes: list[Mistake]) -> T | None:
+def structure(table: object, cls: type[T], path: str, mistakes: list[Mistake]) -> T | None:
     """An object of an attrs class from a table; None when it has mistakes, which are appended.
 
     Parameters
@@ -175,7 +174,7 @@ def structure(table: Any, cls: type[T], path: str, mistakes: list[Mistake]) -> T
         return None
 
 
-def _mistakes(error: BaseException, value: Any, cls: Any, path: str) -> list[Mistake]:
+def _mistakes(error: BaseException, value: object, cls: Any, path: str) -> list[Mistake]:
     if isinstance(error, cattrs.errors.ClassValidationError):
         found: list[Mistake] = []
         noted, plain = error.group_exceptions()
@@ -194,7 +193,7 @@ def _mistakes(error: BaseException, value: Any, cls: Any, path: str) -> list[Mis
         return [
             Mistake(
                 f"{path}.{key}" if path else key,
-                value.get(key),
+                value.get(key) if isinstance(value, dict) else None,
                 f"unknown key{nearest(key, known)}; known here: {', '.join(known)}",
             )
             for key in sorted(error.extra_fields)

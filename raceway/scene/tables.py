@@ -6,6 +6,7 @@ chosen plug-in's own options in its last attribute.
 
 from __future__ import annotations
 
+from functools import cache
 from math import acos, asin, cos, degrees, pi, radians, sin
 from typing import Any
 
@@ -24,6 +25,7 @@ from raceway.framework.options import (
     positive,
     word_or,
 )
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen
@@ -284,7 +286,7 @@ class Scene:
     kinematics: Kinematics
     integrator: Integration
     identifier: Identifying
-    source: dict[str, Any] = attrs.field(repr=False, eq=False)
+    source: Tables = attrs.field(repr=False, eq=False)
 
     @property
     def spin_speed(self) -> float:
@@ -301,9 +303,9 @@ class Scene:
         changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
         return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Every key of the scene file with its value, defaults too; loads again as the same scene."""
-        tables: dict[str, Any] = {"title": self.title}
+        tables: Tables = {"title": self.title}
         for name in TABLES:
             part = getattr(self, name)
             if part is not None:
@@ -328,18 +330,27 @@ TABLES: dict[str, type] = {
 }
 
 
-def _plain(part: Any) -> dict[str, Any]:
-    out: dict[str, Any] = {}
-    for field in attrs.fields(type(part)):
-        value = getattr(part, field.name)
-        if "plugin" in field.metadata:
+def _plain(part: attrs.AttrsInstance) -> Tables:
+    out: Tables = {}
+    cls: type = type(part)
+    for name, plugin in _keys(cls):
+        value = getattr(part, name)
+        if plugin:
             out.update(_plain(value))
+        elif isinstance(value, float | str):
+            out[name] = value
         elif attrs.has(type(value)):
-            out[field.name] = _plain(value)
+            out[name] = _plain(value)
         elif value is not None:
-            out[field.name] = _lists(value)
+            out[name] = _lists(value)
     return out
 
 
-def _lists(value: Any) -> Any:
+@cache
+def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
+    """Names of a table's keys, and whether it is the slot of a plug-in."""
+    return tuple((field.name, "plugin" in field.metadata) for field in attrs.fields(cls))
+
+
+def _lists(value: object) -> object:
     return [_lists(part) for part in value] if isinstance(value, tuple) else value

@@ -18,13 +18,14 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from uuid import uuid4
 
 import attrs
 
 from raceway.storage.cache_folder import cache_root, refusal
 from raceway.storage.cache_folder import make as make_folder
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,7 +43,7 @@ def folder() -> Path:
 
 
 def kept(
-    kind: str, what: str, inputs: Mapping[str, Any], sources: Iterable[str], make: Callable[[], Mapping[str, np.ndarray]]
+    kind: str, what: str, inputs: ReadTables, sources: Iterable[str], make: Callable[[], Mapping[str, np.ndarray]]
 ) -> dict[str, np.ndarray]:
     """The arrays that ``make`` returns, from the cache where they are there.
 
@@ -124,7 +125,7 @@ def _files() -> list[Path]:
     return sorted(folder().glob(f"*{_SUFFIX}")) if folder().is_dir() else []
 
 
-def _key(kind: str, inputs: Mapping[str, Any], sources: tuple[str, ...]) -> str:
+def _key(kind: str, inputs: ReadTables, sources: tuple[str, ...]) -> str:
     digest = hashlib.sha256(f"{_FORMAT} {kind} {_source_key(sources)}".encode())
     for name in sorted(inputs):
         digest.update(f"\n{name}=".encode())
@@ -132,7 +133,7 @@ def _key(kind: str, inputs: Mapping[str, Any], sources: tuple[str, ...]) -> str:
     return digest.hexdigest()[:32]
 
 
-def _add(digest: Any, value: Any) -> None:
+def _add(digest: hashlib._Hash, value: object) -> None:
     """One input into the digest, so that no two different inputs give the same bytes."""
     if value is None or isinstance(value, str | bool | int | float):
         digest.update(f"{type(value).__name__}:{value!r};".encode())
@@ -200,7 +201,7 @@ def _read(path: Path) -> dict[str, np.ndarray] | None:
     return out
 
 
-def _digest(key: str, arrays: dict[str, Any], body: bytes) -> str:
+def _digest(key: str, arrays: Tables, body: bytes) -> str:
     digest = hashlib.blake2b(f"{key} {json.dumps(arrays)}".encode(), digest_size=16)
     digest.update(body)
     return digest.hexdigest()

@@ -14,7 +14,6 @@ import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 from uuid import uuid4
 
 import attrs
@@ -73,7 +72,7 @@ class FilesOfKernel:
     place : folder of numba's for the function's source file
     """
 
-    function: Callable[..., Any]
+    function: Callable[..., object]
     place: Path
 
     def discard_damaged(self) -> None:

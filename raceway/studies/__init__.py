@@ -9,52 +9,46 @@ shaft       the rotor that ``rig`` and ``measured`` set the bearing in
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.framework.hookspecs import hookimpl
 
-
-@attrs.frozen
-class Article:
-    """``raceway study article``."""
-
-    name: ClassVar[str] = "article"
-    help: ClassVar[str] = "The article's figures 9 to 12 and a verdict on each of its claims."
-
-    def command(self) -> Any:
-        from raceway.studies.article.command import article
-
-        return article
+if TYPE_CHECKING:
+    import click
 
 
-@attrs.frozen
-class Rig:
-    """``raceway study rig``."""
+def _study(name: str, about: str, place: str) -> type:
+    """The plug-in of a study.
 
-    name: ClassVar[str] = "rig"
-    help: ClassVar[str] = "A test rig's signals, and the bearing read back from them."
+    Parameters
+    ----------
+    place : module and name of its command, which is imported when it is asked for
+    """
+    module, _, function = place.partition(":")
 
-    def command(self) -> Any:
-        from raceway.studies.rig.command import rig
+    def command(self: object) -> click.Command:
+        found: click.Command = getattr(import_module(module), function)
+        return found
 
-        return rig
-
-
-@attrs.frozen
-class Map:
-    """``raceway study map``."""
-
-    name: ClassVar[str] = "map"
-    help: ClassVar[str] = "Hardening or softening of k(speed) over axial load, tilt and contact angle."
-
-    def command(self) -> Any:
-        from raceway.studies.map.command import study_map
-
-        return study_map
+    content = {"__doc__": f"``raceway study {name}``.", "name": name, "help": about, "command": command}
+    return attrs.make_class(name.capitalize(), [], class_body=content, frozen=True)
 
 
 @hookimpl
 def raceway_studies() -> list[type]:
-    return [Article, Rig, Map]
+    return [
+        _study(
+            "article",
+            "The article's figures 9 to 12 and a verdict on each of its claims.",
+            "raceway.studies.article.command:article",
+        ),
+        _study("rig", "A test rig's signals, and the bearing read back from them.", "raceway.studies.rig.command:rig"),
+        _study(
+            "map",
+            "Hardening or softening of k(speed) over axial load, tilt and contact angle.",
+            "raceway.studies.map.command:study_map",
+        ),
+    ]

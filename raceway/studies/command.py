@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -20,14 +19,14 @@ class Studies(Commands):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return default_registry().names("study")
 
-    def get_command(self, ctx: click.Context, cmd_name: str) -> Any:
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         return command_of(cmd_name) if cmd_name in self.list_commands(ctx) else None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         registry = default_registry()
         entries = [entry for entry in registry.all() if entry.kind == "study"]
         with formatter.section("Commands"):
-            formatter.write_dl([(entry.name, entry.plugin.help) for entry in entries])  # type: ignore[attr-defined]
+            formatter.write_dl([(entry.name, entry.plugin.help) for entry in entries])
         for fault in registry.faults:
             formatter.write_text(f"not loaded: {fault}")
 

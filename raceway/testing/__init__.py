@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Entry, Registry
-    from raceway.testing.suite import Conformity
+    from raceway.testing.suite import Conformity, Suite
 
 #: kind -> (module, class) of its suite
 SUITES: dict[str, tuple[str, str]] = {
@@ -81,7 +81,7 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"module 'raceway.testing' has no attribute '{name}'")
 
 
-def suite_of(kind: str) -> Any:
+def suite_of(kind: str) -> type[Suite]:
     """The suite class of a kind of plug-in."""
     module, name = SUITES[kind]
     return getattr(import_module(module), name)

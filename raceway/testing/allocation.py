@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, Self
+from typing import Self
 
 
 class counted:
@@ -18,10 +18,10 @@ class counted:
 
     def __enter__(self) -> Self:
         # numba's statistics of its own runtime: the only place where allocations of compiled code are seen.
-        runtime: Any = import_module("numba.core.runtime")
-        target: Any = import_module("numba.core.registry").cpu_target
+        runtime = import_module("numba.core.runtime")
+        target = import_module("numba.core.registry").cpu_target
         runtime.rtsys.initialize(target.target_context)
-        self._counters: Any = runtime._nrt_python
+        self._counters = runtime._nrt_python
         self._was_on = self._counters.memsys_stats_enabled()
         self._counters.memsys_enable_stats()
         self._before = int(self._counters.memsys_get_stats_alloc())

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
+from raceway.storage.tables import Tables
 
 #: Keys by table.
-Changes = dict[str, dict[str, Any]]
+Changes = dict[str, Tables]
 #: Model, equilibrium, and the displacement (5,) of the plain scene.
 Shows = Callable[[Model, Equilibrium, np.ndarray], bool]
 

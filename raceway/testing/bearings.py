@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -17,8 +17,12 @@ from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
 from raceway.scene.tables import TABLES, Scene
+from raceway.storage.tables import Tables
 from raceway.testing.asked import Changes
 from raceway.testing.suite import ConformityError
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import BodiesKind
 
 #: For kinds that give no scene of their own.
 _USUAL = {
@@ -42,7 +46,7 @@ class _Only:
         return [self.kind]
 
 
-def registry_with(bodies: Any) -> Registry:
+def registry_with(bodies: BodiesKind) -> Registry:
     """What is installed, what else the kind's own package brings, and the kind itself."""
     registry, cls = Registry(), type(bodies)
     # A package's own contact laws may be all that its bodies run with.
@@ -55,13 +59,13 @@ def registry_with(bodies: Any) -> Registry:
     return registry
 
 
-def tables_of(bodies: Any) -> dict[str, Any]:
+def tables_of(bodies: BodiesKind) -> Tables:
     """The kind's own ``example_scene()``, or a ball bearing of 30 mm bore under a skew load and a turning force."""
     own = getattr(type(bodies), "example_scene", None)
     return dict(_USUAL if own is None else own())
 
 
-def scene_of(bodies: Any, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
+def scene_of(bodies: BodiesKind, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
     """The scene with these bodies; ``changes`` : keys by table."""
     registry = registry or registry_with(bodies)
     tables = {name: table for name, table in tables_of(bodies).items() if name != "bodies"}
@@ -85,7 +89,7 @@ def is_key(scene: Scene, path: str) -> bool:
     table, *rest = path.split(".")
     if table not in (*TABLES, *PLUGIN_TABLES):
         return False
-    part: Any = getattr(scene, table)
+    part = getattr(scene, table)
     plugin = (
         next((getattr(part, f.name) for f in attrs.fields(type(part)) if "plugin" in f.metadata), None) if part else None
     )

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -31,6 +31,9 @@ from raceway.testing.bearings import is_key, registry_with, scene_of, settled, u
 from raceway.testing.drivers import FromPython, has_both
 from raceway.testing.suite import ConformityError, Suite, check_class, duty, require
 
+if TYPE_CHECKING:
+    from raceway.framework.contracts import BodiesKind
+
 #: Part of the loads that an equilibrium may leave: compiled ones leave 1e-11, finite elements are iterated to 1e-7.
 _BALANCE = 1e-6
 #: Load that is added for a difference, over the loads: its own curvature leaves 1e-6, an iteration's residual 1e-4.
@@ -45,7 +48,7 @@ _STEPS, _OF_LIMIT = 12, 0.1
 def _nothing_built() -> Iterator[None]:
     """No bearing comes into being."""
 
-    def refuse(cls: type, *_args: Any, **_keys: Any) -> None:
+    def refuse(cls: type, *_args: object, **_keys: object) -> None:
         require(False, f"builds a {cls.__name__}: that is for build() alone")
 
     Bearing.__new__ = refuse  # type: ignore[assignment, method-assign]
@@ -70,11 +73,11 @@ class BodiesSuite(Suite):
     kind = "bodies"
 
     @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, bodies: Any) -> None:
+    def test_declaration(self, bodies: BodiesKind) -> None:
         check_class("bodies", bodies)
 
     @duty("faults(scene): a list of Mistakes with a key and a remedy, none for its example; nothing is built")
-    def test_faults(self, bodies: Any) -> str:
+    def test_faults(self, bodies: BodiesKind) -> str:
         registry, refused = registry_with(bodies), []
         with _nothing_built():
             for word, changes in {"its example": {}, **{word: one.changes for word, one in OTHERS.items()}}.items():
@@ -92,7 +95,7 @@ class BodiesSuite(Suite):
     @duty(
         "traits, stable_step, decide, unused, imports, cost: as the contract types them, finite, of keys that exist; nothing is built"
     )
-    def test_plan(self, bodies: Any) -> None:
+    def test_plan(self, bodies: BodiesKind) -> None:
         scene = scene_of(bodies)
         with _nothing_built():
             traits, limit, parts = bodies.traits(scene), bodies.stable_step(scene), Decisions()
@@ -101,7 +104,8 @@ class BodiesSuite(Suite):
             require(limit is None or 0.0 < limit < np.inf, f"stable_step() = {limit!r} is neither None nor a time [s]")
             balls = decide_balls(scene, parts)
             motion = decide_motion(scene, parts, decide_tilts(scene, parts), balls.friction)
-            require(bodies.decide(scene, parts) is None, "decide() returns something: parts are kept or left out")
+            decide: Callable[..., object] = bodies.decide
+            require(decide(scene, parts) is None, "decide() returns something: parts are kept or left out")
             for one in (*parts.kept, *parts.left_out):
                 good = all(isinstance(word, str) and word for word in (one.part, one.why))
                 require(good, f"{one} needs a name and a reason in words")
@@ -119,7 +123,7 @@ class BodiesSuite(Suite):
         require(cost.unknowns is None or cost.unknowns > 0, f"cost().unknowns = {cost.unknowns}")
 
     @duty("build(scene, plan): a Bearing with a system and a first guess (5,)")
-    def test_build(self, bodies: Any) -> None:
+    def test_build(self, bodies: BodiesKind) -> None:
         scene = scene_of(bodies)
         bearing = bodies.build(scene, make_plan(scene))
         require(
@@ -134,7 +138,7 @@ class BodiesSuite(Suite):
         require(bearing.largest_motion > 0.0, f"`largest_motion` = {bearing.largest_motion} m")
 
     @duty("the equilibrium balances the loads")
-    def test_equilibrium(self, bodies: Any) -> str:
+    def test_equilibrium(self, bodies: BodiesKind) -> str:
         model, found = settled(scene_of(bodies))
         left = unbalanced(model, found.displacement, found.ball)
         require(left < _BALANCE, f"{left:.2g} of the loads is left")
@@ -142,7 +146,7 @@ class BodiesSuite(Suite):
         return f"{left:.1e} of the loads is left"
 
     @duty("the tangent is the derivative of the force by the displacement, symmetric where forces have a potential")
-    def test_tangent(self, bodies: Any) -> str:
+    def test_tangent(self, bodies: BodiesKind) -> str:
         model, found = settled(scene_of(bodies))
         system, free = model.system, np.flatnonzero(model.system.free > 0.0)
         size = np.array([1.0, 1.0, 1.0, system.arm, system.arm]) * _MORE * max(np.abs(system.load).max(), 1.0)
@@ -166,7 +170,7 @@ class BodiesSuite(Suite):
     @duty(
         "contact forces (2 Z,) and gaps: never negative, none in an open contact; with their angles they balance the loads"
     )
-    def test_contacts(self, bodies: Any) -> str:
+    def test_contacts(self, bodies: BodiesKind) -> str:
         model, found = settled(scene_of(bodies))
         z, force, gap = model.system.ball_count, found.contact_force, found.gap
         for word, values in (("contact_force", force), ("gap", gap)):
@@ -187,7 +191,7 @@ class BodiesSuite(Suite):
         return _carried(model, found)
 
     @duty("contact_ellipse, ball_columns, edge_warnings, report, warnings, mesh_error, contact_error: shapes and types")
-    def test_told(self, bodies: Any) -> None:
+    def test_told(self, bodies: BodiesKind) -> None:
         model, found = settled(scene_of(bodies))
         bearing, load = model.bearing, np.linspace(0.0, 2.0 * found.contact_force.max(), 7)
         for race in (0, 1):
@@ -205,7 +209,7 @@ class BodiesSuite(Suite):
         words = [*bearing.warnings(model, found), *edges]
         require(all(isinstance(one, str) and one for one in words), f"warnings are sentences, not {words!r}")
         for name in ("mesh_error", "contact_error"):
-            answer: Any = getattr(bearing, name)(model, found)
+            answer = getattr(bearing, name)(model, found)
             good = isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[1], str) and bool(answer[1])
             require(good, f"{name}() returns {answer!r}, not (number or None, how it was found)")
             require(answer[0] is None or 0.0 <= answer[0] < np.inf, f"{name}() is {answer[0]!r}")
@@ -213,7 +217,7 @@ class BodiesSuite(Suite):
     @duty(
         "steps of newmark, central_difference and quasi_static; where forces are compiled, compiled and stepped drivers agree"
     )
-    def test_steps(self, bodies: Any) -> str:
+    def test_steps(self, bodies: BodiesKind) -> str:
         model, found = settled(scene_of(bodies))
         system, compiled = model.system, model.traits.compiled
         schedule, worst = Schedule(_OF_LIMIT * system.critical_time_step(found.stiffness), _STEPS, 1), 0.0
@@ -232,13 +236,13 @@ class BodiesSuite(Suite):
         return f"drivers differ by {worst:.1e} of the motion" if compiled else "stepped"
 
     @duty("the same scene gives the same equilibrium to the last bit")
-    def test_repeats(self, bodies: Any) -> None:
+    def test_repeats(self, bodies: BodiesKind) -> None:
         one, two = (settled(scene_of(bodies))[1] for _ in range(2))
         for word in ("displacement", "stiffness", "contact_force"):
             require(np.array_equal(getattr(one, word), getattr(two, word)), f"`{word}` differs")
 
     @duty("what else a scene asks for is refused by the plan, or computed: nothing is left out in silence")
-    def test_refused_or_computed(self, bodies: Any) -> str:
+    def test_refused_or_computed(self, bodies: BodiesKind) -> str:
         registry, computed = registry_with(bodies), []
         plain = settled(scene_of(bodies, PLAIN, registry))[1].displacement
         for word, asked in OTHERS.items():
@@ -258,7 +262,7 @@ class BodiesSuite(Suite):
         require(OTHERS[word].shows(model, found, plain), f"{word}: changes nothing: refuse it by faults()")
 
     @duty("a whole run ends with a stiffness, an error table and a result.json that names the kind")
-    def test_run(self, bodies: Any) -> str:
+    def test_run(self, bodies: BodiesKind) -> str:
         registry: Registry = registry_with(bodies)
         result = run(scene_of(bodies, registry=registry), registry)
         told = json.loads(json.dumps(result.as_dict(), allow_nan=False))

@@ -17,7 +17,9 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import TypeVar
+
+T = TypeVar("T")
 
 #: Time [s] that a duty may take on busy cores, compiling too, and memory [bytes] that it may take beyond what is there.
 LIMIT_S, LIMIT_BYTES = 300.0, 8 * 2**30
@@ -27,7 +29,7 @@ class Died(Exception):
     """How the child ended without an answer, in words."""
 
 
-def apart(work: Callable[[], Any]) -> Any:
+def apart(work: Callable[[], T]) -> T:
     """What ``work()`` returns or raises, from a child process.
 
     Parameters
@@ -78,7 +80,7 @@ def _import_compiler() -> None:
     import_module("raceway.core.contact_laws.power").three_halves.compile()
 
 
-def _serve(work: Callable[[], Any], writer: int) -> None:
+def _serve(work: Callable[[], object], writer: int) -> None:
     """What the child does; it does not come back."""
     code = 1
     try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -10,6 +10,10 @@ import numpy as np
 from raceway.framework.contracts import ContactPairs
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 from raceway.testing.units import scale_of
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactLaw
 
 #: Contacts of a small ball bearing: curvatures 1/m, contact modulus Pa, Hertz factor N/m^1.5, load N, area of a point m2.
 _CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA = 5.0, 130.0, 1.16e11, 1.3e10, 300.0, 1e-9
@@ -29,7 +33,7 @@ def _given(pairs: ContactPairs) -> list[str]:
     return [name for name in _PAIR_FIELDS if getattr(pairs, name) is not None]
 
 
-def discretisation_of(law: Any) -> str:
+def discretisation_of(law: ContactLaw) -> str:
     """What the suite drives a law as: resultants where it knows them."""
     return "resultant" if "resultant" in law.discretisations else "nodal"
 
@@ -38,8 +42,8 @@ def discretisation_of(law: Any) -> str:
 class Driven:
     """A law with its parameters for n contacts, called with fresh outputs."""
 
-    law: Any
-    kernel: Any
+    law: ContactLaw
+    kernel: Kernel
     params: np.ndarray
 
     @property
@@ -50,7 +54,9 @@ class Driven:
         """(n, m) memory of contacts that have never touched."""
         return np.zeros((self.n, self.law.state_size))
 
-    def __call__(self, gap: Any, rate: Any = 0.0, state: np.ndarray | None = None, dt: float = 1e-5) -> tuple[Any, ...]:
+    def __call__(
+        self, gap: np.ndarray | float, rate: np.ndarray | float = 0.0, state: np.ndarray | None = None, dt: float = 1e-5
+    ) -> tuple[np.ndarray, ...]:
         """force, d_gap, d_rate (n,) and state_new (n, m); outputs are full of NaN before the call."""
         state = self.rest() if state is None else state
         gap, rate = (np.ascontiguousarray(v) if np.ndim(v) else np.full(self.n, float(v)) for v in (gap, rate))
@@ -60,7 +66,7 @@ class Driven:
         return force, d_gap, d_rate, new
 
 
-def drive(law: Any, n: int, discretisation: str = "") -> Driven:
+def drive(law: ContactLaw, n: int, discretisation: str = "") -> Driven:
     """A law built for n example contacts."""
     pairs = example_pairs(n, nodal=(discretisation or discretisation_of(law)) == "nodal")
     return Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))
@@ -79,7 +85,7 @@ class ContactLawSuite(Suite):
     speed = 0.05
 
     @duty("attributes: discretisations, state_size, dissipative, options")
-    def test_declaration(self, law: Any) -> None:
+    def test_declaration(self, law: ContactLaw) -> None:
         check_class("contact_law", law)
         known = {"resultant", "nodal"}
         chosen = law.discretisations
@@ -89,7 +95,7 @@ class ContactLawSuite(Suite):
         require(type(law.dissipative) is bool, f"`dissipative` = {law.dissipative!r} must be True or False")
 
     @duty("build(pairs) returns (n, k) finite parameters, a row for each contact")
-    def test_parameters(self, law: Any) -> None:
+    def test_parameters(self, law: ContactLaw) -> None:
         pairs = example_pairs(7, nodal=discretisation_of(law) == "nodal")
         params = np.asarray(law.build(pairs))
         require(params.ndim == 2 and len(params) == 7, f"build() of 7 contacts returns shape {params.shape}, not (7, k)")
@@ -99,13 +105,13 @@ class ContactLawSuite(Suite):
         require(np.array_equal(np.asarray(law.build(one))[0], params[2]), "a contact's row depends on the other contacts")
 
     @duty("kernel() is compiled with @jit(LAW)")
-    def test_signature(self, law: Any) -> None:
+    def test_signature(self, law: ContactLaw) -> None:
         from raceway.core.signatures import LAW
 
         check_kernel(law.kernel(), LAW, "LAW")
 
     @duty("zero force and derivatives for gap > 0, zero force at gap = 0")
-    def test_zero_outside(self, law: Any) -> None:
+    def test_zero_outside(self, law: ContactLaw) -> None:
         driven = drive(law, 64)
         for state in (driven.rest(), self._reached(driven)):
             for rate in (-self.speed, 0.0, self.speed):
@@ -116,7 +122,7 @@ class ContactLawSuite(Suite):
                         require(not d_gap.any() and not d_rate.any(), f"derivatives are not zero at gap {gap:g} m")
 
     @duty("the force is never negative")
-    def test_never_negative(self, law: Any) -> None:
+    def test_never_negative(self, law: ContactLaw) -> None:
         driven, rng = drive(law, 4096), np.random.default_rng(2)
         for speed in (self.speed, 100.0 * self.speed):
             gap, rate = rng.uniform(-self.depth, 0.2 * self.depth, 4096), rng.uniform(-speed, speed, 4096)
@@ -125,7 +131,7 @@ class ContactLawSuite(Suite):
             require(force[worst] >= 0.0, f"force {force[worst]:.4g} at gap {gap[worst]:.3g} m, rate {rate[worst]:.3g} m/s")
 
     @duty("the force never falls as the approach grows, at any rate and memory")
-    def test_monotonic(self, law: Any) -> None:
+    def test_monotonic(self, law: ContactLaw) -> None:
         driven = drive(law, 16)
         approaches = np.concatenate([np.geomspace(1e-12, 1e-8, 40), np.linspace(1e-8, self.depth, 400)])
         for state in (driven.rest(), self._reached(driven)):
@@ -141,7 +147,7 @@ class ContactLawSuite(Suite):
         require(driven(-self.depth)[0].min() > 0.0, f"no force at an approach of {self.depth:g} m")
 
     @duty("d_gap and d_rate are the derivatives of the force, memory and time step held")
-    def test_derivatives(self, law: Any) -> str:
+    def test_derivatives(self, law: ContactLaw) -> str:
         """Central differences; a point whose two sides disagree straddles a kink, which few may."""
         driven, rng = drive(law, 2000), np.random.default_rng(3)
         kinks = 0
@@ -170,7 +176,7 @@ class ContactLawSuite(Suite):
         return f"{kinks} of 16000 differences straddle a kink" if kinks else ""
 
     @duty("a closed cycle never gains energy, and loses none unless `dissipative`")
-    def test_closed_cycle(self, law: Any) -> str:
+    def test_closed_cycle(self, law: ContactLaw) -> str:
         """Cycles that leave contact and cycles that do not, slow and fast, some with a second harmonic."""
         n, steps, turns = 6, 400, 3
         driven = drive(law, n)
@@ -202,7 +208,7 @@ class ContactLawSuite(Suite):
         return f"loses up to {100.0 * largest:.3g} % a cycle" if law.dissipative else ""
 
     @duty("a law of both discretisations is a pressure where it gets an area: zero outside, growing, derivative exact")
-    def test_pressures(self, law: Any) -> str:
+    def test_pressures(self, law: ContactLaw) -> str:
         if law.discretisations != {"resultant", "nodal"}:
             return "one discretisation"
         driven, h = drive(law, 64, "nodal"), 1e-6 * self.depth
@@ -221,7 +227,7 @@ class ContactLawSuite(Suite):
         return ""
 
     @duty("empty and long arrays; a contact does not depend on its neighbours")
-    def test_array_lengths(self, law: Any) -> None:
+    def test_array_lengths(self, law: ContactLaw) -> None:
         for n in (0, 1, 100_000):
             driven = drive(law, n)
             rng = np.random.default_rng(4)
@@ -235,7 +241,7 @@ class ContactLawSuite(Suite):
                 require(same, "the order of the contacts changes their results")
 
     @duty("the kernel allocates no memory")
-    def test_no_allocation(self, law: Any) -> None:
+    def test_no_allocation(self, law: ContactLaw) -> None:
         from raceway.testing.allocation import counted
         from raceway.testing.compiled import repeat_law
 
@@ -251,7 +257,7 @@ class ContactLawSuite(Suite):
         require(each == 0.0, f"a call allocates {each:g} blocks of memory")
 
     @duty("finite for extreme input")
-    def test_extreme_input(self, law: Any) -> None:
+    def test_extreme_input(self, law: ContactLaw) -> None:
         driven = drive(law, 8)
         for state in (driven.rest(), self._reached(driven)):
             for gap in (-1.0, -1e-3, -1e-15, -5e-324, -0.0, 0.0, 1e300):
@@ -261,7 +267,7 @@ class ContactLawSuite(Suite):
                         require(finite, f"not finite at gap {gap:g} m, rate {rate:g} m/s, dt {dt:g} s")
 
     @duty("every entry of every output is overwritten, and twice the same input gives the same output")
-    def test_overwrites(self, law: Any) -> None:
+    def test_overwrites(self, law: ContactLaw) -> None:
         driven, rng = drive(law, 512), np.random.default_rng(5)
         gap, rate = rng.uniform(-self.depth, self.depth, 512), rng.uniform(-self.speed, self.speed, 512)
         state = self._reached(driven)
@@ -271,7 +277,7 @@ class ContactLawSuite(Suite):
             require(np.array_equal(a, b), f"`{word}` differs between two calls with the same input")
 
     @duty("gap, gap_rate, params and state_old are left untouched")
-    def test_input_untouched(self, law: Any) -> None:
+    def test_input_untouched(self, law: ContactLaw) -> None:
         driven, rng = drive(law, 512), np.random.default_rng(6)
         gap, rate = rng.uniform(-self.depth, self.depth, 512), rng.uniform(-self.speed, self.speed, 512)
         given = {"gap": gap, "gap_rate": rate, "params": driven.params, "state_old": self._reached(driven)}
@@ -281,7 +287,7 @@ class ContactLawSuite(Suite):
         require(not changed, f"{', '.join(changed)} changed")
 
     @duty("no unit is built in: other units of length, force and time, in pairs and options, give the same physics")
-    def test_unit_invariance(self, law: Any) -> str:
+    def test_unit_invariance(self, law: ContactLaw) -> str:
         length, force, time = 1.7, 0.6, 1.3
         options = {}
         for field in attrs.fields(type(law)):
@@ -289,7 +295,8 @@ class ContactLawSuite(Suite):
             if isinstance(value, float):
                 options[field.name] = value * scale_of(field.metadata.get("unit", ""), length, force, time)
         try:
-            other = attrs.evolve(law, **options)
+            given: Any = law  # a contract is no attrs class to mypy
+            other = attrs.evolve(given, **options)
         except ValueError as why:
             return f"not checked: the options' own rules refuse other units ({why})"
         pairs = example_pairs(64, nodal=discretisation_of(law) == "nodal")

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from math import radians
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Excitation
+
 _SAMPLES = 4096
 _SAMPLED = 1e-4
 
 
-def sampled(excitation: Any, times: np.ndarray, repeats: int = 1) -> np.ndarray:
+def sampled(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
     """(n, 5) the force at times (n,), into an array that is full of NaN before."""
     from raceway.testing.compiled import sample_force
 
@@ -23,9 +26,9 @@ def sampled(excitation: Any, times: np.ndarray, repeats: int = 1) -> np.ndarray:
     return out
 
 
-def fundamental(excitation: Any) -> np.ndarray:
+def fundamental(excitation: Excitation) -> np.ndarray:
     """(5,) complex line at ``frequency_hz`` over one period: the force is Re(line e^{jwt}) and other lines."""
-    times = excitation.period_s * np.arange(_SAMPLES) / _SAMPLES
+    times = (excitation.period_s or 0.0) * np.arange(_SAMPLES) / _SAMPLES
     kernel = np.exp(-2j * np.pi * excitation.frequency_hz * times)
     return 2.0 * (kernel[:, None] * sampled(excitation, times)).mean(axis=0)
 
@@ -36,7 +39,7 @@ class ExcitationSuite(Suite):
     kind = "excitation"
 
     @duty("attributes: frequency_hz, period_s, amplitude_n, sense, options")
-    def test_declaration(self, excitation: Any) -> None:
+    def test_declaration(self, excitation: Excitation) -> None:
         check_class("excitation", excitation)
         frequency, period, amplitude = excitation.frequency_hz, excitation.period_s, excitation.amplitude_n
         require(np.isfinite(frequency) and frequency > 0.0, f"`frequency_hz` = {frequency!r} must be finite and above 0")
@@ -53,19 +56,19 @@ class ExcitationSuite(Suite):
             )
 
     @duty("parameters() returns (k,) finite numbers")
-    def test_parameters(self, excitation: Any) -> None:
+    def test_parameters(self, excitation: Excitation) -> None:
         params = np.asarray(excitation.parameters())
         require(params.ndim == 1 and params.dtype == np.float64, f"parameters() is {params.dtype} of shape {params.shape}")
         require(np.isfinite(params).all(), "parameters() holds values that are not finite")
 
     @duty("kernel() is compiled with @jit(FORCE)")
-    def test_signature(self, excitation: Any) -> None:
+    def test_signature(self, excitation: Excitation) -> None:
         from raceway.core.signatures import FORCE
 
         check_kernel(excitation.kernel(), FORCE, "FORCE")
 
     @duty("all five components are overwritten, in any order of times, the parameters untouched")
-    def test_overwrites(self, excitation: Any) -> None:
+    def test_overwrites(self, excitation: Excitation) -> None:
         times = np.random.default_rng(1).uniform(0.0, 3.0 / excitation.frequency_hz, 200)
         forward, backward = sampled(excitation, times), sampled(excitation, times[::-1])
         require(
@@ -79,13 +82,13 @@ class ExcitationSuite(Suite):
         require(np.array_equal(before, params), "the kernel changes its parameters")
 
     @duty("finite at any time")
-    def test_extreme_times(self, excitation: Any) -> None:
+    def test_extreme_times(self, excitation: Excitation) -> None:
         times = np.array([0.0, -0.0, 5e-324, 1e-12, 1.0, 1e3, 1e6, -1e-3])
         force = sampled(excitation, times)
         require(np.isfinite(force).all(), f"not finite at t = {times[~np.isfinite(force).all(axis=1)]} s")
 
     @duty("the kernel allocates no memory")
-    def test_no_allocation(self, excitation: Any) -> None:
+    def test_no_allocation(self, excitation: Excitation) -> None:
         from raceway.testing.allocation import counted
         from raceway.testing.compiled import sample_force
 
@@ -99,7 +102,7 @@ class ExcitationSuite(Suite):
         require(blocks[1] == blocks[0], f"a call allocates {(blocks[1] - blocks[0]) / 1000:g} blocks of memory")
 
     @duty("the force repeats itself after `period_s`")
-    def test_period(self, excitation: Any) -> str:
+    def test_period(self, excitation: Excitation) -> str:
         if excitation.period_s is None:
             return "not periodic"
         times = np.random.default_rng(2).uniform(0.0, 1.0, 300) * excitation.period_s
@@ -110,7 +113,7 @@ class ExcitationSuite(Suite):
         return ""
 
     @duty("the line at `frequency_hz` has the amplitude `amplitude_n`")
-    def test_amplitude(self, excitation: Any) -> str:
+    def test_amplitude(self, excitation: Excitation) -> str:
         if excitation.period_s is None:
             return "not periodic"
         line = fundamental(excitation)[:3]
@@ -124,7 +127,7 @@ class ExcitationSuite(Suite):
         return ""
 
     @duty("the line at `frequency_hz` turns as `sense` says: forward, backward, or not at all")
-    def test_sense(self, excitation: Any) -> str:
+    def test_sense(self, excitation: Excitation) -> str:
         if excitation.period_s is None:
             return "not periodic"
         line = fundamental(excitation)[:3]
@@ -138,7 +141,7 @@ class ExcitationSuite(Suite):
         return ""
 
     @duty("direction and phase are those of the options direction_deg and phase_lag_deg, where there are such")
-    def test_direction_and_phase(self, excitation: Any) -> str:
+    def test_direction_and_phase(self, excitation: Excitation) -> str:
         if excitation.period_s is None:
             return "not periodic"
         direction, lag = (getattr(excitation, word, None) for word in ("direction_deg", "phase_lag_deg"))

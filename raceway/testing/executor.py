@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from raceway.framework.contracts import Batch, Refused
 from raceway.testing.suite import Suite, check_class, duty, require
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
 
 _BATCHES = 400
 #: Taken from the batches at most before the first is answered.
@@ -25,7 +28,7 @@ class Doubling:
     def fault(self) -> str | None:
         return None
 
-    def __call__(self, points: list[Any]) -> Any:
+    def __call__(self, points: list[int]) -> Refused | list[int]:
         if self.broken in points:
             raise ArithmeticError("a fault of the work itself")
         return Refused("here", "a trial") if self.refused in points else [2 * point for point in points]
@@ -50,11 +53,11 @@ class ExecutorSuite(Suite):
     apart = False
 
     @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, executor: Any) -> None:
+    def test_declaration(self, executor: Executor) -> None:
         check_class("executor", executor)
 
     @duty("every batch is answered once, by what the work returned; batches are taken as they are needed")
-    def test_answers(self, executor: Any) -> None:
+    def test_answers(self, executor: Executor) -> None:
         source, found, ahead = _Source(_BATCHES), dict[int, Any](), None
         for number, answer in executor.compute(Doubling(refused=11), source):
             ahead = source.taken if ahead is None else ahead
@@ -67,7 +70,7 @@ class ExecutorSuite(Suite):
         require((ahead or 0) <= _AHEAD, f"{ahead} of {_BATCHES} batches are taken before the first is answered")
 
     @duty("no batches, no answers; what the work raises passes through; closing stops it")
-    def test_ends(self, executor: Any) -> None:
+    def test_ends(self, executor: Executor) -> None:
         require(not list(executor.compute(Doubling(), _Source(0))), "answers without a batch")
         try:
             list(executor.compute(Doubling(broken=6), _Source(8)))
@@ -78,5 +81,5 @@ class ExecutorSuite(Suite):
         source = _Source(_BATCHES)
         answers = executor.compute(Doubling(), source)
         next(answers)
-        answers.close()
+        getattr(answers, "close", lambda: None)()
         require(source.taken <= _AHEAD, f"closing takes all {source.taken} batches")

@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
 from raceway.testing.suite import Suite, check_class, duty, require
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Format
 
 #: Relative difference of real numbers that a text of ten figures may make.
 TEN_FIGURES = 1e-10
@@ -50,7 +53,7 @@ class FormatSuite(Suite):
     what: Any = None
 
     @duty("attributes: suffixes with the dot, options")
-    def test_declaration(self, form: Any) -> None:
+    def test_declaration(self, form: Format) -> None:
         check_class("format", form)
         suffixes = form.suffixes
         require(isinstance(suffixes, tuple) and suffixes, "`suffixes` must be a tuple that is not empty")
@@ -58,7 +61,7 @@ class FormatSuite(Suite):
         require(not bad, f"suffixes {bad} must be lower case and begin with a dot")
 
     @duty("what is written is read back the same, real numbers to ten figures, with every suffix")
-    def test_round_trip(self, form: Any) -> None:
+    def test_round_trip(self, form: Format) -> None:
         what = self._content(form)
         with tempfile.TemporaryDirectory() as folder:
             for suffix in form.suffixes:
@@ -71,7 +74,7 @@ class FormatSuite(Suite):
                 )
 
     @duty("a file that is missing or malformed is refused with a RacewayError that names it")
-    def test_bad_files(self, form: Any) -> None:
+    def test_bad_files(self, form: Format) -> None:
         with tempfile.TemporaryDirectory() as folder:
             for suffix in form.suffixes:
                 missing, empty, noise = (Path(folder) / f"{word}{suffix}" for word in ("missing", "empty", "noise"))
@@ -85,8 +88,9 @@ class FormatSuite(Suite):
                     else:
                         require(False, f"`{path.name}` is read without an error")
 
-    def _content(self, form: Any) -> Any:
+    def _content(self, form: Format) -> Any:
         if self.what is not None:
             return self.what
-        require(hasattr(form, "example_content"), "give the class `example_content()`, or the suite `what`, to write")
-        return form.example_content()
+        example = getattr(form, "example_content", None)
+        require(example is not None, "give the class `example_content()`, or the suite `what`, to write")
+        return example() if example is not None else None

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.core.signals.identification import Identification
+from raceway.storage.tables import Tables
 from raceway.testing.signals import (
     DAMPING,
     FORCE,
@@ -19,6 +20,10 @@ from raceway.testing.signals import (
     synthetic_record,
 )
 from raceway.testing.suite import Suite, check_class, duty, require
+
+if TYPE_CHECKING:
+    from raceway.core.stepping.record import Record
+    from raceway.framework.contracts import Identifier
 
 #: (sense, direction [rad]) of the forces that are tried.
 _FORCES = ((1, 0.0), (-1, 0.0), (0, 0.0), (0, 1.1))
@@ -38,7 +43,7 @@ class IdentifierSuite(Suite):
     kind = "identifier"
 
     @duty("attributes: needs, definition, options")
-    def test_declaration(self, identifier: Any) -> None:
+    def test_declaration(self, identifier: Identifier) -> None:
         check_class("identifier", identifier)
         known = {"record", "speeds", "equilibrium", "period", "phase"}
         needs = identifier.needs
@@ -51,7 +56,7 @@ class IdentifierSuite(Suite):
         )
 
     @duty("an Identification with frequency, mass and force amplitude")
-    def test_answer(self, identifier: Any) -> None:
+    def test_answer(self, identifier: Identifier) -> None:
         found = self._identify(identifier)
         require(isinstance(found, Identification), f"identify() returns {type(found).__name__}, not an Identification")
         require(
@@ -67,46 +72,46 @@ class IdentifierSuite(Suite):
         require(np.isfinite(values).all() and min(values) >= 0.0, "orbit amplitudes must be finite and not negative")
 
     @duty("recovers K, m and C from a clean record, for forces that turn forward, backward, or not")
-    def test_clean(self, identifier: Any) -> str:
+    def test_clean(self, identifier: Identifier) -> str:
         return self._recovers(identifier, 1e-8)
 
     @duty("... with a mean and a drift of ten times the 1x amplitude")
-    def test_drift(self, identifier: Any) -> str:
+    def test_drift(self, identifier: Identifier) -> str:
         # A Fourier line loses a ramp only as far as its slope is known from the turns' means.
         return self._recovers(identifier, 1e-3, mean=50.0, drift=10.0)
 
     @duty("... with 2x and 3x lines as large as the 1x")
-    def test_harmonics(self, identifier: Any) -> str:
+    def test_harmonics(self, identifier: Identifier) -> str:
         # Short tracking windows that fit 1x and 2x only let some of 3x leak in at their ends.
         return self._recovers(identifier, 1e-3, harmonics=1.0)
 
     @duty("... with noise of a tenth of the 1x amplitude")
-    def test_noise(self, identifier: Any) -> str:
+    def test_noise(self, identifier: Identifier) -> str:
         # 2160 samples at least: 0.1 sqrt(2 / 2160) = 0.3 %, three times that for safety.
         return self._recovers(identifier, 1e-2, noise=0.1)
 
     @duty("... with a window that is not whole turns")
-    def test_window(self, identifier: Any) -> str:
+    def test_window(self, identifier: Identifier) -> str:
         return self._recovers(identifier, 1e-3, turns=9.37, mean=3.0, harmonics=0.3)
 
     @duty("records and equilibrium are left untouched")
-    def test_input_untouched(self, identifier: Any) -> None:
+    def test_input_untouched(self, identifier: Identifier) -> None:
         records = self._records(identifier, {})
         before = [(r.displacement.copy(), r.force.copy()) for r in records]
         identifier.identify(records, equilibrium_at_rest(), model_of())
         for record, (x, f) in zip(records, before, strict=True):
             require(np.array_equal(record.displacement, x) and np.array_equal(record.force, f), "a record was changed")
 
-    def _records(self, identifier: Any, spoilt: dict[str, Any]) -> list[Any]:
+    def _records(self, identifier: Identifier, spoilt: Tables) -> list[Record]:
         if "speeds" in identifier.needs:
             return [synthetic_record(frequency=r * FREQUENCY, seed=k, **spoilt) for k, r in enumerate(_SPEEDS)]
         return [synthetic_record(**spoilt)] if "record" in identifier.needs else []
 
-    def _identify(self, identifier: Any, sense: int = 1, direction: float = 0.0, **spoilt: Any) -> Any:
+    def _identify(self, identifier: Identifier, sense: int = 1, direction: float = 0.0, **spoilt: float) -> Identification:
         records = self._records(identifier, {"sense": sense, "direction": direction, **spoilt})
         return identifier.identify(records, equilibrium_at_rest(), model_of(sense, direction))
 
-    def _recovers(self, identifier: Any, tolerance: float, **spoilt: Any) -> str:
+    def _recovers(self, identifier: Identifier, tolerance: float, **spoilt: float) -> str:
         if spoilt and not identifier.needs & {"record", "speeds"}:
             return "no record is used"
         w, wanted = 2.0 * np.pi * FREQUENCY, dynamic_stiffness()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -27,6 +27,9 @@ from raceway.testing.systems import (
     motion,
 )
 
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator
+
 _STEADY = "solves for the steady motion: no transient"
 _Y = np.array([0.0, 1.0, -0.4, 0.0, 0.0])
 _X = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
@@ -50,7 +53,7 @@ def _static_start(system: System) -> Motion:
     return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
 
 
-def _is_steady(method: Any) -> bool:
+def _is_steady(method: Integrator) -> bool:
     return method.steady
 
 
@@ -60,7 +63,7 @@ class IntegratorSuite(Suite):
     kind = "integrator"
 
     @duty("attributes: order, implicit, inertial, dissipative, options; steady, scheme")
-    def test_declaration(self, method: Any) -> None:
+    def test_declaration(self, method: Integrator) -> None:
         check_class("integrator", method)
         require(type(method.order) is int and method.order >= 1, f"`order` = {method.order!r} must be 1 or more")
         for word in ("implicit", "inertial", "dissipative", "steady"):
@@ -69,7 +72,7 @@ class IntegratorSuite(Suite):
         require(any(callable(one) for one in drivers), "`scheme` has no driver: give it `compiled`, `stepped` or both")
 
     @duty("a Record of every stride-th step with time, force, motion and counts; start and system untouched")
-    def test_record(self, method: Any) -> None:
+    def test_record(self, method: Integrator) -> None:
         system = linear_system()
         start = _start(system) if method.inertial else _static_start(system)
         schedule = Schedule(dt=2.0 * np.pi / SPEED / 60, steps_per_turn=60, turns=3, stride=3)
@@ -97,19 +100,19 @@ class IntegratorSuite(Suite):
         require(all(np.array_equal(a, b) for a, b in zip(before, after, strict=True)), "start or system were changed")
 
     @duty("converges with its `order` on a damped, forced, gyroscopic linear system")
-    def test_order_linear(self, method: Any) -> str:
+    def test_order_linear(self, method: Integrator) -> str:
         return self._order(method, linear_system(), 2.0 * PERIOD, (48, 96, 192))
 
     @duty("converges with its `order` on a vibrating contact that stays closed")
-    def test_order_contact(self, method: Any) -> str:
+    def test_order_contact(self, method: Integrator) -> str:
         return self._order(method, contact_system(), 4.0 * PERIOD, (96, 192, 384))
 
     @duty("`steady`: the closed form of a linear system and the motion of a forced contact, within counts['error']")
-    def test_steady_motion(self, method: Any) -> str:
+    def test_steady_motion(self, method: Integrator) -> str:
         return f"{linear_motion(method)}; {contact_motion(method)}" if _is_steady(method) else "not steady"
 
     @duty("each sample is an equilibrium, where the method has no inertia")
-    def test_equilibria(self, method: Any) -> str:
+    def test_equilibria(self, method: Integrator) -> str:
         if method.inertial:
             return "inertial"
         system = linear_system()
@@ -121,7 +124,7 @@ class IntegratorSuite(Suite):
         return ""
 
     @duty("an impact gives back the speed that the law gives back: all of it, for Hertz")
-    def test_impact(self, method: Any) -> str:
+    def test_impact(self, method: Integrator) -> str:
         """A free mass at 0.1 m/s; the error falls as the step falls, to below 1 % at 800 steps a contact."""
         if not method.inertial:
             return "no inertia: no impact"
@@ -146,7 +149,7 @@ class IntegratorSuite(Suite):
         return f"rebound wrong by {100 * errors[0]:.2g} % at 200 steps, {100 * errors[1]:.2g} % at 800"
 
     @duty("never gains energy in the long run; loses none unless `dissipative`")
-    def test_energy(self, method: Any) -> str:
+    def test_energy(self, method: Integrator) -> str:
         if not method.inertial:
             return "no inertia: no energy balance"
         if _is_steady(method):
@@ -172,7 +175,7 @@ class IntegratorSuite(Suite):
         return "energy in 100 turns: " + ", ".join(notes)
 
     @duty("the stable limit: explicit ones hold up to System.critical_time_step and say so above, implicit ones have none")
-    def test_stability(self, method: Any) -> str:
+    def test_stability(self, method: Integrator) -> str:
         if not method.inertial:
             return "no inertia: no stable limit"
         if _is_steady(method):
@@ -196,7 +199,7 @@ class IntegratorSuite(Suite):
         return ""
 
     @duty("2 N steps equal N steps and N more from Record.final; `steady`: the same motion from any start")
-    def test_restart(self, method: Any) -> str:
+    def test_restart(self, method: Integrator) -> str:
         if _is_steady(method):
             return forgets_the_start(method)
         for system in (linear_system(), contact_system()):
@@ -215,7 +218,7 @@ class IntegratorSuite(Suite):
         return ""
 
     @duty("a law's memory is committed once with every accepted step, never with a trial; `steady`: or refused")
-    def test_memory(self, method: Any) -> str:
+    def test_memory(self, method: Integrator) -> str:
         if _is_steady(method):
             return refuses_memory(method)
         system = counting_system()
@@ -230,7 +233,7 @@ class IntegratorSuite(Suite):
         return ""
 
     @duty("compiled and stepped drivers, where a scheme has both, take the same steps")
-    def test_drivers(self, method: Any) -> str:
+    def test_drivers(self, method: Integrator) -> str:
         if not has_both(method):
             return "one driver"
         worst = 0.0
@@ -245,7 +248,7 @@ class IntegratorSuite(Suite):
         return f"they differ by {worst:.1e} of the motion"
 
     @duty("on_chunk(done, total) is called up to the end, and what it raises passes through")
-    def test_progress(self, method: Any) -> None:
+    def test_progress(self, method: Integrator) -> None:
         system = linear_system()
         start = _start(system) if method.inertial else _static_start(system)
         calls: list[tuple[int, int]] = []
@@ -265,7 +268,7 @@ class IntegratorSuite(Suite):
         require(False, "an exception of on_chunk does not stop the integration")
 
     @duty("a motion that cannot go on raises ConvergenceError or StabilityError with the last good state")
-    def test_failure(self, method: Any) -> None:
+    def test_failure(self, method: Integrator) -> None:
         system = contact_system(load=-1e9)  # pulls the mass away with nothing to hold it
         start = Motion(np.zeros(5), np.zeros(5), np.zeros(5), np.zeros((1, 2)), np.zeros((1, 2)))
         try:
@@ -277,7 +280,7 @@ class IntegratorSuite(Suite):
             return
         require(False, f"no error, though the mass flies off to {record.displacement[-1, 0]:.3g} m")
 
-    def _order(self, method: Any, system: System, time: float, counts: tuple[int, ...]) -> str:
+    def _order(self, method: Integrator, system: System, time: float, counts: tuple[int, ...]) -> str:
         if not method.inertial:
             return "no inertia: see equilibria"
         if _is_steady(method):

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.testing.scenes import example_scene
 from raceway.testing.suite import Suite, check_class, duty, require
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Mesher
 
 #: Neighbours of each corner of a cell along its three axes.
 AROUND = ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3))
@@ -20,11 +23,11 @@ class MesherSuite(Suite):
     kind = "mesher"
 
     @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, mesher: Any) -> None:
+    def test_declaration(self, mesher: Mesher) -> None:
         check_class("mesher", mesher)
 
     @duty("mesh(bearing) returns meshes by name, each with points (n, 3) [m] and cells (m, 8)")
-    def test_meshes(self, mesher: Any) -> None:
+    def test_meshes(self, mesher: Mesher) -> None:
         meshes = mesher.mesh(example_scene().bearing)
         require(isinstance(meshes, Mapping) and meshes, f"mesh() returns {type(meshes).__name__}, not meshes by name")
         for name, mesh in meshes.items():
@@ -39,7 +42,7 @@ class MesherSuite(Suite):
             )
 
     @duty("no cell is flat or inside out")
-    def test_volumes(self, mesher: Any) -> None:
+    def test_volumes(self, mesher: Mesher) -> None:
         for name, mesh in mesher.mesh(example_scene().bearing).items():
             corner = np.asarray(mesh.points)[np.asarray(mesh.cells)]
             # Nodes 0 to 3 around the bottom, 4 to 7 above them: the edges at each corner, right-handed.
@@ -51,7 +54,7 @@ class MesherSuite(Suite):
                 )
 
     @duty("sets, where there are some, name nodes (k,) and facets (k, 2) that exist")
-    def test_sets(self, mesher: Any) -> None:
+    def test_sets(self, mesher: Mesher) -> None:
         for name, mesh in mesher.mesh(example_scene().bearing).items():
             for word, members in getattr(mesh, "node_sets", {}).items():
                 nodes = np.asarray(members)
@@ -64,7 +67,7 @@ class MesherSuite(Suite):
                 require(good, f"'{name}': facet set '{word}' is empty or names faces that do not exist")
 
     @duty("twice the same bearing gives the same mesh")
-    def test_repeats(self, mesher: Any) -> None:
+    def test_repeats(self, mesher: Mesher) -> None:
         first, second = (mesher.mesh(example_scene().bearing) for _ in range(2))
         require(set(first) == set(second), "the bodies differ")
         for name in first:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.testing.scenes import example_result
 from raceway.testing.suite import Suite, check_class, duty, require
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Report
 
 
 class ReportSuite(Suite):
@@ -16,11 +19,11 @@ class ReportSuite(Suite):
     kind = "report"
 
     @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, report: Any) -> None:
+    def test_declaration(self, report: Report) -> None:
         check_class("report", report)
 
     @duty("write(result, folder) writes files into the folder and returns their paths; a second time too")
-    def test_writes(self, report: Any) -> None:
+    def test_writes(self, report: Report) -> None:
         with tempfile.TemporaryDirectory() as folder:
             for _ in range(2):
                 paths = [Path(p) for p in report.write(example_result(), Path(folder))]
@@ -33,7 +36,7 @@ class ReportSuite(Suite):
             require(not extra, f"{', '.join(extra)} is written but not returned")
 
     @duty("the result is left untouched")
-    def test_result_untouched(self, report: Any) -> None:
+    def test_result_untouched(self, report: Report) -> None:
         before = example_result().as_dict()
         with tempfile.TemporaryDirectory() as folder:
             report.write(example_result(), Path(folder))

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from raceway.pipeline.result import Result
+    from raceway.scene.tables import Scene
 
 
 @cache
-def example_scene() -> Any:
+def example_scene() -> Scene:
     """A bearing of 30 mm bore under axial load and a turning force, two turns."""
     from raceway import scene_from_dict
 
@@ -24,7 +28,7 @@ def example_scene() -> Any:
 
 
 @cache
-def example_result() -> Any:
+def example_result() -> Result:
     """The scene's ``Result``."""
     from raceway.pipeline.run import run
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -14,6 +14,9 @@ from raceway.errors import RacewayError
 from raceway.testing.compiled import along_x
 from raceway.testing.suite import require
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, counting_system, exact, linear_system, motion
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator
 
 #: An estimate may be short of the true error by this factor; below the floor, rounding decides.
 _FACTOR, _FLOOR = 3.0, 1e-9
@@ -27,7 +30,7 @@ def own_error(record: Record) -> float:
     return float(error)  # type: ignore[arg-type]
 
 
-def linear_motion(method: Any) -> str:
+def linear_motion(method: Integrator) -> str:
     """Springs, dashpots and a gyroscopic term: the closed form within the stated error."""
     system = linear_system()
     record = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
@@ -37,7 +40,7 @@ def linear_motion(method: Any) -> str:
     return _held(np.abs(off).max() / np.abs(lines).max(), own_error(record), "the closed form")
 
 
-def contact_motion(method: Any) -> str:
+def contact_motion(method: Integrator) -> str:
     """A mass pushed to and fro on a Hertzian contact: the record against an integration that begins at its end."""
     resting = (PRELOAD / float(contact_system().law_params[0, 0])) ** (2.0 / 3.0)
     speed = 0.4 * np.sqrt(1.5 * PRELOAD / resting / float(contact_system().mass[0, 0]))
@@ -51,7 +54,7 @@ def contact_motion(method: Any) -> str:
     return _held(0.5 * np.abs(q - record.displacement).max() / size, own_error(record), "an integration to 1e-11")
 
 
-def forgets_the_start(method: Any) -> str:
+def forgets_the_start(method: Integrator) -> str:
     """Another start and another number of turns give the same motion."""
     system = linear_system()
     still = motion(system, np.zeros(5), np.zeros(5))
@@ -62,7 +65,7 @@ def forgets_the_start(method: Any) -> str:
     return _held(off, own_error(one) + own_error(two), "the motion from another start")
 
 
-def refuses_memory(method: Any) -> str:
+def refuses_memory(method: Integrator) -> str:
     """A law with memory is refused with a message, or its memory is committed; never ignored."""
     system = counting_system()
     start = motion(contact_system(), 1e-6 * np.array([1.0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5))

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.testing.suite import Suite, check_class, duty, require
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Study
 
 
 class StudySuite(Suite):
@@ -13,16 +16,16 @@ class StudySuite(Suite):
     kind = "study"
 
     @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, study: Any) -> None:
+    def test_declaration(self, study: Study) -> None:
         check_class("study", study)
 
     @duty("help is one line for the list of studies")
-    def test_help(self, study: Any) -> None:
+    def test_help(self, study: Study) -> None:
         require(isinstance(study.help, str) and study.help.strip(), "help is no text")
         require(len(study.help.splitlines()) == 1, "help has several lines")
 
     @duty("command() gives a click command of the study's name that takes --json and explains itself")
-    def test_command(self, study: Any) -> None:
+    def test_command(self, study: Study) -> None:
         import click
         from click.testing import CliRunner
 

@@ -19,13 +19,20 @@ import inspect
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
+from raceway.storage.tables import Tables
 from raceway.testing.child import Died, apart
 
+if TYPE_CHECKING:
+    from numba.core.typing.templates import Signature
+
+    from raceway.core.jit import Kernel
+
 PASSED, FAILED, EXPECTED, UNEXPECTED = "passed", "failed", "expected failure", "unexpectedly passed"
+
 EXPECTED_FAILURES = "raceway_expected_failures.toml"
 
 
@@ -33,7 +40,7 @@ class ConformityError(AssertionError):
     """A duty of the contract that a plug-in does not fulfil."""
 
 
-def require(condition: Any, message: str) -> None:
+def require(condition: object, message: str) -> None:
     """Raise ``ConformityError`` with a message for the plug-in's author unless the condition holds."""
     if not condition:
         raise ConformityError(message)
@@ -65,7 +72,7 @@ class Conformity:
     def conforms(self) -> bool:
         return bool(self.rows) and all(row.good for row in self.rows)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {
             "kind": self.kind,
             "name": self.name,
@@ -74,10 +81,10 @@ class Conformity:
         }
 
 
-def duty(text: str) -> Callable[[Callable[..., str | None]], Any]:
+def duty(text: str) -> Callable[[Callable[..., str | None]], Callable[[Suite], None]]:
     """Make a check out of a method ``test_<name>(self, plugin)``."""
 
-    def decorate(function: Callable[..., str | None]) -> Any:
+    def decorate(function: Callable[..., str | None]) -> Callable[[Suite], None]:
         name = function.__name__.removeprefix("test_")
 
         def method(self: Suite) -> None:
@@ -113,9 +120,9 @@ class Suite:
     apart: ClassVar[bool] = True
 
     @classmethod
-    def checks(cls) -> dict[str, Any]:
+    def checks(cls) -> Tables:
         """Check name -> method, in the order of the source."""
-        found: dict[str, Any] = {}
+        found: Tables = {}
         for base in reversed(cls.__mro__):
             for name, value in vars(base).items():
                 if hasattr(value, "duty"):
@@ -207,7 +214,7 @@ class Suite:
         except Exception as why:  # the plug-in's own code
             raise ConformityError(f"no example can be made: {type(why).__name__}: {why}") from why
 
-    def _run(self, check: Callable[..., str | None], plugin: Any) -> str | None:
+    def _run(self, check: Callable[..., str | None], plugin: object) -> str | None:
         try:
             return check(self, plugin)
         except ConformityError as why:
@@ -216,7 +223,7 @@ class Suite:
             raise ConformityError(f"{plugin!r}: raises {type(why).__name__}: {why}") from why
 
 
-def check_class(kind: str, plugin: Any) -> None:
+def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
     """The duties that every kind shares: attributes that exist, a frozen attrs class, options that declare themselves."""
     from raceway.framework.contracts import broken_duties
 
@@ -241,7 +248,7 @@ def _frozen(plugin: Any) -> bool:
     return False
 
 
-def check_kernel(kernel: Any, signature: Any, word: str) -> None:
+def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
     from raceway.core.jit import signature_words
 

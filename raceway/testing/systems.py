@@ -20,6 +20,7 @@ from raceway.core.excitations.harmonic import harmonic, no_force
 from raceway.core.ring.kernels.layout import COLUMNS, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion
+from raceway.storage.tables import Tables
 from raceway.testing.compiled import counting, one_contact
 
 #: The last entry of ``scalars``, a diameter that no ball here has: the gap at x = 0 [m].
@@ -64,7 +65,7 @@ def linear_system(damped: bool = True, forced: bool = True) -> System:
     if damped:
         damping[1, 1] = damping[2, 2] = DASHPOT
         damping[1, 2], damping[2, 1] = GYROSCOPIC, -GYROSCOPIC
-    parts: dict[str, Any] = {}
+    parts: Tables = {}
     if forced:
         parts = {"force": harmonic, "force_params": np.array([FORCE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])}
     stiffness = np.diag([0.0, STIFFNESS, 1.3 * STIFFNESS, 0.0, 0.0])

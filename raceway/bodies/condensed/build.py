@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -25,6 +25,7 @@ from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -65,7 +66,7 @@ class CondensedBearing(Bearing):
     compliances: ElasticBodies
     angles: np.ndarray | None
 
-    def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""
         system: System = surrogate(self.rigid.system)
         q, ball, _ = system.settle(self.rigid.guess)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.bodies.basis import Basis, seat_of
 from raceway.core.condensed.calibration import calibrated
@@ -14,6 +14,8 @@ from raceway.core.patches.compliances import RingBody, Solid
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
+    from collections.abc import Hashable
+
     from raceway.core.mesh.ring_mesh import RingShape
 
 #: Peak pressure [Pa] of the contact whose length the line loads on the rings have: independent of the scene's load, so that
@@ -23,7 +25,7 @@ _PRESSURE = 1.5e9
 _CALIBRATED_BULK = 0.4
 #: Compliances of the last scenes: a run asks for them up to four times, a study for the same bodies again and again.
 _KEPT = 8
-_BODIES: dict[Any, ElasticBodies] = {}
+_BODIES: dict[Hashable, ElasticBodies] = {}
 
 
 def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticBodies:

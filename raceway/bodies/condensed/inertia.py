@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.bodies.basis import seat_of
 from raceway.core.condensed.modes import first_frequency
 from raceway.core.mesh.ring_shape import ring_shape
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
 
 
-def inertia_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:
     """First elastic frequencies of both rings as supported and free, and of a ball along its grooves [Hz].
 
     Each with the error (w / w_1)^2 that leaving out its inertia makes in what it contributes; None in a static scene, and for
@@ -30,7 +31,7 @@ def inertia_table(model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
     b = scene.bearing
     excitation = scene.excitation
     frequency = None if excitation is None else float(excitation.frequency_hz)
-    out: dict[str, Any] = {}
+    out: Tables = {}
 
     def tell(name: str, first: float | None) -> None:
         out[f"{name}_hz"] = first

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -18,6 +18,7 @@ from raceway.planning.decisions import Balls, Motion, uses_record
 from raceway.planning.parts import Decisions
 from raceway.planning.wall_time import START_S, Times, compiled_motion, runs
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
@@ -38,7 +39,7 @@ class Condensed:
     modules: ClassVar[tuple[str, ...]] = (*RIGID, *REDUCED)
 
     @classmethod
-    def example_scene(cls) -> dict[str, Any]:
+    def example_scene(cls) -> Tables:
         """A B7206C on sections so coarse that they take a moment."""
         return {
             "bearing": {"preset": "B7206C"},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -17,6 +17,7 @@ from raceway.planning.decisions import Balls, Motion
 from raceway.planning.parts import Decisions
 from raceway.planning.wall_time import START_S
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
@@ -43,7 +44,7 @@ class Elastic:
     )
 
     @classmethod
-    def example_scene(cls) -> dict[str, Any]:
+    def example_scene(cls) -> Tables:
         """Three balls on some hundred elements each, with a force that is small against the loads: seconds."""
         return {
             "bearing": {"preset": "B7206C", "ball_count": 3},

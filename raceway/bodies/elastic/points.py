@@ -10,6 +10,7 @@ from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.report import ElasticBodies
 from raceway.bodies.model import Told
 from raceway.core.elastic.contacts.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -41,7 +42,7 @@ class ElasticPoints(ElasticBodies):
         """The overlap that a law leaves."""
         return overlap(self.ball_columns(model, equilibrium), equilibrium)
 
-    def contact_table(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    def contact_table(self, model: Model, equilibrium: Equilibrium) -> Tables:
         columns = self.ball_columns(model, equilibrium)
         loaded = equilibrium.contact_force > 0.0
         approach, left = (

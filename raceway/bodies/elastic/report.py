@@ -19,6 +19,7 @@ from raceway.core.ring.ring import COORDINATES, Ring
 from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -89,10 +90,10 @@ class ElasticBodies(Bearing):
         return out
 
     @abstractmethod
-    def contact_table(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    def contact_table(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """What ``report`` says of the contacts; ``mesh`` there is added to what it says of the mesh."""
 
-    def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json."""
         q, ball, _ = self.rigid.settle(self.guess)
         stiffness = self.rigid.evaluate(q, ball=ball).stiffness

@@ -11,6 +11,7 @@ from raceway.bodies.condensed.calibration_error import calibration_error
 from raceway.bodies.contact_error import untold
 from raceway.bodies.elastic.report import ElasticBodies
 from raceway.bodies.model import Told
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -43,7 +44,7 @@ class ElasticResultants(ElasticBodies):
             out[f"approach_replaced_{word}_m"] = contact.local[part] * equilibrium.contact_force[part]
         return out
 
-    def contact_table(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    def contact_table(self, model: Model, equilibrium: Equilibrium) -> Tables:
         contact: Any = self.bearing.system.contact
         z, beyond = model.system.ball_count, self.bearing.setup.beyond
         assert beyond is not None

@@ -7,7 +7,7 @@ where contacts go further than that, the patches are made wider.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -37,6 +37,9 @@ from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.plan import Plan
 from raceway.scene.tables import Scene
+
+if TYPE_CHECKING:
+    from raceway.core.contact.hertz import Ellipse
 
 #: Size of elements far from the contacts [m] where the scene says nothing.
 BULK = 0.8e-3
@@ -85,7 +88,7 @@ def _system(scene: Scene, basis: Basis, like: Ring, reach: Reach, nodes: float, 
     return PatchSystem(**{**fields, "table": like.table.copy()}, rigid=surrogate(like), pool=pool, ball_mass=mass), spacing
 
 
-def _semi_axes(ellipse: Any, load: float) -> tuple[float, float]:
+def _semi_axes(ellipse: Ellipse, load: float) -> tuple[float, float]:
     a, b = ellipse.semi_axes(load)
     return float(a), float(b)
 

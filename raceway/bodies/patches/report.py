@@ -23,6 +23,7 @@ from raceway.core.ring.system import System
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.scene.inner_ring import load_at_edge
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -115,7 +116,7 @@ class NodalBearing(Bearing):
             out[f"approach_structural_{word}_m"] = approach - np.asarray(ellipse.approach(load)) - left
         return out
 
-    def report(self, model: Model, equilibrium: Equilibrium) -> dict[str, Any]:
+    def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json."""
         q, ball, _ = self.rigid.settle(self.beside)
         stiffness = self.rigid.evaluate(q, ball=ball).stiffness

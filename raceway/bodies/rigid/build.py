@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from raceway.scene.tables import Scene
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
+    from raceway.core.jit import Kernel
 
 
 class RigidBearing(Bearing):
@@ -80,7 +81,7 @@ def probe(scene: Scene, basis: Basis, system: System) -> None:
         probe_excitation(scene.excitation, system.force, system.force_params)
 
 
-def _bodies_kernels(plan: Plan) -> tuple[Any, Any]:
+def _bodies_kernels(plan: Plan) -> tuple[Kernel, Kernel]:
     """The plan's kernel, and the one whose forces have a potential."""
     if plan.centrifugal:
         from raceway.core.ring.kernels.rigid_inertial import rigid_inertial as base

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
 from datetime import datetime
-from typing import Any
 
 from rich.console import RenderableType
 
 from raceway.commands.screen.text import sections
+from raceway.storage.tables import ReadTables
 
 #: Compliances that are listed one by one; a study keeps thousands.
 _SHOWN = 10
 
 
-def cache_screen(found: Mapping[str, Any]) -> RenderableType:
+def cache_screen(found: ReadTables) -> RenderableType:
     rows = [("Compiled kernels", "", f"in {found['root']}")]
     for folder in found["folders"]:
         size = f"{folder['bytes'] / 2**20:.1f} MiB"

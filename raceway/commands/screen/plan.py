@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
@@ -12,9 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.commands.screen.text import Row, grouped, number, sections
+from raceway.storage.tables import ReadTables
 
 
-def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
+def plan_screen(title: str, plan: ReadTables) -> RenderableType:
     """Parts kept and left out, and the predictions."""
     step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
     rows = [
@@ -35,7 +35,7 @@ def plan_screen(title: str, plan: Mapping[str, Any]) -> RenderableType:
     return Group(Text(title, style="bold"), *parts)
 
 
-def _mesh_rows(mesh: Mapping[str, Any]) -> list[Row]:
+def _mesh_rows(mesh: ReadTables) -> list[Row]:
     """Predicted cells and memory of all bodies and of each; balls in one line."""
     rows: list[Row] = [
         ("Mesh, predicted", "", ""),

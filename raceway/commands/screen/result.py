@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from raceway.commands.screen.text import Row, number, number_within, sections, tilt_words, written
+from raceway.storage.tables import ReadTables
 
 _LEFT_OUT_SHOWN = 3
 
 
-def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableType:
+def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
     """One run.
 
     Parameters
@@ -39,7 +39,7 @@ def run_screen(result: Mapping[str, Any], files: Sequence[str]) -> RenderableTyp
     return Group(*parts)
 
 
-def _bearing(result: Mapping[str, Any]) -> str:
+def _bearing(result: ReadTables) -> str:
     scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
     b, load = scene["bearing"], scene["load"]
     if b.get("radial_clearance") and not b.get("contact_angle_deg"):
@@ -55,7 +55,7 @@ def _bearing(result: Mapping[str, Any]) -> str:
     return "\n".join(words)
 
 
-def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
+def _equilibrium(result: ReadTables) -> list[Row]:
     found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
     moved, k = found["displacement"], found["stiffness"]
     balls = list(enumerate(found["balls"]))
@@ -82,7 +82,7 @@ def _equilibrium(result: Mapping[str, Any]) -> list[Row]:
     return rows
 
 
-def _mounted(found: Mapping[str, Any]) -> list[Row]:
+def _mounted(found: ReadTables) -> list[Row]:
     """Preload and held axial force: mounted and running."""
     rows, preload, held = [], found["preload"], found["held_axial"]
     if preload is not None:
@@ -96,7 +96,7 @@ def _mounted(found: Mapping[str, Any]) -> list[Row]:
     return rows
 
 
-def _pressure(ball: Mapping[str, Any]) -> str:
+def _pressure(ball: ReadTables) -> str:
     """Of the inner race; where finite elements tell their own, both of theirs and Hertz's by name."""
     names = {"points": "peak_pressure_points_inner_pa", "nodal": "peak_pressure_nodal_inner_pa"}
     told = [f"{1e-6 * ball[key]:.0f} MPa {word}" for word, key in names.items() if ball.get(key) is not None]
@@ -109,7 +109,7 @@ def _small(metres: float) -> str:
     return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
 
 
-def _identification(result: Mapping[str, Any]) -> list[Row]:
+def _identification(result: ReadTables) -> list[Row]:
     found = result["identification"]
     if found is None:
         return [("Dynamic stiffness", "", ""), ("none", "-", "static scene: add a table [excitation] to identify one")]
@@ -134,7 +134,7 @@ def _identification(result: Mapping[str, Any]) -> list[Row]:
     ]
 
 
-def _stiffness(found: Mapping[str, Any], remark: str) -> Row:
+def _stiffness(found: ReadTables, remark: str) -> Row:
     """K with the absolute error of Z, which is larger than the same share of K where m w^2 cancels K."""
     name, value, error = "equivalent stiffness K", found["equivalent_stiffness"], found["equivalent_stiffness_error"]
     if error is None:
@@ -154,7 +154,7 @@ def _resolved(name: str, value: float, error: float | None, unit: str, remark: s
     return name, number(value, unit, 3), f"+- {number(error, unit, 2)}; {remark}"
 
 
-def _error(result: Mapping[str, Any]) -> list[Row]:
+def _error(result: ReadTables) -> list[Row]:
     error = result["error"]
     how = error["how"]
     rows = [("Relative error of Z", "", "")]
@@ -169,7 +169,7 @@ def _error(result: Mapping[str, Any]) -> list[Row]:
     return rows
 
 
-def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
+def _bodies(model: ReadTables | None) -> list[Row]:
     """Effect of elasticity, quality of the mesh, and error of the missing inertia; each where the result has it."""
     if not model:
         return []
@@ -209,7 +209,7 @@ def _bodies(model: Mapping[str, Any] | None) -> list[Row]:
     return rows
 
 
-def _inertia(inertia: Mapping[str, Any]) -> list[Row]:
+def _inertia(inertia: ReadTables) -> list[Row]:
     """The slowest motion that is taken to follow at once."""
     names = {
         "inner_supported": "inner ring",
@@ -228,7 +228,7 @@ def _inertia(inertia: Mapping[str, Any]) -> list[Row]:
     return [("slowest own motion", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
 
 
-def _orbits(found: Sequence[Mapping[str, Any]]) -> list[Row]:
+def _orbits(found: Sequence[ReadTables]) -> list[Row]:
     """Steady motions under the same force, where more than one was found."""
     if len(found) < 2:
         return []
@@ -241,7 +241,7 @@ def _orbits(found: Sequence[Mapping[str, Any]]) -> list[Row]:
     return rows
 
 
-def _cost(cost: Mapping[str, Any]) -> list[Row]:
+def _cost(cost: ReadTables) -> list[Row]:
     memory = cost["peak_memory_bytes"] / 2**20
     kept = (
         "once: kept for the next run (raceway cache)" if cost["compile_s"] else "kernels were in the cache (raceway cache)"
@@ -261,7 +261,7 @@ def _threads(count: int) -> str:
     return f"{count} thread{'' if count == 1 else 's'}"
 
 
-def _stability(found: Mapping[str, Any]) -> list[Row]:
+def _stability(found: ReadTables) -> list[Row]:
     limit, drift = found["critical_time_step_s"], found["energy_drift"]
     words = [] if limit is None else [f"explicit limit {limit:.3g} s"]
     words += [] if drift is None else [f"energy drift {drift:.1e}"]

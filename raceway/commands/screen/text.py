@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import floor, log10
-from typing import Any
+from typing import TYPE_CHECKING, TypeVar
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -13,7 +13,14 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from raceway.storage.tables import ReadTables
+
+if TYPE_CHECKING:
+    pass
+
 Row = tuple[str, str, str]
+
+T = TypeVar("T")
 
 
 def sections(rows: Iterable[Row]) -> RenderableType:
@@ -59,10 +66,10 @@ def written(files: Sequence[str]) -> list[RenderableType]:
     return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
 
 
-def grouped(bodies: Mapping[str, Any]) -> list[tuple[str, Any]]:
+def grouped(bodies: Mapping[str, T]) -> list[tuple[str, T]]:
     """Bodies with what is said of them; balls of which the same is said share a line, ``balls (12)``."""
-    rows: list[tuple[str, Any]] = []
-    balls: list[tuple[Any, int]] = []
+    rows: list[tuple[str, T]] = []
+    balls: list[tuple[T, int]] = []
     for name, said in bodies.items():
         if not name.startswith("ball"):
             rows.append((name, said))
@@ -75,7 +82,7 @@ def grouped(bodies: Mapping[str, Any]) -> list[tuple[str, Any]]:
     return rows + [(f"balls ({count})", said) for said, count in balls]
 
 
-def rows_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> RenderableType:
+def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
     """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned."""
     table = Table(title=title or None, title_justify="left", header_style="bold", box=SIMPLE_HEAD, pad_edge=False)
     keys = list(dict.fromkeys(key for row in rows for key in row))
@@ -89,7 +96,7 @@ def rows_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> Renderable
     return table
 
 
-def _cell(value: Any) -> str:
+def _cell(value: object) -> str:
     if isinstance(value, bool):
         return "[green]yes[/]" if value else "[red]no[/]"
     return escape(number(value) if isinstance(value, float) else "-" if value is None else str(value))

@@ -10,8 +10,6 @@ of points, so that two distances give the limit; a mean over loads removes the s
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -23,6 +21,7 @@ from raceway.core.patches.patch import Patch, Spacing
 from raceway.core.revolution.ring_profile import coarse_profile
 from raceway.errors import ConvergenceError, MeshError
 from raceway.storage.array_cache import kept
+from raceway.storage.tables import Tables
 
 #: Points along a semi-axis of the coarser and the finer patch.
 POINTS = (3, 6)
@@ -74,7 +73,7 @@ def calibrated(
     load : typical one [N];  radius : of the ball [m];  balls : in a row;  angle : free contact angle [rad]
     """
     profile = coarse_profile(body.shape, body.solid.bulk, body.solid.bulk)
-    inputs: dict[str, Any] = {
+    inputs: Tables = {
         "points": profile.points, "seat_nodes": profile.seat, "inner": body.shape.inner, "groove": body.shape.groove,
         "centre": [body.shape.centre_r, body.shape.centre_x], "seat": body.seat, "load": load, "radius": radius,
         "balls": balls, "angle": angle, "solids": [*attrs.astuple(body.solid), *attrs.astuple(ball)],

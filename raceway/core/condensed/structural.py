@@ -11,8 +11,6 @@ wall below the groove and 0.34 D: 1.0 to 2.5 mm where they were found (B7206C: w
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -23,6 +21,7 @@ from raceway.core.revolution.harmonics import offset_weights, solved_harmonics
 from raceway.core.revolution.profile import Profile
 from raceway.core.revolution.ring_profile import coarse_profile
 from raceway.storage.array_cache import kept
+from raceway.storage.tables import Tables
 
 #: Sources on which kept numbers depend.
 SOURCES = ("core/revolution", "core/hexahedron", "core/condensed", "core/patches", "core/mesh")
@@ -91,7 +90,7 @@ def ring_compliance(
     last = max(shape.edge - half / shape.groove, abs(shape.contact))
     table = np.linspace(-last, last, angles)
     depths = length * np.linspace(*DEPTHS, COUNT)
-    inputs: dict[str, Any] = {
+    inputs: Tables = {
         "points": profile.points, "quads": profile.quads, "race": profile.race, "race_angles": profile.angles,
         "seat_nodes": profile.seat, "divisions": divisions, "balls": balls, "half": half, "young": young,
         "poisson": poisson, "seat": seat, "angles": table, "depths": depths, "inner": shape.inner,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from raceway.core.elastic.body import Body
 from raceway.core.elastic.cage import Cage
 from raceway.core.elastic.contacts.surface import surface_points
 from raceway.core.linear.rigid_motions import MOTIONS, rigid_motions
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 class Assembly:
@@ -65,7 +68,7 @@ class Assembly:
         self.free_mass = mass[self.free]
         self.frame_mass = self.frame_mass + self._tie.T @ (mass[self.tied, None] * self._tie)
         self.beds = self._beds()
-        self._stiffness: Any = None
+        self._stiffness: csr_matrix = None
 
     def carried_tied(self) -> np.ndarray:
         """(3 nodes, frame_size) displacement of the tied nodes, the others zero."""
@@ -106,7 +109,7 @@ class Assembly:
         out[: self.frame_size] += frame
         return out
 
-    def stiffness(self) -> Any:
+    def stiffness(self) -> csr_matrix:
         """(3 nodes, 3 nodes) sparse stiffness of bodies and beds, made at the first call."""
         if self._stiffness is None:
             from scipy.sparse import block_diag, csr_array
@@ -157,7 +160,7 @@ class Assembly:
             )
         return found
 
-    def _owners(self, rows: Any) -> np.ndarray:
+    def _owners(self, rows: csr_matrix) -> np.ndarray:
         return np.asarray(np.searchsorted(3 * self.starts, rows.tocoo().col, side="right") - 1)
 
     def rigid_share(self, r: np.ndarray, index: int) -> np.ndarray:
@@ -165,7 +168,7 @@ class Assembly:
         rows = self.part(index)
         return np.asarray(rigid_motions(self.bodies[index].points).T @ r[rows])
 
-    def _beds(self) -> list[tuple[Any, np.ndarray]]:
+    def _beds(self) -> list[tuple[csr_matrix, np.ndarray]]:
         """For each bed its matrix (3 nodes, 3 nodes) and the frame's motion that it acts against (3 nodes, frame_size)."""
         from scipy.sparse import coo_array
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 @attrs.frozen(eq=False)
@@ -23,7 +26,7 @@ class Cage:
     Where nothing pushes a ball along its orbit, the cage carries nothing, whatever its stiffness.
     """
 
-    rows: Any
+    rows: csr_matrix
     stiffness: np.ndarray
     names: tuple[str, ...]
     nodal: np.ndarray

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 #: Unknowns up to which factors are made.  Rings and balls couple at their contacts only, so that factors stay small: at
 #: 97 000 unknowns of a coarse bearing 4.4 CPU-s and 0.75 GB, at 15 000 0.7 CPU-s.  One compact body fills up: two of 16 000
@@ -27,7 +30,7 @@ class Factorised:
         A singular matrix: a motion that nothing holds.
     """
 
-    def __init__(self, matrix: Any, held: np.ndarray) -> None:
+    def __init__(self, matrix: csr_matrix, held: np.ndarray) -> None:
         from scipy.sparse.linalg import splu
 
         rows = np.flatnonzero(~held)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
 
 Material = tuple[float, float, float]
 
@@ -44,7 +47,7 @@ class Setup:
     rings: Material
     balls: Material
     reference_load: float
-    law: Any
+    law: Kernel
     params: Callable[[np.ndarray, np.ndarray], np.ndarray]
     mass: np.ndarray
     free: np.ndarray

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.core.stepping.protocol import Observation, State
 from raceway.core.stepping.record import Motion
+
+if TYPE_CHECKING:
+    from raceway.core.elastic.system import ElasticSystem
 
 #: Names of the unknowns in ``Motion.whole``.
 _UNKNOWNS = ("u", "v", "a", "rest")
@@ -28,7 +31,12 @@ class SteppedElastic:
         Half the number of contact forces that ``look`` gives.
     """
 
-    def __init__(self, system: Any, look: Callable[[Any, np.ndarray, np.ndarray], Seen] | None = None, ball_count: int = 0):
+    def __init__(
+        self,
+        system: ElasticSystem,
+        look: Callable[[ElasticSystem, np.ndarray, np.ndarray], Seen] | None = None,
+        ball_count: int = 0,
+    ):
         self.system, self._look = system, look
         contact = system.contact
         self.ball_count = ball_count

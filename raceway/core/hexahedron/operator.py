@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,9 @@ from raceway.core.hexahedron.stable import stable_step
 from raceway.core.hexahedron.stiffness import stiffnesses
 from raceway.core.hexahedron.strain import KINDS
 from raceway.errors import MeshError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 class HexOperator:
@@ -146,7 +149,7 @@ class HexOperator:
                 crew.do_shares(len(self.points), move)
         return f.reshape(-1, 3)
 
-    def stiffness(self) -> Any:
+    def stiffness(self) -> csr_matrix:
         """(3 n, 3 n) Assembled stiffness [N/m], scipy.sparse.csr_array."""
         return assemble(self.cells, len(self.points), 3, self.element_stiffness)
 
@@ -161,7 +164,7 @@ class HexOperator:
         masses = np.bincount(self.cells.ravel(), weights=self.element_masses.ravel(), minlength=len(self.points))
         return masses.astype(np.float64, copy=False)
 
-    def consistent_mass(self) -> Any:
+    def consistent_mass(self) -> csr_matrix:
         """(3 n, 3 n) Consistent mass [kg], scipy.sparse.csr_array."""
         from scipy.sparse import eye_array, kron
 

@@ -7,8 +7,6 @@ whose numbers follow its shape the parts hardly overlap.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import float64, int64, void
 from numpy.typing import NDArray
@@ -42,7 +40,7 @@ def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
     return np.array(rows, dtype=np.int64)
 
 
-def share(count: int, threads: int) -> list[Any]:
+def share(count: int, threads: int) -> list[tuple[int, int]]:
     """Edges (start, end) that share ``count`` things among threads."""
     edges = np.linspace(0, count, threads + 1).astype(int)
     return list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import int32, int64, void
@@ -13,6 +13,9 @@ from raceway.core.hexahedron.mass import batches
 from raceway.core.hexahedron.shape import Floats
 from raceway.core.hexahedron.stiffness import add_to_sparse
 from raceway.core.jit import jit
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 @jit(void(int64, int64[::1], int32[::1], int64[::1], int32[::1]))
@@ -46,7 +49,7 @@ def assemble(
     count: int,
     components: int,
     element_matrices: Callable[[slice], Floats],
-) -> Any:
+) -> csr_matrix:
     """Sum of element matrices.
 
     Parameters

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numba import float32, float64, int32, void
 
 from raceway.core.jit import jit
 
+if TYPE_CHECKING:
+    from numba.core.typing.templates import Signature
+    from scipy.sparse import csr_matrix
 
-def _signature(real: Any) -> Any:
+    from raceway.core.jit import Kernel
+
+
+def _signature(real: Any) -> Signature:
     vector = real[::1]
     return void(int32[::1], int32[::1], vector, vector, vector, real, vector)
 
@@ -41,11 +47,11 @@ class BlockMatrix:
     real : numpy.float64 or numpy.float32, of the blocks and of all vectors
     """
 
-    def __init__(self, matrix: Any, real: Any = np.float64) -> None:
+    def __init__(self, matrix: csr_matrix, real: type[np.floating] = np.float64) -> None:
         blocks = matrix.tobsr((3, 3))
         self._starts, self._columns = blocks.indptr.astype(np.int32), blocks.indices.astype(np.int32)
         self._blocks = np.ascontiguousarray(blocks.data.reshape(-1), dtype=real)
-        self._kernel: Any = _MULTIPLY[real]
+        self._kernel: Kernel = _MULTIPLY[real]
         self._real = real
         self._nothing = np.zeros(matrix.shape[0], dtype=real)
 

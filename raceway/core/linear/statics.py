@@ -6,7 +6,7 @@ so that the number of iterations hardly grows with the mesh.  Small systems: a s
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -17,7 +17,10 @@ from raceway.core.linear.rigid_motions import MOTIONS, free_motions, rigid_motio
 from raceway.errors import ConvergenceError, RacewayError
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from scipy.sparse import csr_matrix
+    from scipy.sparse.linalg import SuperLU
 
 #: Unknowns up to which a factorisation is faster than setting up the hierarchy (measured on solid bodies).
 DIRECT_UNKNOWNS = 3000
@@ -89,7 +92,7 @@ class StaticSolver:
         mask = np.asarray(held, dtype=bool).reshape(-1)
         self._matrix, self._free = stiffness, np.flatnonzero(~mask)
         self._inner = stiffness[self._free][:, self._free]
-        self._factors: Any = None
+        self._factors: SuperLU = None
         self._precondition: Preconditioner | None = None
         if len(self._free) > DIRECT_UNKNOWNS:
             self._precondition = Preconditioner(stiffness, points, mask)
@@ -227,7 +230,7 @@ def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray
             )
 
 
-def _pyamg() -> Any:
+def _pyamg() -> ModuleType:
     try:
         import pyamg
     except ImportError:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
-from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.errors import MeshError
+from raceway.storage.tables import ReadTables, Tables
 
 #: (6, 4) nodes of the local faces, anticlockwise seen from outside.
 FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
@@ -29,19 +29,19 @@ CORNERS = np.array(
 BLOCK = 65536
 
 
-def _points(value: Any) -> np.ndarray:
+def _points(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.float64)
 
 
-def _cells(value: Any) -> np.ndarray:
+def _cells(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.int64)
 
 
-def _node_sets(value: Mapping[str, Any]) -> dict[str, np.ndarray]:
+def _node_sets(value: ReadTables) -> dict[str, np.ndarray]:
     return {str(name): np.unique(np.asarray(nodes, dtype=np.int64)) for name, nodes in value.items()}
 
 
-def _facet_sets(value: Mapping[str, Any]) -> dict[str, np.ndarray]:
+def _facet_sets(value: ReadTables) -> dict[str, np.ndarray]:
     out = {}
     for name, facets in value.items():
         pairs = np.asarray(facets, dtype=np.int64).reshape(-1, 2)
@@ -185,8 +185,8 @@ def merged(meshes: Mapping[str, HexMesh]) -> HexMesh:
     """
     if not meshes:
         raise MeshError("there is no mesh to merge")
-    node_sets: dict[str, Any] = {}
-    facet_sets: dict[str, Any] = {}
+    node_sets: Tables = {}
+    facet_sets: Tables = {}
     cells, point, cell = [], 0, 0
     for body, mesh in meshes.items():
         cells.append(mesh.cells + point)

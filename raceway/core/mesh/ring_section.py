@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from math import asin, cos, pi, sin, sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
+
+if TYPE_CHECKING:
+    pass
 
 #: Gauss points along the axis in each of three parts, and along the radius.
 _ALONG, _ACROSS = 48, 12

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.core.mesh.outline import polygon_outline
 from raceway.core.mesh.ring_mesh import RingShape
 from raceway.errors import MeshError
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    pass
 
 
 def ring_shape(bearing: Any, inner: bool) -> RingShape:
@@ -36,7 +40,7 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
     )
 
 
-def _groove(bearing: Any, inner: bool) -> dict[str, Any]:
+def _groove(bearing: Any, inner: bool) -> Tables:
     alpha, sense = bearing.contact_angle, 1.0 if inner else -1.0
     conformity = bearing.conformity_inner if inner else bearing.conformity_outer
     offset = sense * (conformity - 0.5) * bearing.ball_diameter

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from raceway.core.mesh.hex_mesh import BLOCK, EDGES, HexMesh
 from raceway.core.mesh.quality import quality
+from raceway.storage.tables import Tables
 
 #: Sets of facets that meshers name after contacts.
 PATCHES = ("inner_patch", "outer_patch", "band")
 
 
-def summary(meshes: Mapping[str, HexMesh]) -> dict[str, Any]:
+def summary(meshes: Mapping[str, HexMesh]) -> Tables:
     """Numbers of every body and of all.
 
     Parameters
@@ -34,7 +34,7 @@ def summary(meshes: Mapping[str, HexMesh]) -> dict[str, Any]:
     A body whose array ``cells`` is the very same object as an earlier one's, with edges as long (balls: a rigid motion of
     one mesh), takes that one's numbers over.
     """
-    bodies: dict[str, dict[str, Any]] = {}
+    bodies: dict[str, Tables] = {}
     seen: dict[int, str] = {}
     for name, mesh in meshes.items():
         twin = seen.setdefault(id(mesh.cells), name)
@@ -59,7 +59,7 @@ def summary(meshes: Mapping[str, HexMesh]) -> dict[str, Any]:
     }
 
 
-def _body(mesh: HexMesh) -> dict[str, Any]:
+def _body(mesh: HexMesh) -> Tables:
     found = quality(mesh)
     least, total, largest = np.inf, 0.0, 0.0
     for first in range(0, len(mesh.cells), BLOCK):

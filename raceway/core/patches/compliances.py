@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -110,7 +108,7 @@ def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: b
     return Ball(radius, pressed.latitudes, np.ascontiguousarray(near[:-1]), float(near[-1, middle, middle]), around)
 
 
-def _projected(full: Any, normal: np.ndarray) -> np.ndarray:
+def _projected(full: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """(o, n, n) along directions normal (2, n), from (o, 2 n, 2 n) of two components."""
     n = normal.shape[1]
     parts = np.asarray(full).reshape(len(full), 2, n, 2, n)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -118,7 +116,7 @@ class Contact:
             return self._open(place, held)
         if self.law is None:
             nodes, load, count = active_set(gap, self._nodes, self._factor)
-            solve: Any = lambda right: self._factor.solve(nodes, right)  # noqa: E731
+            solve = lambda right: self._factor.solve(nodes, right)  # noqa: E731
             state, penetration = None, 0.0
         else:
             every = np.arange(len(gap))

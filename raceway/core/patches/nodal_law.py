@@ -9,7 +9,7 @@ residual grew.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -17,6 +17,9 @@ from scipy.linalg import cho_factor, cho_solve
 
 from raceway.core.patches.factor import Factor
 from raceway.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
 
 _LIMIT = 60
 #: Residual of the gaps that counts as none, of the deepest overlap.
@@ -32,7 +35,7 @@ class PointLaw:
     kernel : compiled ``LAW``;  params : (k,) of this contact;  area : of a point [m2]
     """
 
-    kernel: Any
+    kernel: Kernel
     params: np.ndarray
     area: float
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -33,6 +33,9 @@ from raceway.core.ring.ring import AT_ONCE, TOLERANCE, Evaluation, Increment
 from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from raceway.core.patches.contact import Pressed
 
 _LIMIT = 60
 #: Balls' residual over the largest contact force at which they are in equilibrium.
@@ -254,7 +257,7 @@ class PatchSystem(SteppedRing):
             {"q": q, "ball": where},
         )
 
-    def pressures(self) -> list[Any]:
+    def pressures(self) -> list[Pressed]:
         """Answers of all contacts (``raceway.core.patches.contact.Pressed``), inner races first, at the last state."""
         last = self.pool.row(self.table, self.rubbing).last
         return [] if last is None else last.pressed

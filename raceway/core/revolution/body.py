@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,11 @@ from raceway.core.revolution.harmonics import offset_weights, solved_harmonics
 from raceway.core.revolution.profile import Profile
 from raceway.core.revolution.sector import Pencil, Sector
 from raceway.errors import MeshError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from scipy.sparse import csr_matrix
 
 #: Hourglass stiffness of "one_point": in the flat elements of a patch ten times more spoils the answer by percents.
 HOURGLASS = 0.005
@@ -143,7 +148,7 @@ class Revolution:
                 out += odd[:, part] @ (block * turn).reshape(len(block), -1)
         return out.reshape(len(steps), len(seen), len(load))
 
-    def frequencies(self, harmonics: Any, count: int) -> np.ndarray:
+    def frequencies(self, harmonics: Iterable[int], count: int) -> np.ndarray:
         """Natural frequencies.
 
         Parameters
@@ -200,7 +205,7 @@ class Revolution:
             yield np.where(held, 0.0, found) if held.any() else found
 
     def _relieved(
-        self, matrix: Any, rigid: tuple[np.ndarray, np.ndarray], place: np.ndarray, load: np.ndarray, seen: np.ndarray
+        self, matrix: csr_matrix, rigid: tuple[np.ndarray, np.ndarray], place: np.ndarray, load: np.ndarray, seen: np.ndarray
     ) -> np.ndarray:
         """Compliance of a free body's harmonic 0 or 1: loads balanced by inertia, no rigid motion of the masses.
 

@@ -2,27 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.linalg import SuperLU
+
 #: A symmetric elimination: pivots stay on the diagonal.
-_SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+_SYMMETRIC: Tables = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
-def factorised(matrix: Any, ordered: bool = True) -> Any:
+def factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
     """scipy.sparse.linalg.SuperLU of a symmetric csc_matrix; ``ordered``: its rows already stand in an order of little fill."""
     from scipy.sparse.linalg import splu
 
     return splu(matrix, permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A", **_SYMMETRIC)
 
 
-def elimination_order(matrix: Any) -> np.ndarray:
+def elimination_order(matrix: csr_matrix) -> np.ndarray:
     """(m,) Rows of a symmetric matrix in an order of little fill (minimum degree)."""
     return np.argsort(factorised(matrix, ordered=False).perm_c)
 
 
-def condensed(factor: Any, kept: np.ndarray) -> np.ndarray:
+def condensed(factor: SuperLU, kept: np.ndarray) -> np.ndarray:
     """(s, s) The rows and columns ``kept`` of the inverse, where they are the last ones of the matrix that was factorised.
 
     Notes

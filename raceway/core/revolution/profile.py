@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
 from raceway.errors import MeshError
 
 
-def _floats(value: Any) -> np.ndarray:
+def _floats(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.float64)
 
 
-def _integers(value: Any) -> np.ndarray:
+def _integers(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.int64)
 
 

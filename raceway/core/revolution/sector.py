@@ -8,12 +8,15 @@ K(n) = A + B cos(n a) + S sin(n a), where A and B couple r and x among themselve
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.revolution.profile import Profile
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 class Sector:
@@ -71,7 +74,7 @@ class Sector:
         kept = (rows >= 0) & (columns >= 0)
         rows, columns, size = rows[kept], columns[kept], int(place.max()) + 1
 
-        def total(part: np.ndarray) -> Any:
+        def total(part: np.ndarray) -> csr_matrix:
             return coo_matrix((part.ravel()[kept], (rows, columns)), shape=(size, size)).tocsc()
 
         return Pencil(total(self.even), total(self.cosine).data, total(self.sine).data)
@@ -80,7 +83,7 @@ class Sector:
 class Pencil:
     """K(n) = A + B cos(n a) + S sin(n a) in one sparsity pattern."""
 
-    def __init__(self, even: Any, cosine: np.ndarray, sine: np.ndarray) -> None:
+    def __init__(self, even: csr_matrix, cosine: np.ndarray, sine: np.ndarray) -> None:
         self.even, self.cosine, self.sine = even, cosine, sine
 
     def add_to_diagonal(self, values: np.ndarray) -> None:
@@ -89,7 +92,7 @@ class Pencil:
         rows, columns = matrix.indices, np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
         matrix.data[rows == columns] += values
 
-    def at(self, angle: float) -> Any:
+    def at(self, angle: float) -> csr_matrix:
         """(m, m) scipy.sparse.csc_matrix of the harmonic with n a = ``angle``."""
         from scipy.sparse import csc_matrix
 

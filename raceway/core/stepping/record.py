@@ -8,6 +8,8 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.storage.tables import Tables
+
 #: Called between chunks with the steps done and the steps in all.
 OnChunk = Callable[[int, int], None]
 
@@ -88,7 +90,7 @@ class Record:
     ball: np.ndarray
     final: Motion
     schedule: Schedule
-    counts: dict[str, Any]
+    counts: Tables
     energies: dict[str, np.ndarray] = attrs.field(factory=dict)
     solution: Any = None
 

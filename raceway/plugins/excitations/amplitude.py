@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.framework.options import at_least, between, finite, inside, one_of, option, optional, positive
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from typing import Self
+
     import numpy as np
 
 
@@ -50,7 +53,7 @@ class Amplitude:
             )
 
     @classmethod
-    def examples(cls, **options: Any) -> list[Any]:
+    def examples(cls, **options: Any) -> list[Self]:
         """Instances for the conformance suite, in every way to state the amplitude."""
         return [
             cls(speed_rpm=12000.0, unbalance=3.2e-4, **options),
@@ -98,7 +101,7 @@ class Amplitude:
         speed = self.speed_rpm if self.amplitude == "unbalance" else (self.reference_speed_rpm or 0.0)
         return self.load_share * (self.unbalance or 0.0) * (speed * pi / 30.0) ** 2
 
-    def at_whirl(self, speed_rpm: float) -> Any:
+    def at_whirl(self, speed_rpm: float) -> Self:
         """The same force at another whirl speed [r/min]."""
-        fixed: dict[str, Any] = {"amplitude": "constant", "force": self.amplitude_n, "load_share": 1.0}
+        fixed: Tables = {"amplitude": "constant", "force": self.amplitude_n, "load_share": 1.0}
         return attrs.evolve(self, speed_rpm=speed_rpm, unbalance=None, reference_speed_rpm=None, **fixed)

@@ -11,7 +11,11 @@ from raceway.framework.options import one_of, option
 from raceway.plugins.excitations.amplitude import Amplitude
 
 if TYPE_CHECKING:
+    from typing import Self
+
     import numpy as np
+
+    from raceway.core.jit import Kernel
 
 
 @attrs.frozen(kw_only=True)
@@ -23,7 +27,7 @@ class Bidirectional(Amplitude):
     whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
 
     @classmethod
-    def examples(cls, **options: Any) -> list[Any]:
+    def examples(cls, **options: Any) -> list[Self]:
         first, second = (super(Bidirectional, cls).examples(whirl=whirl, **options) for whirl in ("forward", "backward"))
         return first + second
 
@@ -37,7 +41,7 @@ class Bidirectional(Amplitude):
         lag = radians(self.phase_lag_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, 1.0, 0.0, 0.0, float(self.sense)])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.excitations.harmonic import harmonic
 
         return harmonic

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -14,6 +14,8 @@ from raceway.storage.number_table import read_numbers
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from raceway.core.jit import Kernel
 
 #: Samples at least, and samples that are fitted at once.
 _LEAST, _AT_ONCE = 8, 2**16
@@ -118,7 +120,7 @@ class Measured:
         grid = np.linspace(time[0], time[-1], len(time))
         return np.concatenate([[grid[1] - grid[0], float(self.repeats)], self._at(grid).reshape(-1)])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.excitations.samples import samples
 
         return samples

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from math import pi, radians
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.framework.options import at_least, between, finite, inside, one_of, option, positive
 from raceway.plugins.excitations.bidirectional import Bidirectional
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from raceway.core.jit import Kernel
 
 
 @attrs.frozen(kw_only=True)
@@ -33,7 +36,7 @@ class RunUp:
     @classmethod
     def examples(cls) -> list[RunUp]:
         """Instances for the conformance suite."""
-        common: dict[str, Any] = {"duration_s": 0.5, "unbalance": 3.2e-4, "phase_lag_deg": 20.0}
+        common: Tables = {"duration_s": 0.5, "unbalance": 3.2e-4, "phase_lag_deg": 20.0}
         return [
             cls(first_speed_rpm=6000.0, speed_rpm=12000.0, **common),
             cls(first_speed_rpm=12000.0, speed_rpm=6000.0, whirl="backward", **common),
@@ -79,7 +82,7 @@ class RunUp:
         share = self.load_share * self.unbalance
         return np.array([share, first, last, self.duration_s, radians(self.phase_lag_deg), float(self.sense)])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.excitations.run_up import run_up
 
         return run_up

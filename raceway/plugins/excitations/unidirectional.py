@@ -11,7 +11,11 @@ from raceway.framework.options import finite, option
 from raceway.plugins.excitations.amplitude import Amplitude
 
 if TYPE_CHECKING:
+    from typing import Self
+
     import numpy as np
+
+    from raceway.core.jit import Kernel
 
 
 @attrs.frozen(kw_only=True)
@@ -23,7 +27,7 @@ class Unidirectional(Amplitude):
     direction_deg: float = option(0.0, unit="deg", help="direction of the force, from +y towards +z", rule=finite())
 
     @classmethod
-    def examples(cls, **options: Any) -> list[Any]:
+    def examples(cls, **options: Any) -> list[Self]:
         first, second = (
             super(Unidirectional, cls).examples(direction_deg=direction_deg, **options) for direction_deg in (0.0, 130.0)
         )
@@ -39,7 +43,7 @@ class Unidirectional(Amplitude):
         lag, direction = radians(self.phase_lag_deg), radians(self.direction_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, np.cos(direction), 0.0, np.sin(direction), 0.0])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.core.excitations.harmonic import harmonic
 
         return harmonic

@@ -5,19 +5,21 @@ from __future__ import annotations
 import asyncio
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.errors import PluginError, extra
-from raceway.framework.contracts import Lost, Refused
+from raceway.framework.contracts import Answer, Lost, Refused, Work
 from raceway.framework.options import between, inside, option, optional
 from raceway.framework.orphans import deaf_to_terminals
 
 if TYPE_CHECKING:
+    from distributed import Client, Future
+
     from raceway.framework.contracts import Batch
 
 #: How often the list of workers is looked at [s].
@@ -50,13 +52,13 @@ class Dask:
         """Instances for the conformance suite."""
         return [cls(workers=1)]
 
-    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
         with self._client() as client:
             flight = _Flight(client, work, self.patience)
             yield from flight.answers(iter(batches))
 
     @contextmanager
-    def _client(self) -> Iterator[Any]:
+    def _client(self) -> Iterator[Client]:
         try:
             from distributed import Client, LocalCluster
         except ImportError as why:
@@ -84,16 +86,16 @@ class Dask:
 class _Flight:
     """What is computed at the moment, and who is fit for it."""
 
-    def __init__(self, client: Any, work: Any, patience: float) -> None:
+    def __init__(self, client: Client, work: Work, patience: float) -> None:
         self.client, self.work, self.patience = client, work, patience
         self.unfit: dict[str, str] = {}
         self.fit: set[str] = set()
         #: future -> its batch, and the workers that it is bound to (none: any)
-        self.flying: dict[Any, tuple[Batch, frozenset[str]]] = {}
+        self.flying: dict[Future, tuple[Batch, frozenset[str]]] = {}
         self.refusals: dict[int, int] = {}
         self.looked, self.alone_since = -_LOOK_S, time.monotonic()
 
-    def answers(self, batches: Iterator[Batch]) -> Iterator[tuple[int, Any]]:
+    def answers(self, batches: Iterator[Batch]) -> Iterator[Answer]:
         from distributed import wait
 
         self._meet()
@@ -202,11 +204,11 @@ def _greet(address: str, patience: float) -> None:
         thread.submit(asyncio.run, meet()).result()
 
 
-def _fault(work: Any) -> str | None:
+def _fault(work: Work) -> str | None:
     return work.fault()
 
 
-def _outcome(future: Any) -> Any:
+def _outcome(future: Future) -> object:
     from distributed import KilledWorker
 
     try:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.errors import PluginError, extra
-from raceway.framework.contracts import Lost
+from raceway.framework.contracts import Answer, Lost, Work
 from raceway.framework.options import between, option
 from raceway.framework.orphans import deaf_to_terminals, end_with
 
@@ -32,7 +32,7 @@ class Joblib:
 
     workers: int = option(2, help="processes that work at a time", rule=between(1, 1024))
 
-    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
         try:
             from joblib.externals.loky import get_reusable_executor
             from joblib.externals.loky.backend.resource_tracker import ensure_running
@@ -41,7 +41,7 @@ class Joblib:
             raise PluginError(f"executor 'joblib' needs joblib: {extra('sweep')} ({why})") from None
         with deaf_to_terminals():  # the process that clears up behind the workers must outlive them
             ensure_running()
-        left, flying = iter(batches), dict[int, list[Any]]()
+        left, flying = iter(batches), dict[int, list[object]]()
 
         def taken() -> Iterator[Batch]:
             for number, points in left:
@@ -65,7 +65,7 @@ class Joblib:
         finally:
             get_reusable_executor().shutdown(wait=True, kill_workers=True)
 
-    def _pool(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+    def _pool(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
         from joblib import Parallel, delayed, parallel_config
 
         calls = (delayed(_answer)(work, number, points) for number, points in batches)
@@ -84,5 +84,5 @@ class Joblib:
                     answers.close()
 
 
-def _answer(work: Callable[[list[Any]], Any], number: int, points: list[Any]) -> tuple[int, Any]:
+def _answer(work: Work, number: int, points: list[object]) -> Answer:
     return number, work(points)

@@ -6,15 +6,15 @@ import multiprocessing
 import os
 import signal
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from multiprocessing.connection import Connection, wait
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.errors import PluginError
-from raceway.framework.contracts import Lost
+from raceway.framework.contracts import Answer, Lost, Work
 from raceway.framework.options import between, option
 from raceway.framework.orphans import deaf_to_terminals, end_with
 
@@ -34,8 +34,8 @@ class Processes:
     workers: int = option(2, help="processes that work at a time", rule=between(1, 1024))
     patience: float = option(1e7, unit="s", help="a batch that takes longer hangs: it is given up", rule=between(0.1, 1e9))
 
-    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
-        left, again, tried = iter(batches), list[Any](), set[int]()
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
+        left, again, tried = iter(batches), list[Batch](), set[int]()
         crew: list[_Worker] = []
 
         def following() -> Batch | None:
@@ -74,8 +74,8 @@ class Processes:
 class _Worker:
     """One process and the batch that it works at."""
 
-    def __init__(self, work: Callable[[list[Any]], Any]) -> None:
-        context: Any = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
+    def __init__(self, work: Work) -> None:
+        context = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
         self.pipe, child = context.Pipe()
         self.process = context.Process(target=_serve, args=(child, work, os.getpid()), daemon=True)
         with deaf_to_terminals():
@@ -89,7 +89,7 @@ class _Worker:
         with suppress(OSError):  # it is dead, which is seen when its answer is waited for
             self.pipe.send(batch[1])
 
-    def answer(self, arrived: bool, patience: float) -> Any:
+    def answer(self, arrived: bool, patience: float) -> object:
         """What it has to say of its batch, which it is then done with; None where nothing yet."""
         if not arrived:
             return Lost(f"no answer within {patience:g} s: it hangs") if time.monotonic() - self.begun > patience else None
@@ -118,7 +118,7 @@ class _Worker:
         self.pipe.close()
 
 
-def _serve(pipe: Connection, work: Callable[[list[Any]], Any], parent: int) -> None:
+def _serve(pipe: Connection, work: Work, parent: int) -> None:
     """What a process does: answer batches until it is ended."""
     end_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's business

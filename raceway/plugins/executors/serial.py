@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 if TYPE_CHECKING:
-    from raceway.framework.contracts import Batch
+    from raceway.framework.contracts import Answer, Batch, Work
 
 
 @attrs.frozen
@@ -17,6 +17,6 @@ class Serial:
 
     name: ClassVar[str] = "serial"
 
-    def compute(self, work: Callable[[list[Any]], Any], batches: Iterable[Batch]) -> Iterator[tuple[int, Any]]:
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
         for number, points in batches:
             yield number, work(points)

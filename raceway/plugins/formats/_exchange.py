@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.core.mesh.hex_mesh import FACES, HexMesh
 from raceway.errors import MeshError, extra
+from raceway.storage.tables import ReadTables
 from raceway.storage.user_files import memory_for, size_of, told
+
+if TYPE_CHECKING:
+    from meshio import Mesh
 
 #: Bytes of the largest mesh file.
 LARGEST = 2**32
@@ -18,7 +23,7 @@ LARGEST = 2**32
 _SOLIDS = ("tetra", "wedge", "pyramid", "hexahedron2", "polyhedron", "voxel")
 
 
-def meshio() -> Any:
+def meshio() -> ModuleType:
     """The package meshio, or a message that names the extra."""
     try:
         import meshio as package
@@ -27,7 +32,7 @@ def meshio() -> Any:
     return package
 
 
-def load(path: Any, reader: Callable[[Any], Any]) -> Any:
+def load(path: Path, reader: Callable[[Path], Mesh]) -> Mesh:
     """meshio's own mesh.
 
     Raises
@@ -54,7 +59,7 @@ def load(path: Any, reader: Callable[[Any], Any]) -> Any:
         raise MeshError(f"'{path}' cannot be read: it is damaged, cut short, or not what its ending says{cause}") from why
 
 
-def readable(path: Any) -> int:
+def readable(path: Path | str) -> int:
     """Bytes of a mesh file; ``MeshError`` names one that is missing, a pipe, a device or too large."""
     try:
         size = size_of(path, LARGEST)
@@ -69,7 +74,7 @@ def readable(path: Any) -> int:
     return size
 
 
-def store(path: Any, writer: Callable[[Any, Any], Any], content: Any) -> None:
+def store(path: Path, writer: Callable[[Path, Mesh], object], content: Mesh) -> None:
     """Write meshio's mesh; ``MeshError`` names a place that cannot be written."""
     try:
         writer(path, content)
@@ -77,7 +82,7 @@ def store(path: Any, writer: Callable[[Any, Any], Any], content: Any) -> None:
         raise MeshError(f"'{path}' cannot be written: {why.strerror or why}") from why
 
 
-def hexahedra(path: Any, content: Any) -> tuple[np.ndarray, list[int | None]]:
+def hexahedra(path: Path, content: Mesh) -> tuple[np.ndarray, list[int | None]]:
     """Cells (m, 8), and for each of meshio's blocks the number of its first cell, None for blocks of other things.
 
     Raises
@@ -111,9 +116,7 @@ def hexahedra(path: Any, content: Any) -> tuple[np.ndarray, list[int | None]]:
     return np.concatenate(parts), first
 
 
-def used_only(
-    path: Any, points: Any, cells: np.ndarray, node_sets: Mapping[str, Any], facet_sets: Mapping[str, Any]
-) -> HexMesh:
+def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: ReadTables, facet_sets: ReadTables) -> HexMesh:
     """A ``HexMesh`` without points that no cell uses; ``MeshError`` names the file if it is none."""
     points = np.asarray(points, dtype=float)
     if points.ndim == 2 and points.shape[1] == 3 and cells.min() >= 0 and cells.max() < len(points):
@@ -131,7 +134,7 @@ def used_only(
         raise MeshError(f"'{path}': {why}") from why
 
 
-def facets_of_quads(path: Any, cells: np.ndarray, quads: np.ndarray) -> np.ndarray:
+def facets_of_quads(path: Path | str, cells: np.ndarray, quads: np.ndarray) -> np.ndarray:
     """(k, 2) cell and local face of quadrilaterals (k, 4) that lie on cells.
 
     Raises

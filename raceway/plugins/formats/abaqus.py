@@ -6,7 +6,7 @@ import re
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -16,6 +16,9 @@ from raceway.errors import MeshError
 from raceway.framework.options import one_of, option
 from raceway.plugins.formats import _exchange as exchange
 from raceway.storage.user_files import memory_for
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 #: Element types that both programs know, by this program's word for the hexahedron.
 _TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}
@@ -41,7 +44,7 @@ class Abaqus:
         rule=one_of(*_TYPES),
     )
 
-    def read(self, path: Any) -> HexMesh:
+    def read(self, path: Path) -> HexMesh:
         """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
         exchange.readable(path)
         _refuse_other_files(path)
@@ -60,7 +63,7 @@ class Abaqus:
             )
         return exchange.used_only(path, content.points, cells, content.point_sets, facets)
 
-    def write(self, path: Any, what: HexMesh) -> None:
+    def write(self, path: Path, what: HexMesh) -> None:
         """Write a mesh; each facet set as element sets NAME_S1 to NAME_S6 and the *SURFACE made of them."""
         lines = ["*HEADING", "hexahedra written by raceway", "*NODE"]
         numbers = [", ".join(_NUMBER % x for x in point) for point in what.points]
@@ -82,7 +85,7 @@ class Abaqus:
         return exchange.example()
 
 
-def _refuse_other_files(path: Any) -> None:
+def _refuse_other_files(path: Path) -> None:
     """A mesh is one file: what *INCLUDE names may be anything, a device without end too."""
     with open(path, encoding="utf-8", errors="replace") as stream, memory_for(0):
         for number, line in enumerate(stream, 1):
@@ -98,7 +101,7 @@ def _entries(numbers: np.ndarray) -> Iterator[str]:
         yield ", ".join(map(str, (numbers[first : first + _ENTRIES] + 1).tolist()))
 
 
-def _members(blocks: Any, first: list[int | None]) -> np.ndarray:
+def _members(blocks: Sequence[np.ndarray], first: list[int | None]) -> np.ndarray:
     """(k,) hexahedra of an element set, which meshio gives block by block."""
     parts = [np.asarray(b, dtype=int) + start for b, start in zip(blocks, first, strict=False) if start is not None]
     return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
@@ -114,7 +117,7 @@ def _surfaces(text: str) -> Iterator[tuple[str, list[tuple[str, str]]]]:
             yield options["NAME"], lines
 
 
-def _facets(path: Any, name: str, lines: list[tuple[str, str]], members: dict[str, np.ndarray]) -> np.ndarray:
+def _facets(path: Path, name: str, lines: list[tuple[str, str]], members: dict[str, np.ndarray]) -> np.ndarray:
     found = [np.zeros((0, 2), dtype=int)]
     for line in lines:
         word, face = (*line, "")[:2]

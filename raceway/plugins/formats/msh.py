@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.plugins.formats import _exchange as exchange
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _NODES, _PHYSICAL, _ENTITY = "nodes:", "gmsh:physical", "gmsh:geometrical"
 
@@ -20,7 +23,7 @@ class Msh:
     name: ClassVar[str] = "msh"
     suffixes: ClassVar[tuple[str, ...]] = (".msh",)
 
-    def read(self, path: Any) -> HexMesh:
+    def read(self, path: Path) -> HexMesh:
         """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
         content = exchange.load(path, exchange.meshio().gmsh.read)
         cells, _ = exchange.hexahedra(path, content)
@@ -38,7 +41,7 @@ class Msh:
         }
         return exchange.used_only(path, content.points, cells, nodes, facets)
 
-    def write(self, path: Any, what: HexMesh) -> None:
+    def write(self, path: Path, what: HexMesh) -> None:
         """Write a mesh; node sets become groups "nodes:NAME", because a name may stand for one group only."""
         package = exchange.meshio()
         blocks, tags = [("hexahedron", what.cells)], [1]

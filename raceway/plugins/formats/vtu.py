@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.plugins.formats import _exchange as exchange
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _NODES, _FACETS = "nodes:", "facets:"
 
@@ -20,7 +23,7 @@ class Vtu:
     name: ClassVar[str] = "vtu"
     suffixes: ClassVar[tuple[str, ...]] = (".vtu",)
 
-    def read(self, path: Any) -> HexMesh:
+    def read(self, path: Path) -> HexMesh:
         """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
         content = exchange.load(path, exchange.meshio().vtu.read)
         cells, first = exchange.hexahedra(path, content)
@@ -37,7 +40,7 @@ class Vtu:
                 facets[name.removeprefix(_FACETS)] = np.argwhere(bits)
         return exchange.used_only(path, content.points, cells, nodes, facets)
 
-    def write(self, path: Any, what: HexMesh) -> None:
+    def write(self, path: Path, what: HexMesh) -> None:
         """Write a mesh with its sets."""
         package = exchange.meshio()
         point_data, cell_data = {}, {}

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
     from raceway.core.signals.identification import Identification
     from raceway.core.stepping.record import Record
 
@@ -23,7 +25,7 @@ class Fft1x:
         "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
     )
 
-    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
         from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift

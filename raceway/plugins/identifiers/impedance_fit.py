@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -11,11 +11,13 @@ from raceway.framework.options import option, worded
 from raceway.plugins.identifiers.whole_turns import whole_turns
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
     from raceway.core.signals.identification import Identification
     from raceway.core.stepping.record import Record
 
 
-def _speeds(_instance: Any, _attribute: Any, value: tuple[float, ...]) -> None:
+def _speeds(_instance: object, _attribute: object, value: tuple[float, ...]) -> None:
     if len(set(value)) < 2 or min(value) <= 0.0:
         raise ValueError("must be a list of at least two different speeds greater than 0")
 
@@ -49,7 +51,7 @@ class ImpedanceFit:
         """Instances for the conformance suite."""
         return [cls(speeds_rpm=(7200.0, 9600.0, 12000.0, 14400.0, 16800.0))]
 
-    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
         from raceway.core.signals.identification import fourier_line, identification, stiffness

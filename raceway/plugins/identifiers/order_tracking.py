@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -11,6 +11,9 @@ from raceway.framework.options import between, option
 if TYPE_CHECKING:
     import numpy as np
 
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
+    from raceway.core.ring.ring import Ring
     from raceway.core.signals.identification import Identification
     from raceway.core.stepping.record import Record
 
@@ -37,7 +40,7 @@ class OrderTracking:
 
     window_turns: float = option(6.0, help="turns in a window", rule=between(2.0, 1000.0))
 
-    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
         from raceway.core.signals.identification import identification
@@ -82,7 +85,7 @@ class _Window:
     residual: float | None
 
 
-def _window(model: Any, time: np.ndarray, phase: np.ndarray, signals: np.ndarray) -> _Window:
+def _window(model: Model, time: np.ndarray, phase: np.ndarray, signals: np.ndarray) -> _Window:
     import numpy as np
 
     t = time - time.mean()
@@ -110,7 +113,7 @@ def _window(model: Any, time: np.ndarray, phase: np.ndarray, signals: np.ndarray
 
 
 def _steady(
-    system: Any, speeds: tuple[float, float], line: np.ndarray, rate: np.ndarray, bend: np.ndarray
+    system: Ring | None, speeds: tuple[float, float], line: np.ndarray, rate: np.ndarray, bend: np.ndarray
 ) -> tuple[complex, float]:
     """Z [N/m] less the forces of a changing motion, of 1x vectors (10,) of force and motion A with A', A''; and their share.
 

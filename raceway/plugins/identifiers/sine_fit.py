@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.framework.options import between, option
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
     from raceway.core.signals.identification import Identification
     from raceway.core.stepping.record import Record
 
@@ -25,7 +27,7 @@ class SineFit:
 
     harmonics: int = option(5, help="multiples of the excitation's frequency in the fit", rule=between(1, 50))
 
-    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
         from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift

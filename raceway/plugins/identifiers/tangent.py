@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
     from raceway.core.signals.identification import Identification
     from raceway.core.stepping.record import Record
 
@@ -21,7 +23,7 @@ class Tangent:
         "tangent: small harmonic force about the static equilibrium, tilts as supported, in the direction of the force"
     )
 
-    def identify(self, records: list[Record], equilibrium: Any, model: Any) -> Identification:
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
         from raceway.core.signals.identification import identification

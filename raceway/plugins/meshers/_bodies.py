@@ -12,6 +12,8 @@ from raceway.framework.options import option, positive
 
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.framework.contracts import Mesher
+    from raceway.scene.tables import Bearing
 
 BODIES = ("inner_ring", "outer_ring", "ball")
 
@@ -32,7 +34,7 @@ def file_unit(words: str) -> Any:
     return option(1.0, unit="m", help=f"one unit of {words}; 1e-3 for millimetres", rule=positive())
 
 
-def bodies(mesher: Any, bearing: Any, make: Callable[[str, str], HexMesh]) -> dict[str, HexMesh]:
+def bodies(mesher: Mesher, bearing: Bearing, make: Callable[[str, str], HexMesh]) -> dict[str, HexMesh]:
     """Meshes of the bodies whose paths the mesher's options name; the ball's mesh at each ball's place.
 
     Parameters
@@ -62,7 +64,7 @@ def bodies(mesher: Any, bearing: Any, make: Callable[[str, str], HexMesh]) -> di
     return out
 
 
-def refuse_no_body(mesher: Any) -> None:
+def refuse_no_body(mesher: Mesher) -> None:
     """Raise ``ValueError`` when no body has a path."""
     if all(getattr(mesher, body) is None for body in BODIES):
         raise ValueError(f"names no body: give at least one of {', '.join(f'`{b}`' for b in BODIES)}, each a path")

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.errors import MeshError, Mistake
+from raceway.storage.tables import Tables
 from raceway.storage.trust import is_allowed
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def mesh_of_script(mesher: Any, body: str, path: str, copies: int) -> HexMesh:
         return _read(arrays)
 
 
-def _executed(asked: dict[str, Any], name: str, folder: str) -> None:
+def _executed(asked: Tables, name: str, folder: str) -> None:
     """Let a child execute a script; the child and whatever it started end with this call."""
     words = [sys.executable, "-P", "-m", f"{__name__}_child"]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from raceway.errors import MeshError
 from raceway.plugins.meshers._geo import ARRAYS, REFUSED
 from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.storage.tables import Tables
 
 
 def main() -> None:
@@ -24,7 +24,7 @@ def main() -> None:
         mistake = why.mistake and [why.mistake.path, why.mistake.value, why.mistake.message]
         (folder / REFUSED).write_text(json.dumps({"message": str(why), "mistake": mistake}), encoding="utf-8")
         return
-    arrays: dict[str, Any] = {
+    arrays: Tables = {
         "points": mesh.points,
         "cells": mesh.cells,
         "names": np.array(list(mesh.facet_sets), dtype=np.str_),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -23,6 +23,7 @@ from raceway.plugins.meshers._bodies import (
 
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.scene.tables import Bearing
 
 
 @attrs.frozen
@@ -52,7 +53,7 @@ class File:
         path = str(files("raceway").joinpath("data/meshes/ring.inp"))
         return [cls(inner_ring=path, scale=1e-3, sets={"inner_ring": {"raceway": "OUTSIDE"}})]
 
-    def mesh(self, bearing: Any) -> dict[str, HexMesh]:
+    def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:
         """Meshes of the bodies that have files, renumbered.
 
         Raises

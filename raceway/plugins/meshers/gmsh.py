@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import attrs
 import numpy as np
@@ -25,8 +25,11 @@ from raceway.plugins.meshers._geo import is_script, mesh_of_script
 from raceway.plugins.system_libraries import remedy
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.mesh.size import Prediction
+    from raceway.scene.tables import Bearing
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 #: Endings of files and OpenCASCADE's readers for them; a .geo is executed instead.
@@ -66,7 +69,7 @@ class Gmsh:
         path = str(files("raceway").joinpath("data/meshes/ring.brep"))
         return [cls(inner_ring=path, scale=1e-3, element_size=2e-3)]
 
-    def mesh(self, bearing: Any) -> dict[str, HexMesh]:
+    def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:
         """Meshes of the bodies that have files, renumbered; physical surfaces, or else all surfaces, become sets.
 
         Raises
@@ -87,7 +90,7 @@ class Gmsh:
 
         return bodies(self, bearing, body)
 
-    def predict(self, bearing: Any) -> Prediction | None:
+    def predict(self, bearing: Bearing) -> Prediction | None:
         """Size of the meshes from the solids' volumes and, but for 'subdivision', the divisions of their edges.
 
         Returns
@@ -142,7 +145,7 @@ class Gmsh:
         refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
         return prediction
 
-    def _opened(self, path: str, work: Callable[[Any, str, float], Found]) -> Found:
+    def _opened(self, path: str, work: Callable[[ModuleType, str, float], Found]) -> Found:
         """What ``work(gmsh, path, scale)`` finds with the file open in Gmsh; all its failures are ``MeshError``."""
         _refuse_file(path)
         reader = _READERS.get(Path(path).suffix.lower())
@@ -172,7 +175,7 @@ class Gmsh:
         finally:
             gmsh.finalize()
 
-    def _meshed(self, gmsh: Any, path: str, scale: float) -> HexMesh:
+    def _meshed(self, gmsh: ModuleType, path: str, scale: float) -> HexMesh:
         from raceway.core.mesh.hex_mesh import HexMesh
         from raceway.plugins.formats._exchange import facets_of_quads
 
@@ -191,7 +194,7 @@ class Gmsh:
         own = place[cells]
         return HexMesh(points, own, {}, {name: facets_of_quads(path, own, q) for name, q in quads.items() if len(q)})
 
-    def _set_sizes(self, gmsh: Any, scale: float) -> None:
+    def _set_sizes(self, gmsh: ModuleType, scale: float) -> None:
         number, size = gmsh.option.setNumber, self.element_size / scale
         for word, value in (("MeshSizeMax", size), ("RandomSeed", 1), ("ElementOrder", 1), ("Optimize", 1)):
             number(f"Mesh.{word}", value)
@@ -202,7 +205,7 @@ class Gmsh:
             number("Mesh.MeshSizeMax", 2.0 * size)
             number("Mesh.SubdivisionAlgorithm", 2)
 
-    def _cells(self, gmsh: Any, path: str, scale: float) -> float:
+    def _cells(self, gmsh: ModuleType, path: str, scale: float) -> float:
         """Predicted number of hexahedra of the open file."""
         from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
 
@@ -220,7 +223,7 @@ class Gmsh:
         split = gmsh.option.getNumber("Mesh.SubdivisionAlgorithm") == 2.0
         return float(sum(_cells_between_edges(gmsh, tag, volume / scale**3, split) for tag, volume in volumes.items()))
 
-    def _hexahedra(self, gmsh: Any, path: str) -> np.ndarray:
+    def _hexahedra(self, gmsh: ModuleType, path: str) -> np.ndarray:
         """(m, 8) node tags of the hexahedra; ``MeshError`` where there is any other solid."""
         types, elements, nodes = gmsh.model.mesh.getElements(3)
         counts = {_SOLIDS.get(int(t), f"solids of type {t}"): len(e) for t, e in zip(types, elements, strict=True)}
@@ -238,7 +241,7 @@ class Gmsh:
         return np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
 
 
-def _copies(body: str, bearing: Any) -> int:
+def _copies(body: str, bearing: Bearing) -> int:
     return int(bearing.ball_count) if body == "ball" else 1
 
 
@@ -268,7 +271,7 @@ def _silent_reader() -> Iterator[None]:
         os.close(nothing)
 
 
-def _volume(gmsh: Any, tag: int) -> float:
+def _volume(gmsh: ModuleType, tag: int) -> float:
     """Volume of a solid in the file's units; of its box where the geometry kernel is Gmsh's own."""
     try:
         return float(gmsh.model.occ.getMass(3, tag))
@@ -276,7 +279,7 @@ def _volume(gmsh: Any, tag: int) -> float:
         return float(np.ptp(np.array(gmsh.model.getBoundingBox(3, tag)).reshape(2, 3), axis=0).prod())
 
 
-def _cells_between_edges(gmsh: Any, tag: int, volume: float, split: bool) -> float:
+def _cells_between_edges(gmsh: ModuleType, tag: int, volume: float, split: bool) -> float:
     """Hexahedra of a volume whose edges are divided already; ``split``: of tetrahedra or hexahedra that are subdivided."""
     curves = {abs(c) for _, s in gmsh.model.getBoundary([(3, tag)]) for _, c in gmsh.model.getBoundary([(2, s)])}
     counts, lengths = [], 0.0
@@ -292,13 +295,13 @@ def _cells_between_edges(gmsh: Any, tag: int, volume: float, split: bool) -> flo
     return (8.0 * _SPLIT if split else 1.0) * volume / size**3 if size else 0.0
 
 
-def _nodes(gmsh: Any, curve: int) -> tuple[Any, np.ndarray]:
+def _nodes(gmsh: ModuleType, curve: int) -> tuple[np.ndarray, np.ndarray]:
     """Tags and places of the nodes of a curve, its ends too."""
     tags, places, _ = gmsh.model.mesh.getNodes(1, curve, includeBoundary=True)
     return tags, places.reshape(-1, 3)
 
 
-def _surfaces(gmsh: Any) -> dict[str, list[int]]:
+def _surfaces(gmsh: ModuleType) -> dict[str, list[int]]:
     """Name -> surfaces: the physical groups, or where there are none, each outer surface by its number."""
     groups = {}
     for dimension, tag in gmsh.model.getPhysicalGroups(2):

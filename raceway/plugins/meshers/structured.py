@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import ceil, inf, pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.mesh.ring_mesh import RingShape
     from raceway.core.mesh.size import Prediction
+    from raceway.scene.tables import Bearing
 
 #: Load of a ball [N] whose ellipse the patches follow where neither the scene nor the option says it.
 BALL_LOAD = 300.0
@@ -48,7 +49,7 @@ class Structured:
         rule=optional(positive()),
     )
 
-    def mesh(self, bearing: Any) -> dict[str, HexMesh]:
+    def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:
         """inner_ring, outer_ring and every ball of each row, in the bearing's coordinates.
 
         Raises
@@ -71,7 +72,7 @@ class Structured:
                 bodies[word + suffix] = attrs.evolve(ball, points=points)
         return bodies
 
-    def predict(self, bearing: Any) -> Prediction:
+    def predict(self, bearing: Bearing) -> Prediction:
         """Number of cells of each body and bytes, exactly as ``mesh`` would make them; nothing is meshed.
 
         Raises
@@ -100,12 +101,12 @@ class Structured:
         refuse_memory(found, "mesh.element_size", self.element_size, remedy)
         return found
 
-    def _suffixes(self, bearing: Any) -> list[str]:
+    def _suffixes(self, bearing: Bearing) -> list[str]:
         """Suffixes of the names of the bodies of each row."""
         count = len(bearing.rows)
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
 
-    def _refuse(self, bearing: Any) -> None:
+    def _refuse(self, bearing: Bearing) -> None:
         from raceway.core.mesh.ring_shape import ring_shape
         from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
 
@@ -119,7 +120,7 @@ class Structured:
         lowest = Prediction.of({"all": volume * len(bearing.rows) / self.element_size**3})
         refuse_memory(lowest, "mesh.element_size", self.element_size, "take larger elements")
 
-    def _semi_axes(self, bearing: Any, inner: bool) -> tuple[float, float]:
+    def _semi_axes(self, bearing: Bearing, inner: bool) -> tuple[float, float]:
         """Semi-axes [m] of a contact ellipse, along the groove and along the rolling direction."""
         from raceway.core.contact.geometry import BallBearing
         from raceway.core.contact.hertz import contact_modulus
@@ -137,7 +138,7 @@ class Structured:
         major, minor = row.ellipses(modulus)[0 if inner else 1].semi_axes(self.ball_load or BALL_LOAD)
         return float(major), float(minor)
 
-    def _ball_lines(self, bearing: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
+    def _ball_lines(self, bearing: Bearing) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
         """Lines of the cube along u, v, w, layers, and the semi-axes of the patch along u, v."""
         import numpy as np
 
@@ -166,7 +167,7 @@ class Structured:
         return semi_axis / self.nodes_per_semi_axis if self.nodes_per_semi_axis else inf
 
     def _ring_lines(
-        self, bearing: Any, shape: RingShape
+        self, bearing: Bearing, shape: RingShape
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
         """Points of the left land, the groove, the right land, the layers, and the refined band's angles."""
         from raceway.core.mesh.spacing import graded, growing
@@ -187,7 +188,7 @@ class Structured:
         layers = growing(1.0, min(fine, size) / thickness, size / thickness, self.growth)
         return left, arc, right, layers, band
 
-    def _azimuths(self, bearing: Any, shape: RingShape) -> np.ndarray:
+    def _azimuths(self, bearing: Bearing, shape: RingShape) -> np.ndarray:
         """(n,) azimuths of the nodes around a ring, less that of the first ball [rad]: each ball meets the same nodes."""
         import numpy as np
 
@@ -207,7 +208,7 @@ class Structured:
             one = pitch * np.arange(cells) / cells
         return np.asarray((one[None, :] + pitch * np.arange(count)[:, None]).ravel())
 
-    def _ring(self, bearing: Any, inner: bool, side: float, place: float) -> HexMesh:
+    def _ring(self, bearing: Bearing, inner: bool, side: float, place: float) -> HexMesh:
         import numpy as np
 
         from raceway.core.mesh.place import azimuth

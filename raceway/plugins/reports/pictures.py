@@ -14,7 +14,11 @@ from raceway.framework.options import between, option
 from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from raceway.pipeline.result import Result
+    from raceway.pipeline.simulate import Simulation
 
 _USED, _OTHER, _STATIC = "#0b5fa5", "#b9c4cf", "#c8501e"
 _MICRO = 1e6
@@ -31,7 +35,7 @@ class Pictures:
 
     dots_per_inch: int = option(150, help="resolution of the PNG files", rule=between(30, 1200))
 
-    def write(self, result: Any, folder: Any) -> list[Path]:
+    def write(self, result: Result, folder: Path) -> list[Path]:
         """Write the pictures that the result has data for.
 
         Parameters
@@ -87,11 +91,18 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
     return write_whole(memory.getvalue(), path)
 
 
-def orbit(result: Any) -> Figure:
+def _motion(result: Result) -> Simulation:
+    if result.simulation is None:
+        raise ValueError("the scene is static: no motion was recorded")
+    return result.simulation
+
+
+def orbit(result: Result) -> Figure:
     """Path of the inner ring's reference point in the radial plane."""
     figure = new_figure(6.4, 6.8)
     axes = figure.add_subplot()
-    whole, used = result.simulation.whole, result.simulation.record
+    motion = _motion(result)
+    whole, used = motion.whole, motion.record
     turns = round(len(used.time) * used.schedule.stride / used.schedule.steps_per_turn)
     if len(whole.time) > len(used.time):
         label = f"all {_turns(whole.schedule.turns)}"
@@ -106,16 +117,17 @@ def orbit(result: Any) -> Figure:
     return figure
 
 
-def spectrum(result: Any) -> Figure:
+def spectrum(result: Result) -> Figure:
     """Amplitude of the displacement against multiples of the excitation's frequency."""
     import numpy as np
 
     figure = new_figure(7.2, 4.6)
     axes = figure.add_subplot()
-    record, found = result.simulation.record, result.identification
+    record, found = _motion(result).record, result.identification
+    frequency = result.model.excitation.frequency_hz if found is None else found.frequency_hz
     motion = record.displacement[:, 1:3] - record.displacement[:, 1:3].mean(axis=0)
     lines = 2.0 * np.abs(np.fft.rfft(motion, axis=0)) / len(motion) * _MICRO
-    order = np.fft.rfftfreq(len(motion), record.time[1] - record.time[0]) / found.frequency_hz
+    order = np.fft.rfftfreq(len(motion), record.time[1] - record.time[0]) / frequency
     shown = (order > 0.0) & (order <= 10.05)
     peak = max(lines[shown].max(), 1e-12)
     dense = order[1] < 0.2
@@ -128,7 +140,7 @@ def spectrum(result: Any) -> Figure:
     largest = lines[shown].max(axis=1)
     one = int(np.argmin(np.abs(order[shown] - 1.0)))
     axes.annotate(
-        f"1x: {largest[one]:.4g} µm at {found.frequency_hz:.4g} Hz",
+        f"1x: {largest[one]:.4g} µm at {frequency:.4g} Hz",
         (1.0, largest[one]),
         xytext=(12, 2),
         textcoords="offset points",
@@ -147,7 +159,7 @@ def spectrum(result: Any) -> Figure:
     return figure
 
 
-def ball_loads(result: Any) -> Figure:
+def ball_loads(result: Result) -> Figure:
     """Inner contact load of each ball: static, and its range over the recorded turns."""
     import numpy as np
 
@@ -185,12 +197,12 @@ def _turns(count: int) -> str:
     return f"{count} turn{'' if count == 1 else 's'}"
 
 
-def _subtitle(result: Any) -> str:
+def _subtitle(result: Result) -> str:
     """The title, and what was changed of the scene, in lines that fit."""
     return "\n".join(part for line in result.title.splitlines() for part in wrap(line, 64))
 
 
-def _finish(axes: Any, title: str, x: str, y: str) -> None:
+def _finish(axes: Axes, title: str, x: str, y: str) -> None:
     axes.set_title(title, fontsize=12)
     axes.set_xlabel(x, fontsize=11)
     axes.set_ylabel(y, fontsize=11)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
 from raceway.framework.registry import Registry
 from raceway.scene.file import with_value
+from raceway.storage.tables import Tables
 from raceway.studies.article.curves import Curves
 from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILTS, Design, Setting
 from raceway.studies.article.runs import Row, Task, curve
 
 #: Swaps of one choice against the article's bidirectional model with ball inertia; the first changes nothing.
-SWAPS: dict[str, dict[str, Any]] = {
+SWAPS: dict[str, Tables] = {
     "rotating force m e w², ball inertia": {},
     "direction swapped: unidirectional force m e w²": {"direction": DIRECTIONS[0]},
     "amplitude law swapped: rotating force, constant": {"amplitude": AMPLITUDES[0]},
@@ -28,7 +27,7 @@ SWAPS: dict[str, dict[str, Any]] = {
 STIFFNESSES = tuple(float(f"{10.0 ** (2.0 + 0.25 * k):.4g}") for k in range(17))
 
 
-def swapped(tilt: str, change: dict[str, Any], bodies: tuple[str, ...]) -> Setting:
+def swapped(tilt: str, change: Tables, bodies: tuple[str, ...]) -> Setting:
     """The article's setting with one choice changed."""
     kind = "rigid" if "rigid" in bodies else bodies[0]
     base = Setting(DIRECTIONS[1], AMPLITUDES[1], tilt, True, kind)
@@ -57,7 +56,7 @@ def _change(curves: Curves, setting: Setting, load: float, measure: str = "K") -
     return float(found) if np.isfinite(found) else str(next(fate for fate in fates if fate != "completed"))
 
 
-def friction_trends(curves: Curves) -> list[dict[str, Any]]:
+def friction_trends(curves: Curves) -> list[Tables]:
     """k*(1) - 1 under the rotating force m e w^2 for each kind of friction: ``tilt``, ``axial_n``, ``none`` and so on."""
     made, out = curves.design, []
     for tilt in TILTS if len(made.frictions) > 1 else ():

@@ -7,11 +7,11 @@ say which one its stiffness is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from raceway.storage.tables import ReadTables
 from raceway.studies.article.claims_axial import axial
 from raceway.studies.article.claims_rotating import both, hardening
 from raceway.studies.article.curves import MEASURES, ONE_WAY, Curves
@@ -24,7 +24,7 @@ from raceway.studies.article.verdict import BRIDGED, FAILED, UNTESTED, Verdict, 
 LARGEST_DEVIATION, HEAVIEST_DEVIATION = 0.0242, 0.0033
 
 
-def verdicts(curves: Curves, static: Sequence[Mapping[str, Any]]) -> list[Verdict]:
+def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
     """Every claim.
 
     Parameters
@@ -38,7 +38,7 @@ def verdicts(curves: Curves, static: Sequence[Mapping[str, Any]]) -> list[Verdic
     return sorted(out, key=lambda one: one.number[0])
 
 
-def _static(rows: Sequence[Mapping[str, Any]]) -> list[Verdict]:
+def _static(rows: Sequence[ReadTables]) -> list[Verdict]:
     """The load cases are lost: there is nothing to hold the article's percentages against, only ours to report."""
     pressures = [row for row in rows if not row["quantity"].startswith("mesh independence")]
     heaviest = [row for row in pressures if "inner" in row["quantity"] and "2000 N axial" in row["quantity"]]
@@ -69,9 +69,7 @@ def _rig() -> Verdict:
     )
 
 
-def over_speed(
-    curves: Curves, excitation: Mapping[str, Any], measure: str, judged: Callable[..., bool | None]
-) -> list[Finding]:
+def over_speed(curves: Curves, excitation: ReadTables, measure: str, judged: Callable[..., bool | None]) -> list[Finding]:
     """A rule of (values, errors, failed) for curves over speed, at every way to model and every load; the value is k*(1)."""
     found = []
     for model in curves.design.models():

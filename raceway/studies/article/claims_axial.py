@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
+from raceway.storage.tables import Tables
 from raceway.studies.article.claims_rotating import in_words, missing, suffix
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import Setting
@@ -32,7 +31,7 @@ _READINGS = {
 class _Effect:
     """An effect in the low and in the high zone of the speed, a fall with its sign; None where a number is missing."""
 
-    at: dict[str, Any]
+    at: Tables
     low: float | None
     high: float | None
     why: str

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
+from raceway.storage.tables import Tables
 from raceway.studies.article.curves import ROTATING, Curves
 from raceway.studies.article.design import FRICTION_WORDS, TILT_WORDS, Setting
 from raceway.studies.article.power_law import NEAREST, Exponent, exponent
@@ -87,7 +87,7 @@ def _powers(
     return found, f". Where it rises: {'; '.join(told)}" if told else ""
 
 
-def _place(model: dict[str, Any]) -> str:
+def _place(model: Tables) -> str:
     return f"{FRICTION_WORDS[model['friction']]}, {TILT_WORDS[model['tilt']]}"
 
 

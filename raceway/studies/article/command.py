@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Any
 
+import attrs
 import click
 from click.core import ParameterSource
 
@@ -17,6 +17,7 @@ from raceway.commands.frame import (
     out_option,
     plugin_files,
     processes_at_a_time,
+    record,
     registry_with,
     scene_if_any,
     set_keys,
@@ -25,6 +26,25 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
+from raceway.storage.tables import Tables
+
+
+@attrs.frozen
+class ArticleOptions:
+    """What ``raceway study article`` is given."""
+
+    scene: Path | None
+    bodies: str
+    speeds: str
+    axial: str
+    shaft: float | None
+    friction: float | None
+    processes: int
+    changes: tuple[str, ...]
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command(short_help="The article's figures 9 to 12 and a verdict on each of its claims.")
@@ -53,20 +73,8 @@ from raceway.errors import ConvergenceError, SceneError
 @click.option("--pictures/--no-pictures", default=True, help="Draw figures and write the page (default).")
 @plugin_files
 @common
-def article(
-    scene: Path | None,
-    bodies: str,
-    speeds: str,
-    axial: str,
-    shaft: float | None,
-    friction: float | None,
-    processes: int,
-    changes: tuple[str, ...],
-    out: Path | None,
-    pictures: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
+@record(ArticleOptions)
+def article(given: ArticleOptions) -> int:
     """Compute the article's figures 9 to 12 and say which of its claims hold, and where.
 
     SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
@@ -78,27 +86,28 @@ def article(
       raceway study article --bodies rigid --friction 0
       raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000
     """  # fmt: skip
-    registry = registry_with(plugins)
-    tables: dict[str, Any] | None = None
-    if scene is not None or changes:
-        from raceway.studies.article.design import ARTICLE
+    registry = registry_with(given.plugins)
+    from raceway.studies.article.design import ARTICLE, article_tables, design
 
-        tables, mistakes = changed_tables(scene or ARTICLE, changes, registry)
+    tables: Tables | None = None
+    if given.scene is not None or given.changes:
+        tables, mistakes = changed_tables(given.scene or ARTICLE, given.changes, registry)
         if mistakes:
             raise SceneError(mistakes)
+    kinds = ("rigid", "condensed") if given.bodies == "both" else (given.bodies,)
+    made = design(tables or article_tables(), given.speeds, given.axial, given.shaft, kinds, given.friction)
     command = _command(click.get_current_context())
-    name = "article" if scene is None else f"{slug(str((tables or {})['title']))}-article"
-    folder = writable(out or RESULTS / name)
-    pictures = pictures and has_matplotlib()
+    name = "article" if given.scene is None else f"{slug(str((tables or {})['title']))}-article"
+    folder = writable(given.out or RESULTS / name)
+    pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "article-rows.jsonl"
     with show_progress() as progress:
         from raceway.studies.article.files import write
         from raceway.studies.article.study import article as study
 
-        kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
         with keeping("curves", kept):
-            found = study(tables, speeds, axial, shaft, kinds, friction, processes, kept, registry, plugins, progress)
+            found = study(made, given.processes, kept, registry, given.plugins, progress)
         progress("writing", 0, 0)
         content, files = found.as_dict(), list[str]()
         failed = attempt(lambda: write(found, folder, pictures, command), files) or found.fault
@@ -106,7 +115,7 @@ def article(
         failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")
     from raceway.studies.article.screen import article_screen
 
-    show(content, as_json, failed, lambda: article_screen(content, files))
+    show(content, given.as_json, failed, lambda: article_screen(content, files))
     return 0
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any
 
 import attrs
 import numpy as np
 
+from raceway.storage.tables import Tables
 from raceway.studies.article.design import CLAIMED, FRICTION_ERROR, Design, Setting
 
 #: What may be called k: name -> key of a row.
@@ -25,7 +25,7 @@ class Curves:
     """
 
     design: Design
-    rows: dict[tuple[Setting, float], list[dict[str, Any]]]
+    rows: dict[tuple[Setting, float], list[Tables]]
 
     def values(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
         """(speeds,) [N/m]; nan where the run failed or its motion is unstable."""
@@ -65,7 +65,7 @@ class Curves:
         """What is missing in a curve, in words; "" where nothing is."""
         return told(self.rows[setting, load])
 
-    def faults(self) -> Iterator[dict[str, Any]]:
+    def faults(self) -> Iterator[Tables]:
         """Every run that gave no number to judge with."""
         for (setting, _), rows in self.rows.items():
             for row in rows:
@@ -73,7 +73,7 @@ class Curves:
                     yield {**attrs.asdict(setting), **row}
 
 
-def told(rows: list[dict[str, Any]]) -> str:
+def told(rows: list[Tables]) -> str:
     """Runs without a number, counted by what became of them, with the first reason of each kind."""
     bad = [row for row in rows if row["status"] != "completed"]
     parts = []
@@ -84,5 +84,5 @@ def told(rows: list[dict[str, Any]]) -> str:
     return "; ".join(parts)
 
 
-_PAIRS: list[dict[str, Any]] = [{"direction": direction, "amplitude": amplitude} for direction, amplitude in CLAIMED]
+_PAIRS: list[Tables] = [{"direction": direction, "amplitude": amplitude} for direction, amplitude in CLAIMED]
 ONE_WAY, ROTATING = _PAIRS

@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.file import read_toml, with_value
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis, parse_axis, points
 from raceway.studies.many.points import tables_at
 
@@ -74,7 +74,7 @@ class Design:
     friction : Coulomb coefficient of the settings with friction, which are run with rigid bodies; 0 leaves them out
     """
 
-    tables: Mapping[str, Any]
+    tables: ReadTables
     speeds: tuple[float, ...]
     loads: tuple[float, ...]
     shaft: float
@@ -114,7 +114,7 @@ class Design:
         first, last = self.speeds[0], self.speeds[-1]
         return [(speed - first) / (last - first) for speed in speeds]
 
-    def models(self) -> Iterator[dict[str, Any]]:
+    def models(self) -> Iterator[Tables]:
         """Every way to model the bearing, apart from its excitation, in the order of the tables."""
         for friction, tilt, inertia in product(self.frictions, TILTS, (True, False)):
             for kind in [one for one in BODIES if one in self.bodies]:
@@ -135,7 +135,7 @@ class Design:
         """Every setting at each of its axial loads [N]: a curve over speed."""
         return [(setting, load) for setting in self.settings() for load in self.loads_of(setting)]
 
-    def point(self, setting: Setting, load: float, speed: float, registry: Registry) -> dict[str, Any]:
+    def point(self, setting: Setting, load: float, speed: float, registry: Registry) -> Tables:
         """The scene's tables at one point."""
         chosen = {
             "bodies.kind": setting.bodies,
@@ -170,13 +170,13 @@ def shaft_tilt_stiffness(diameter: float = SHAFT_DIAMETER, span: float = SPAN, y
     return 2.0 * young * math.pi * diameter**4 / 64.0 / span
 
 
-def article_tables() -> dict[str, Any]:
+def article_tables() -> Tables:
     """The article's scene, which the package brings."""
     return read_toml(ARTICLE)
 
 
 def design(
-    tables: Mapping[str, Any], speeds: str = SPEEDS, loads: str = LOADS, shaft: float | None = None,
+    tables: ReadTables, speeds: str = SPEEDS, loads: str = LOADS, shaft: float | None = None,
     bodies: Sequence[str] = BODIES, friction: float | None = None,
 ) -> Design:  # fmt: skip
     """The runs for a scene.

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import attrs
 
@@ -16,6 +15,7 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import Tables
 from raceway.studies.article.design import article_tables
 
 SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)
@@ -61,7 +61,7 @@ class Trend:
         """Rounds to the printed digits: within half a unit of the last one."""
         return self.off is not None and self.off <= 0.5
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {**attrs.asdict(self), "off_in_last_digits": self.off, "holds": self.holds}
 
 
@@ -70,7 +70,7 @@ def last_digit(value: float) -> float:
     return float(10.0 ** (math.floor(math.log10(abs(value))) - 3))
 
 
-def secants(given: Sequence[Any], registry: Registry) -> list[dict[str, Any]]:
+def secants(given: tuple[str, float, bool], registry: Registry) -> list[Tables]:
     """Secant stiffness [N/m] at the five speeds; a task of ``runs.work``.
 
     Parameters
@@ -100,7 +100,7 @@ def secants(given: Sequence[Any], registry: Registry) -> list[dict[str, Any]]:
     return rows
 
 
-def trend(given: Sequence[Any], rows: Sequence[dict[str, Any]]) -> Trend:
+def trend(given: tuple[str, float, bool], rows: Sequence[Tables]) -> Trend:
     """The row of a table from what ``secants`` found."""
     tilt, load, inertia = given
     first, ratios = TRENDS[tilt, load, inertia]

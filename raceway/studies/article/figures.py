@@ -28,6 +28,8 @@ from raceway.studies.article.panel import GRID, Panel, Picture, colours, cut, en
 from raceway.studies.article.rules import LEVEL
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from raceway.studies.article.study import Article
 
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
@@ -84,21 +86,22 @@ def _excitations(curves: Curves, kind: str) -> list[Picture]:
         for tilt in TILTS:
             settings = {pair: Setting(*pair, tilt, True, kind) for pair in _PAIRS}
             lines = {pair: setting for pair, setting in settings.items() if (setting, load) in curves.rows}
-            panels.append(_excitation_panel(curves, w, lines, load, measure, star, label, TILT_WORDS[tilt]))
+            panels.append(_excitation_panel(curves, w, lines, load, measure, star, label))
         found.append(Picture(name, f"{title}, {load:g} N, {kind} bodies", tuple(panels)))
     return found
 
 
 def _excitation_panel(
-    curves: Curves, w: np.ndarray, lines: dict[tuple[str, str], Setting], load: float, measure: str, star: bool,
-    label: str, tilt: str,
+    curves: Curves, w: np.ndarray, lines: dict[tuple[str, str], Setting], load: float, measure: str, star: bool, label: str
 ) -> Panel:  # fmt: skip
+    tilt = TILT_WORDS[next(iter(lines.values())).tilt]
+
     def taken(setting: Setting, values: np.ndarray) -> np.ndarray:
         return np.asarray(values / curves.values(setting, load, measure)[0] if star else values / 1e6)
 
     light = {pair: attrs.evolve(lines[pair], inertia=False) for pair in CLAIMED}
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Axes) -> None:
         for pair, setting in light.items():
             steady = taken(setting, curves.values(setting, load, measure))
             known = np.isfinite(steady)
@@ -141,7 +144,7 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
     label = _STAR if star else _STIFFNESS
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Axes) -> None:
         ends = []
         for place, colour in zip(places, colours(len(places)), strict=True):
             axes.plot(w, k[place], "-", color=colour, linewidth=2.0)
@@ -164,7 +167,7 @@ def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
     label = _STAR if star else _STIFFNESS
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Axes) -> None:
         for place, colour in zip(places, colours(len(places)), strict=True):
             axes.plot(loads, light[:, place], "--", color=colour, linewidth=1.1)
             axes.plot(loads, k[:, place], "-o", markersize=3, color=colour, linewidth=1.9, label=names[place])
@@ -203,7 +206,7 @@ def _map(curves: Curves, setting: Setting) -> Panel:
     star = _surface(curves, setting, True)
     known = np.isfinite(star)
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Axes) -> None:
         finish(axes, TILT_WORDS[setting.tilt], _SPEED, _LOAD)
         axes.grid(False)
         if not known.any():
@@ -267,7 +270,7 @@ def _friction_panel(curves: Curves, tilt: str) -> Panel:
     }
     colours = dict(zip(FRICTIONS, ("#55636f", "#c8501e", "#0b5fa5"), strict=True))
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Axes) -> None:
         for (friction, load), setting in lines.items():
             w, star = np.array(curves.design.relative_speeds_of(setting)), curves.normalised(setting, load)
             known = np.isfinite(star)
@@ -291,7 +294,7 @@ def _tilt_stiffness(study: Article) -> Picture:
     lines = {load: causes.hardening(rows) for load, rows in study.scan.items()}
     shaft = study.curves.design.shaft
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Axes) -> None:
         for (load, ratio), colour in zip(lines.items(), colours(len(lines)), strict=True):
             axes.semilogx(causes.STIFFNESSES, ratio, "-o", markersize=3, color=colour, linewidth=2.0, label=f"{load:g} N")
         axes.axhline(1.0, color="#8794a0", linewidth=0.8)
@@ -325,7 +328,7 @@ def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
     lines = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
     label = _STAR if star else f"K {names[1]} / K {names[0]} [-]"
 
-    def draw(axes: Any) -> None:
+    def draw(axes: Axes) -> None:
         for (name, values), style in zip(lines.items(), ("--" if star else "-", "-"), strict=False):
             for k, colour in zip(places, colours(len(places)), strict=True):
                 axes.plot(w, values[k], style, color=colour, linewidth=1.7, label=f"{curves.design.loads[k]:g} N{name}")

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.reports.pictures import save_figure
 from raceway.storage.files import write_whole
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article import causes
 from raceway.studies.article.figures import pictures as all_pictures
 from raceway.studies.article.report import page, verdict_rows
@@ -41,7 +42,7 @@ def write(study: Article, folder: Path, pictures: bool = True, command: str = "r
     return files
 
 
-def _tables(study: Article, content: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
+def _tables(study: Article, content: ReadTables) -> dict[str, list[Tables]]:
     scan = [
         {"axial_n": load, "tilt_stiffness": stiffness, "k_ratio": ratio}
         for load, rows in study.scan.items()
@@ -51,7 +52,7 @@ def _tables(study: Article, content: Mapping[str, Any]) -> dict[str, list[dict[s
     for one in study.trends:
         flat = attrs.asdict(one, filter=lambda field, _: field.name not in ("expected", "computed"))
         for name in ("expected", "computed"):
-            values: Sequence[Any] = getattr(one, name) or ()
+            values: Sequence[object] = getattr(one, name) or ()
             flat |= {f"{name}_{place}": value for place, value in enumerate(values)}
         trends.append({**flat, "off_in_last_digits": one.off, "holds": one.holds})
     return {
@@ -65,7 +66,7 @@ def _tables(study: Article, content: Mapping[str, Any]) -> dict[str, list[dict[s
     }
 
 
-def _csv(rows: Iterable[Mapping[str, Any]], path: Path) -> Path:
+def _csv(rows: Iterable[ReadTables], path: Path) -> Path:
     """A table with every key of any row as a column."""
     found = list(rows)
     text = io.StringIO()

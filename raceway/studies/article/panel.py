@@ -9,8 +9,10 @@ import attrs
 import numpy as np
 
 from raceway.plugins.reports.pictures import new_figure
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _WIDTH, _HEIGHT = 4.7, 3.8
@@ -21,7 +23,7 @@ GRID = "#d8dee4"
 class Panel:
     """One pair of axes: how it is drawn, what is seen, and a caption; ``solid`` for three axes."""
 
-    draw: Callable[[Any], None]
+    draw: Callable[[Axes], None]
     alternative: str
     caption: str
     solid: bool = False
@@ -50,12 +52,12 @@ class Picture:
         return figure
 
 
-def _axes(figure: Figure, place: Any, solid: bool) -> Any:
-    words: dict[str, Any] = {"projection": "3d"} if solid else {}
+def _axes(figure: Figure, place: int | tuple[int, int, int], solid: bool) -> Any:
+    words: Tables = {"projection": "3d"} if solid else {}
     return figure.add_subplot(*place, **words) if isinstance(place, tuple) else figure.add_subplot(place, **words)
 
 
-def finish(axes: Any, title: str, x: str, y: str, legend: int = 0) -> None:
+def finish(axes: Axes, title: str, x: str, y: str, legend: int = 0) -> None:
     axes.set_title(title, fontsize=11)
     axes.set_xlabel(x, fontsize=10)
     axes.set_ylabel(y, fontsize=10)
@@ -71,7 +73,7 @@ def ends(values: np.ndarray) -> str:
     return f"{values[0]:.4g} to {values[-1]:.4g}" if np.isfinite(values[[0, -1]]).all() else "not computed to the end"
 
 
-def cut(axes: Any, lines: list[np.ndarray]) -> None:
+def cut(axes: Axes, lines: list[np.ndarray]) -> None:
     """Limits by the steady motions: an unstable one far away must not flatten them."""
     values = np.concatenate(lines)
     values = values[np.isfinite(values)]
@@ -87,7 +89,7 @@ def colours(count: int) -> list[Any]:
     return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.72, count)]
 
 
-def end_labels(axes: Any, x: float, labels: list[tuple[float, str, Any]]) -> None:
+def end_labels(axes: Axes, x: float, labels: list[tuple[float, str, Any]]) -> None:
     """Names at the right ends of curves, pushed apart where they would cover each other."""
     known = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
     low, high = axes.get_ylim()

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import attrs
 
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import FRICTION_WORDS, TILT_WORDS
 
 _ORDER = ("case", "friction", "tilt", "inertia", "bodies", "speed", "load")
@@ -23,12 +24,12 @@ class Finding:
     value : the number that the rule looks at
     """
 
-    at: Mapping[str, Any]
+    at: ReadTables
     holds: bool | None
     value: float | None = None
     why: str = ""
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {"at": dict(self.at), "holds": self.holds, "value": self.value, "why": self.why}
 
 
@@ -41,7 +42,7 @@ def where(findings: Sequence[Finding], holds: bool | None) -> str:
     return "; ".join(leaves) if leaves != [""] else "everywhere"
 
 
-def _leaves(items: list[tuple[dict[str, Any], bool]], keys: list[str]) -> list[str] | None:
+def _leaves(items: list[tuple[Tables, bool]], keys: list[str]) -> list[str] | None:
     """[""] for all of the items, None for none, else a phrase for each part."""
     if all(chosen for _, chosen in items):
         return [""]
@@ -60,7 +61,7 @@ def _leaves(items: list[tuple[dict[str, Any], bool]], keys: list[str]) -> list[s
     return found
 
 
-def _named(key: str, chosen: list[Any], every: list[Any]) -> str:
+def _named(key: str, chosen: Sequence[Any], every: Sequence[Any]) -> str:
     if key == "tilt":
         words = [TILT_WORDS[value].removeprefix("tilt ") for value in chosen]
         return "tilt " + " or ".join(words)
@@ -75,7 +76,7 @@ def _named(key: str, chosen: list[Any], every: list[Any]) -> str:
     return " or ".join(str(value) for value in chosen)
 
 
-def _ranges(chosen: list[float], every: list[float], unit: str) -> str:
+def _ranges(chosen: Sequence[float], every: Sequence[float], unit: str) -> str:
     """Neighbours as one range."""
     runs: list[list[float]] = []
     for value in every:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
+from raceway.storage.tables import Tables
 from raceway.studies.article import causes, expected
 from raceway.studies.article.curves import told
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, FRICTIONS, TILT_WORDS, TILTS
@@ -16,6 +17,7 @@ from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED
 from raceway.studies.many.page import Cell, Page
 
 if TYPE_CHECKING:
+    from raceway.storage.tables import ReadTables
     from raceway.studies.article.study import Article
 
 TONES = {HOLDS: "good", PARTLY: "partly", NOT: "bad", FAILED: "failed", UNTESTED: "partly"}
@@ -161,7 +163,7 @@ def _badge(one: Verdict) -> Cell:
 
 def _setting(out: Page, study: Article) -> None:
     made = study.curves.design
-    tables: Any = made.tables
+    tables: ReadTables = made.tables
     mass = tables.get("rotor", {}).get("mass", 0.0)
     given = tables["excitation"]
     constant = f"{given['force']:g} N" if "force" in given else f"that at {given['reference_speed_rpm']:g} r/min"
@@ -238,7 +240,7 @@ def _trends(out: Page, study: Article) -> None:
         "digits."
     )
     columns = ["", "", "k(10 980) N/µm", *(f"k* {speed:g}" for speed in expected.SPEEDS[1:]), "off, last digit", ""]
-    rows: list[list[Any]] = []
+    rows: list[list[object]] = []
     for one in study.trends:
         balls = "ball inertia" if one.inertia else "weightless balls"
         rows.append([f"tilt {one.tilt}, {one.load:g} N, {balls}", "expected", f"{one.expected[0]:.4g}",
@@ -257,7 +259,7 @@ def _rig(out: Page, study: Article) -> None:
         "measured values are lost, so nothing is compared."
     )
     speeds = list(dict.fromkeys(row["speed_rpm"] for row in study.rig))
-    table: dict[tuple[Any, ...], list[str]] = {}
+    table: dict[tuple[str, ...], list[str]] = {}
     for row in study.rig:
         text = f"{row['k'] / 1e6:.4g}" if row["status"] == "completed" else row["status"]
         table.setdefault((row["axial_n"], row["tilt"], row["bodies"]), []).append(text)
@@ -300,7 +302,7 @@ def _kept(holds: bool, why: str) -> Cell:
     return Cell("holds", "good") if holds else Cell("does not hold", "bad")
 
 
-def verdict_rows(study: Article) -> list[dict[str, Any]]:
+def verdict_rows(study: Article) -> list[Tables]:
     """The verdicts as a flat table."""
     skip = ("findings",)
     return [

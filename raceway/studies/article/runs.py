@@ -15,10 +15,11 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import Tables
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, program_key
 
-Row = dict[str, Any]
+Row = Tables
 
 
 @attrs.frozen
@@ -40,7 +41,7 @@ class Task:
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
-def curve(points: Sequence[dict[str, Any]], registry: Registry) -> list[Row]:
+def curve(points: Sequence[Tables], registry: Registry) -> list[Row]:
     """One row a point, in order; a run that fails or is refused becomes a row with its reason.
 
     Parameters
@@ -50,7 +51,7 @@ def curve(points: Sequence[dict[str, Any]], registry: Registry) -> list[Row]:
     return [_row(tables, registry) for tables in points]
 
 
-def _row(tables: dict[str, Any], registry: Registry) -> Row:
+def _row(tables: Tables, registry: Registry) -> Row:
     row: Row = {"speed_rpm": tables["excitation"]["speed_rpm"], "axial_n": tables["load"]["axial"]}
     try:
         result = run(scene_from_dict(tables, registry), registry)
@@ -88,5 +89,5 @@ def work(
     return [row["rows"] for row in done], reused
 
 
-def _rows(task: Task, registry: Registry) -> dict[str, Any]:
+def _rows(task: Task, registry: Registry) -> Tables:
     return {"rows": task.function(task.given, registry)}

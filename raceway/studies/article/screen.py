@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -12,11 +11,12 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.commands.screen import written
+from raceway.storage.tables import ReadTables
 
 _COLOURS = {"holds": "green", "holds only for": "yellow", "does not hold": "red"}
 
 
-def article_screen(content: Mapping[str, Any], files: Sequence[str]) -> RenderableType:
+def article_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
     """Verdicts, the check against an independent solver, failures and cost.
 
     Parameters

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -15,10 +14,11 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import Tables
 from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import verdicts
 from raceway.studies.article.curves import ROTATING, Curves
-from raceway.studies.article.design import BODIES, LOADS, SPEEDS, TILTS, Design, Setting, article_tables, design
+from raceway.studies.article.design import TILTS, Design, Setting
 from raceway.studies.article.runs import Row, Task, curve, work
 from raceway.studies.article.verdict import Verdict
 from raceway.studies.many.engine import processor_time
@@ -62,7 +62,7 @@ class Article:
         return verdicts(self.curves, self.static)
 
     @property
-    def failed(self) -> list[dict[str, Any]]:
+    def failed(self) -> list[Tables]:
         """Runs that failed or were refused, of curves, rig and scan; unstable motions are not among them."""
         every = [*self.curves.faults(), *self.rig, *(row for rows in self.scan.values() for row in rows)]
         return [row for row in every if row["status"] not in ("completed", "unstable")]
@@ -72,7 +72,7 @@ class Article:
         """How many motions were sought: steady orbits, and with friction transients."""
         return sum(map(len, [*self.curves.rows.values(), self.rig, *self.scan.values()]))
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         made = self.curves.design
         rows = [
@@ -80,7 +80,7 @@ class Article:
             for (setting, _), found in self.curves.rows.items()
             for row, w in zip(found, made.relative_speeds_of(setting), strict=True)
         ]
-        content: dict[str, Any] = without_nan(
+        content: Tables = without_nan(
             {
                 "title": self.title,
                 "scene": made.tables,
@@ -110,12 +110,7 @@ class Article:
 
 
 def article(
-    tables: Mapping[str, Any] | None = None,
-    speeds: str = SPEEDS,
-    loads: str = LOADS,
-    shaft: float | None = None,
-    bodies: Sequence[str] = BODIES,
-    friction: float | None = None,
+    made: Design,
     processes: int = PROCESSES,
     store: Path | None = None,
     registry: Registry | None = None,
@@ -126,10 +121,7 @@ def article(
 
     Parameters
     ----------
-    tables : plain tables of a scene; the article's when None
-    speeds, loads : "a,b,c" or "start:stop:count" [r/min], [N]
-    shaft : tilt stiffness of the setting "against the shaft" [N m/rad]
-    friction : Coulomb coefficient of the settings with friction; 0 leaves them out, None takes the scene's or the article's
+    made : by ``raceway.studies.article.design.design``
     processes : how many work at a time; 0 works in this one
     store : file that finished curves are kept in and taken from
     plugins : one-off plug-in files, which each process loads
@@ -138,13 +130,12 @@ def article(
     Raises
     ------
     SceneError
-        A mistake in the scene or in a range; nothing has been run.
+        A mistake in the scene; nothing has been run.
     KeyboardInterrupt
         Finished curves are in ``store``.
     """
     begun, cpu, own = time.monotonic(), processor_time(), time.process_time()
     registry = registry or default_registry()
-    made = design(tables if tables is not None else article_tables(), speeds, loads, shaft, bodies, friction)
     settings = made.tasks()
     title = _checked(made, registry)
     tasks = _tasks(made, settings, registry)

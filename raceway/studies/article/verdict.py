@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import attrs
 
+from raceway.storage.tables import Tables
 from raceway.studies.article.regions import Finding, where
 
 HOLDS, PARTLY, NOT, FAILED, UNTESTED = "holds", "holds only for", "does not hold", "failed", "cannot be tested"
@@ -40,7 +40,7 @@ class Verdict:
     def words(self) -> str:
         return f"{self.kind} {self.region}" if self.region else self.kind
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         plain = attrs.asdict(self, filter=lambda field, _: field.name != "findings")
         return {**plain, "verdict": self.words, "findings": [one.as_dict() for one in self.findings]}
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.storage.tables import Tables
 from raceway.studies.compare.explain import explain
 from raceway.studies.compare.findings import QUANTITIES, Findings, Row
 from raceway.studies.many.axes import Axis, shown
@@ -24,7 +24,7 @@ class Comparison(Findings):
     def words(self) -> list[str]:
         return explain(self)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         return {
             "title": self.title,

@@ -6,7 +6,7 @@ Changes are geometric means over the settings that a sentence does not name.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.studies.compare.causes import causes, leading_axis
 from raceway.studies.compare.effects import Effect, Factorial
@@ -46,7 +46,7 @@ def _what_was_run(comparison: Findings) -> str:
     return text + (f" Of {unknown} runs no error was estimated: they count as exact." if unknown else "")
 
 
-def _few(axis: Axis) -> Sequence[Any]:
+def _few(axis: Axis) -> Sequence[object]:
     return axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1])
 
 

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import product
-from typing import Any
 
 import attrs
 import numpy as np
 
+from raceway.storage.tables import Tables
 from raceway.studies.compare.effects import Factorial, trend, whole_part
 from raceway.studies.many.axes import Axis, shown
 
@@ -29,8 +29,8 @@ LEAST_HIGH_ORDER = 0.005
 class Row:
     """One point: the values of the axes, and result.json or ``{"status", "reason"}``."""
 
-    point: dict[str, Any]
-    result: dict[str, Any]
+    point: Tables
+    result: Tables
 
     @property
     def failed(self) -> bool:
@@ -38,7 +38,7 @@ class Row:
 
     def value(self, quantity: str) -> float | None:
         """One of ``QUANTITIES`` [N/m]; None where the run has none."""
-        value: Any = self.result.get("identification")
+        value = self.result.get("identification")
         for name in QUANTITIES[quantity][1]:
             value = value.get(name) if isinstance(value, dict) else None
         return value
@@ -109,7 +109,7 @@ class Findings:
         return [axis for axis in self.axes if len(axis.values) > 1]
 
     @cached_property
-    def held(self) -> dict[str, Any]:
+    def held(self) -> Tables:
         """Axes that the effects hold at one end, because corners of the other end cannot be used."""
         part = self._whole_part
         if part is None:
@@ -150,7 +150,7 @@ class Findings:
         return whole_part(np.array(usable).reshape(self._corners.shape))
 
     @cached_property
-    def effects(self) -> list[dict[str, Any]]:
+    def effects(self) -> list[Tables]:
         """Main effects and two-axis interactions, and the larger ones of higher order; the largest first."""
         found = []
         for quantity, factorial in self.factorials.items():
@@ -161,7 +161,7 @@ class Findings:
         return found
 
     @cached_property
-    def trends(self) -> list[dict[str, Any]]:
+    def trends(self) -> list[Tables]:
         """Trend of each quantity along each axis of three or more numbers, for every combination of the others."""
         found = []
         for axis in self.varied:
@@ -181,11 +181,11 @@ class Findings:
         return found
 
 
-def _same(a: Any, b: Any) -> bool:
+def _same(a: object, b: object) -> bool:
     return isinstance(a, bool) == isinstance(b, bool) and a == b
 
 
-def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> dict[str, Any]:
+def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> Tables:
     values = [row.value(quantity) or 0.0 for row in good]
     reaches = len(good) > 1 and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
     return {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
 
+from raceway.storage.tables import Tables
 from raceway.studies.many.axes import Axis, shown
 
 #: A change of less than half a percent "hardly matters".
@@ -47,6 +47,6 @@ def step(axis: Axis) -> str:
     return f"{axis.key} from {shown(axis.ends[0])} to {shown(axis.ends[1])}"
 
 
-def settings(point: dict[str, Any]) -> str:
+def settings(point: Tables) -> str:
     """``a = 1 and b = 2``."""
     return listed([f"{key} = {shown(value)}" for key, value in point.items()])

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.framework.options import between, option
 from raceway.plugins.reports.pictures import new_figure, save_figure
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +34,7 @@ class ComparisonPicture:
 
     dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
 
-    def write(self, result: Any, folder: Any) -> list[Path]:
+    def write(self, result: Tables, folder: Path) -> list[Path]:
         """Draw comparison.png.
 
         Parameters
@@ -50,7 +51,7 @@ class ComparisonPicture:
         return [save_figure(figure, Path(folder) / "comparison.png", self.dots_per_inch)]
 
 
-def draw(result: dict[str, Any]) -> Figure:
+def draw(result: Tables) -> Figure:
     """The figure of a comparison."""
     axes = {axis["key"]: axis["values"] for axis in result["axes"]}
     varied = [key for key, values in axes.items() if len(values) > 1]
@@ -77,7 +78,7 @@ def draw(result: dict[str, Any]) -> Figure:
     return figure
 
 
-def value_of(row: dict[str, Any], quantity: str) -> float | None:
+def value_of(row: Tables, quantity: str) -> float | None:
     """K(w) or |Z| of a row [N/um]; None where the run gave none."""
     found = row["result"].get("identification")
     if found is None:
@@ -86,14 +87,14 @@ def value_of(row: dict[str, Any], quantity: str) -> float | None:
     return None if value is None else value / 1e6
 
 
-def in_doubt(row: dict[str, Any]) -> bool:
+def in_doubt(row: Tables) -> bool:
     """Whether a row with a number is left out of the explanation."""
     return row.get("doubt") is not None and value_of(row, "equivalent_stiffness") is not None
 
 
 def _curves(
     panel: Axes,
-    rows: list[dict[str, Any]],
+    rows: list[Tables],
     quantity: str,
     along: str,
     styles: dict[str, list[str]],
@@ -116,7 +117,7 @@ def _curves(
     panel.spines[["top", "right"]].set_visible(False)
 
 
-def _limits(rows: list[dict[str, Any]]) -> tuple[float, float]:
+def _limits(rows: list[Tables]) -> tuple[float, float]:
     """Range of K(w) and |Z| together, so that both panels of a column have one scale; runs in doubt do not count."""
     chosen = [row for row in rows if not in_doubt(row)] or rows
     values = [v for row in chosen for quantity in _LABELS if (v := value_of(row, quantity)) is not None] or [0.0, 1.0]
@@ -124,7 +125,7 @@ def _limits(rows: list[dict[str, Any]]) -> tuple[float, float]:
     return min(values) - margin, max(values) + margin
 
 
-def _look(places: list[int]) -> dict[str, Any]:
+def _look(places: list[int]) -> Tables:
     """Line style of a combination: the first styled axis sets the colour, the second the line, the third the marker."""
     colour, line, marker = (*places[:3], *[0] * (3 - len(places[:3])))
     tone = _COLOURS[colour % len(_COLOURS)]
@@ -156,7 +157,7 @@ def _legend(figure: Figure, styles: dict[str, list[str]], doubt: bool) -> None:
         figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)), frameon=False, fontsize=10.5)
 
 
-def _dots(result: dict[str, Any], varied: list[str]) -> Figure:
+def _dots(result: Tables, varied: list[str]) -> Figure:
     """A dot for each run, where no axis has numbers: one line a combination, K(w) and |Z| side by side."""
     rows = result["rows"]
     names = [
@@ -182,7 +183,7 @@ def _dots(result: dict[str, Any], varied: list[str]) -> Figure:
     return figure
 
 
-def _by_interaction(keys: list[str], along: str, effects: list[dict[str, Any]]) -> list[str]:
+def _by_interaction(keys: list[str], along: str, effects: list[Tables]) -> list[str]:
     """The axes, those first that change the effect of ``along`` on K(w) most."""
 
     def strength(key: str) -> float:
@@ -196,11 +197,11 @@ def _by_interaction(keys: list[str], along: str, effects: list[dict[str, Any]]) 
     return sorted(keys, key=lambda key: -strength(key))
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -5,21 +5,25 @@ Only ``raceway.pipeline.run.run`` is called.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
-from raceway.studies.many.axes import parse_axes, points
+from raceway.studies.many.axes import Axis, parse_axes, points
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.points import refuse_mistakes, tables_at
 from raceway.studies.many.row_store import RowStore, row_key, tables_key
+
+if TYPE_CHECKING:
+    pass
 
 
 class StudyInterrupt(KeyboardInterrupt):
@@ -31,7 +35,7 @@ class StudyInterrupt(KeyboardInterrupt):
 
 
 def compare(
-    scene_tables: Mapping[str, Any],
+    scene_tables: ReadTables,
     vary: Iterable[str],
     registry: Registry | None = None,
     on_progress: OnProgress | None = None,
@@ -70,14 +74,16 @@ def compare(
     return _comparison(title, axes, places, items, kept, notes)
 
 
-def _comparison(title: str, axes: Any, places: list[Any], items: list[Item], kept: RowStore, notes: list[str]) -> Comparison:
+def _comparison(
+    title: str, axes: tuple[Axis, ...], places: list[Tables], items: list[Item], kept: RowStore, notes: list[str]
+) -> Comparison:
     """Of the points that are finished."""
     found = [(point, kept.get(item.key)) for point, item in zip(places, items, strict=True)]
     rows = tuple(Row(point, result) for point, result in found if result is not None)
     return Comparison(title, axes, rows, tuple(notes), kept.fault)
 
 
-def _item(tables: Mapping[str, Any], registry: Registry) -> Item:
+def _item(tables: ReadTables, registry: Registry) -> Item:
     try:
         key = row_key(scene_from_dict(tables, registry), registry, "compare")
     except SceneError:  # refused as it is run
@@ -85,7 +91,7 @@ def _item(tables: Mapping[str, Any], registry: Registry) -> Item:
     return Item(key, "runs", tables)
 
 
-def _result(tables: Mapping[str, Any], registry: Registry) -> dict[str, Any]:
+def _result(tables: ReadTables, registry: Registry) -> Tables:
     try:
         return run(scene_from_dict(tables, registry), registry).as_dict()
     except RacewayError as error:

@@ -11,6 +11,7 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.scene.file import parse_value
+from raceway.storage.tables import Tables
 
 MOST_POINTS = 10_000
 _FORM = "must have the form table.key=a,b,c or table.key=start:stop:count"
@@ -31,15 +32,15 @@ class Axis:
     def ends(self) -> tuple[Any, Any]:
         return self.values[0], self.values[-1]
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {"key": self.key, "values": list(self.values)}
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def shown(value: Any) -> str:
+def shown(value: object) -> str:
     """A value as people write it in a scene file, without quotes."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -152,7 +153,7 @@ def _range(key: str, text: str, most: int) -> list[Any]:
     return [float(v) for v in values]
 
 
-def points(axes: Sequence[Axis]) -> Iterator[dict[str, Any]]:
+def points(axes: Sequence[Axis]) -> Iterator[Tables]:
     """Every combination, the last axis running fastest."""
     for values in itertools.product(*(axis.values for axis in axes)):
         yield dict(zip((axis.key for axis in axes), values, strict=True))

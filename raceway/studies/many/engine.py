@@ -14,12 +14,14 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.errors import PluginError, RacewayError
-from raceway.framework.contracts import Lost, Refused
+from raceway.framework.contracts import Answer, Batch, Lost, Refused
 from raceway.framework.registry import Registry
+from raceway.storage.tables import Tables
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.many.work import Work
 
 if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
     from raceway.pipeline.simulate import OnProgress
 
 
@@ -39,15 +41,15 @@ class Item:
 
 
 def work_through(
-    function: Callable[[Any, Registry], dict[str, Any]],
+    function: Callable[[Any, Registry], Tables],
     items: Sequence[Item],
     store: RowStore,
-    executor: Any,
+    executor: Executor,
     registry: Registry,
     plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None,
-    lost: Callable[[Item, str], dict[str, Any]] | None = None,
-) -> tuple[list[dict[str, Any]], int]:
+    lost: Callable[[Item, str], Tables] | None = None,
+) -> tuple[list[Tables], int]:
     """Rows of all items, in their order, and how many of them were kept from before.
 
     Parameters
@@ -80,7 +82,7 @@ def work_through(
     return [found[place] for place in range(len(items))], reused
 
 
-def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], dict[str, Any]] | None) -> dict[str, Any]:
+def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
     if lost is None:
         raise RacewayError(
             f"{item.name}: {answer.reason}, perhaps for want of memory; what is finished is kept: run the command again, with "
@@ -89,7 +91,7 @@ def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], dict[str, Any]] 
     return lost(item, answer.reason)
 
 
-def answers(executor: Any, work: Any, batches: Iterable[tuple[int, list[Any]]]) -> Generator[tuple[int, Any], None, None]:
+def answers(executor: Executor, work: Work, batches: Iterable[Batch]) -> Generator[Answer, None, None]:
     """Number and answer of each batch as it is finished; nothing is left at work, whatever ends it.
 
     Raises
@@ -109,7 +111,7 @@ def answers(executor: Any, work: Any, batches: Iterable[tuple[int, list[Any]]]) 
             close()
 
 
-def local(registry: Registry, processes: int, **options: Any) -> Any:
+def local(registry: Registry, processes: int, **options: Any) -> Executor:
     """The executor of ``--processes``: so many at a time, with these options; 0: this process."""
     if processes == 0:
         return registry.find("executor", "serial").plugin()

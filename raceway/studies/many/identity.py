@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from importlib.metadata import version
-from typing import Any
 
 from raceway import __version__
 from raceway.framework.registry import Registry
 from raceway.scene.tables import Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.row_store import program_key
 
 
@@ -24,7 +24,7 @@ def plugins_of(scene: Scene) -> list[tuple[str, str]]:
     return found + ([("mesher", scene.mesh.name)] if scene.mesh is not None else [])
 
 
-def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> dict[str, Any]:
+def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> Tables:
     """Versions, hash of all sources, and those of the used (kind, name) that this process has, as plain values."""
     there = sorted(pair for pair in used if len(registry.entries.get(pair, [])) == 1)
     entries = [registry.find(*pair) for pair in there]
@@ -39,12 +39,12 @@ def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> dict[str, A
     }
 
 
-def used_by(wanted: Mapping[str, Any]) -> list[tuple[str, str]]:
+def used_by(wanted: ReadTables) -> list[tuple[str, str]]:
     """(kind, name) of the plug-ins of an identity."""
     return [(kind, name) for kind, _, name in (text.partition(":") for text in wanted["plugins"])]
 
 
-def differences(wanted: Mapping[str, Any], there: Mapping[str, Any]) -> list[str]:
+def differences(wanted: ReadTables, there: ReadTables) -> list[str]:
     """In words what is there instead of what is wanted; empty where nothing differs."""
     words = []
     for text, owner in wanted["plugins"].items():

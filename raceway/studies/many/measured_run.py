@@ -6,11 +6,11 @@ import resource
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
 
@@ -19,7 +19,7 @@ PATIENCE_S = 10.0
 _PROCESS = Path("/proc/self")
 
 
-def quantities(result: dict[str, Any]) -> dict[str, float]:
+def quantities(result: Tables) -> dict[str, float]:
     """What a study compares, as far as a result.json has it.
 
     Returns
@@ -43,9 +43,7 @@ def quantities(result: dict[str, Any]) -> dict[str, float]:
     }
 
 
-def measured_once(
-    scene: Scene, repeats: int, extra: Any, registry: Registry, store: RowStore
-) -> tuple[dict[str, Any], bool]:
+def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: RowStore) -> tuple[Tables, bool]:
     """``measured``, and whether it was kept from before; ``extra`` is a part of the row's key.
 
     In this process, with nothing beside it: times are what is asked for.
@@ -55,12 +53,12 @@ def measured_once(
     return row, reused == 1
 
 
-def _measured(given: tuple[Scene, int], registry: Registry) -> dict[str, Any]:
+def _measured(given: tuple[Scene, int], registry: Registry) -> Tables:
     scene, repeats = given
     return measured(scene, registry, repeats)
 
 
-def measured(scene: Scene, registry: Registry, repeats: int) -> dict[str, Any]:
+def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
     """Run a scene: status, quantities, its own error estimate, cost; a failure with its reason.
 
     Notes
@@ -122,7 +120,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> dict[str, Any]:
     }
 
 
-def _without_mesh(error: dict[str, Any]) -> float | None:
+def _without_mesh(error: Tables) -> float | None:
     """The run's own estimate, less its bodies': rows on one mesh are held against a reference on the same."""
     return None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0)
 

@@ -17,7 +17,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -75,7 +75,7 @@ class Page:
         """A list of points."""
         self._blocks.append("<ul>" + "".join(f"<li>{_inline(item)}</li>" for item in items) + "</ul>")
 
-    def table(self, columns: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "") -> None:
+    def table(self, columns: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> None:
         """A table in a box of its own that scrolls where the screen is narrow; the first cell of a row names it.
 
         Parameters
@@ -189,7 +189,7 @@ def _toned(cell: Cell) -> str:
     return f"{words} {_inline(cell.more)}" if cell.more else words
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     if value is None:
         return "–"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -5,21 +5,17 @@ Swapping a plug-in's kind leaves out the options that only the other kind knows.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import attrs
 
 from raceway.errors import PluginError, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.file import PLUGIN_TABLES, scene_from_dict, with_value
 from raceway.scene.tables import TABLES
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis, shown
 
 
-def tables_at(
-    tables: Mapping[str, Any], point: Mapping[str, Any], registry: Registry, notes: list[str] | None = None
-) -> dict[str, Any]:
+def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: list[str] | None = None) -> Tables:
     """The scene's tables at one point; what is left out with a change of kind is said in ``notes``, once each."""
     changed = dict(tables)
     # Kinds first: what another axis sets must not be taken for an option of the old kind.
@@ -36,7 +32,7 @@ def tables_at(
     return changed
 
 
-def _strange_options(tables: Mapping[str, Any], name: str, kind: Any, registry: Registry) -> list[str]:
+def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registry) -> list[str]:
     """Options in a table that its present kind knows and the new kind does not; typing mistakes are not among them."""
     table = tables.get(name)
     role, default = PLUGIN_TABLES[name]
@@ -51,7 +47,7 @@ def _strange_options(tables: Mapping[str, Any], name: str, kind: Any, registry: 
     return [option for option in table if option in old - new - core]
 
 
-def refuse_mistakes(tables: Mapping[str, Any], axes: tuple[Axis, ...], registry: Registry) -> str:
+def refuse_mistakes(tables: ReadTables, axes: tuple[Axis, ...], registry: Registry) -> str:
     """Check the first point whole, and each further value as far as it concerns an axis; the scene's title."""
     first = {axis.key: axis.values[0] for axis in axes}
     title = scene_from_dict(tables_at(tables, first, registry), registry).title

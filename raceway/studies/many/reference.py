@@ -9,6 +9,8 @@ from typing import Any
 
 import attrs
 
+from raceway.storage.tables import Tables
+
 #: Where the numbers of a case come from: what a document tells numbers of a source from.
 BASES = {
     "published": "published numbers",
@@ -35,8 +37,8 @@ class Case:
     kind: str
     basis: str
     title: str
-    inputs: dict[str, Any]
-    outputs: dict[str, Any]
+    inputs: Tables
+    outputs: Tables
     rel_tol: Any
     conventions: str
     source: str

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -19,6 +18,7 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.scene.tables import Scene
 from raceway.storage.cache_folder import source_key
+from raceway.storage.tables import ReadTables, Tables
 
 
 class RowStore:
@@ -26,7 +26,7 @@ class RowStore:
 
     def __init__(self, path: Path | None) -> None:
         self.path = path
-        self.rows: dict[str, dict[str, Any]] = {}
+        self.rows: dict[str, Tables] = {}
         #: Why rows are no longer written; the study goes on without.
         self.fault: RacewayError | None = None
         if path is not None and path.is_file():
@@ -46,10 +46,10 @@ class RowStore:
             except (ValueError, KeyError, TypeError):
                 continue  # cut off by a full disk, or not ours: that row is run again
 
-    def get(self, key: str) -> dict[str, Any] | None:
+    def get(self, key: str) -> Tables | None:
         return self.rows.get(key)
 
-    def put(self, key: str, row: dict[str, Any]) -> None:
+    def put(self, key: str, row: Tables) -> None:
         """Keep a row; a disk that takes no more is remembered in ``fault``, and what it took of the row is removed."""
         self.rows[key] = row
         if self.path is None or self.fault is not None:
@@ -73,7 +73,7 @@ class RowStore:
             )
 
 
-def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | None = None) -> str:
+def row_key(scene: Scene, registry: Registry, extra: object = None, program: str | None = None) -> str:
     """Hash of all that decides the numbers of one scene's run; its title does not.
 
     Parameters
@@ -84,7 +84,7 @@ def row_key(scene: Scene, registry: Registry, extra: Any = None, program: str | 
 
 
 def tables_key(
-    tables: Mapping[str, Any], registry: Registry, extra: Any = None, program: str | None = None, files: Iterable[str] = ()
+    tables: ReadTables, registry: Registry, extra: object = None, program: str | None = None, files: Iterable[str] = ()
 ) -> str:
     """The same of a scene's tables, and of the files that they name."""
     digest = hashlib.sha256()
@@ -103,7 +103,7 @@ def program_key(registry: Registry, used: Collection[tuple[str, str]] | None = N
     for entry in registry.all():
         if entry.distribution != "raceway" and (used is None or (entry.kind, entry.name) in used):
             digest.update(f"{entry.kind}:{entry.name}:{entry.version}".encode())
-            digest.update(_sources_of(entry.plugin).encode())
+            digest.update(_sources_of(entry.plugin.__module__).encode())
     return digest.hexdigest()
 
 
@@ -114,14 +114,14 @@ def _own_sources() -> str:
 
 
 @cache
-def _sources_of(plugin: type) -> str:
+def _sources_of(name: str) -> str:
     """Hash of a plug-in's module, or of its whole package."""
     import sys
 
-    module = sys.modules.get(plugin.__module__)
+    module = sys.modules.get(name)
     file = getattr(module, "__file__", None)
     if file is None:
-        return repr(plugin)
+        return name
     path = Path(file)
     return _hash(tuple(sorted(path.parent.rglob("*.py")))) if getattr(module, "__package__", "") else _hash((path,))
 

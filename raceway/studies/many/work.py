@@ -16,6 +16,7 @@ import attrs
 from raceway.errors import PluginError
 from raceway.framework.contracts import Refused
 from raceway.framework.registry import Registry
+from raceway.storage.tables import Tables
 from raceway.studies.many.identity import differences, identity, used_by
 
 #: One at a time in a process: kernels may be compiling, and a run's cost is the process's.
@@ -38,10 +39,10 @@ class Work:
 
     function: Callable[[Any, Registry], Any]
     plugins: tuple[str, ...] = ()
-    wanted: dict[str, Any] | None = None
+    wanted: Tables | None = None
     own: Registry | None = None
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         return Work, (self.function, self.plugins, self.wanted)
 
     def fault(self) -> str | None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
+import attrs
 import click
 
 from raceway.commands.frame import (
@@ -16,6 +17,7 @@ from raceway.commands.frame import (
     out_folder,
     plugin_files,
     processes_at_a_time,
+    record,
     registry_with,
     scene_if_any,
     set_keys,
@@ -24,6 +26,28 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from raceway.errors import Mistake
+    from raceway.framework.registry import Registry
+
+
+@attrs.frozen
+class MapOptions:
+    """What ``raceway study map`` is given."""
+
+    scene: Path | None
+    changes: tuple[str, ...]
+    vary: tuple[str, ...]
+    method: str
+    processes: int
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command("map", short_help="Hardening or softening of k(speed) over axial load, tilt and contact angle.")
@@ -42,10 +66,8 @@ from raceway.errors import ConvergenceError, SceneError
 @click.option("--pictures/--no-pictures", default=True, help="Write map.html and its pictures (default).")
 @plugin_files
 @common
-def study_map(
-    scene: Path | None, changes: tuple[str, ...], vary: tuple[str, ...], method: str, processes: int, out: Path | None,
-    pictures: bool, plugins: tuple[Path, ...], as_json: bool,
-) -> int:  # fmt: skip
+@record(MapOptions)
+def study_map(given: MapOptions) -> int:
     """Map where k(speed) hardens or softens, where balls lose contact, where the groove's edge is reached, where hardening
     saturates. Without SCENE: the article's B7206C under the rig's unbalance, half of it on this bearing.
 
@@ -59,13 +81,13 @@ def study_map(
     """
     from raceway.studies.map.design import design
 
-    registry = registry_with(plugins)
-    tables, mistakes = _start(scene, changes, registry)
+    registry = registry_with(given.plugins)
+    tables, mistakes = _start(given.scene, given.changes, registry)
     if mistakes:
         raise SceneError(mistakes)
-    planned = design(tables, vary, method, registry)
-    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-map")
-    pictures = pictures and has_matplotlib()
+    planned = design(tables, given.vary, given.method, registry)
+    folder = writable(given.out or RESULTS / f"{slug(str(tables['title']))}-map")
+    pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "map-rows.jsonl"
     with show_progress() as progress:
@@ -73,7 +95,7 @@ def study_map(
         from raceway.studies.map.study import study_map as study
 
         with keeping("points", kept):
-            found = study(planned, processes, kept, registry, plugins, progress)
+            found = study(planned, given.processes, kept, registry, given.plugins, progress)
         progress("writing", 0, 0)
         written: list[str] = []
         failed = attempt(lambda: write_data(found, folder), written)
@@ -83,11 +105,11 @@ def study_map(
     failed = failed or found.fault
     if failed is None and not any(row["status"] == "completed" for row in found.rows):
         failed = ConvergenceError(f"no point of the map gave a number; the first reason: {found.rows[0]['reason']}")
-    show(content, as_json, failed, lambda: _screen(content))
+    show(content, given.as_json, failed, lambda: _screen(content))
     return 0
 
 
-def _start(scene: Path | None, changes: tuple[str, ...], registry: Any) -> tuple[dict[str, Any], list[Any]]:
+def _start(scene: Path | None, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Mistake]]:
     """Tables of the scene, or of the map's own, with the changes."""
     if scene is not None:
         return changed_tables(scene, changes, registry)
@@ -95,7 +117,7 @@ def _start(scene: Path | None, changes: tuple[str, ...], registry: Any) -> tuple
         return changed_tables(path, changes, registry)
 
 
-def _screen(content: dict[str, Any]) -> Any:
+def _screen(content: Tables) -> RenderableType:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text

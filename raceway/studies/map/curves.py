@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
+from raceway.storage.tables import Tables
 from raceway.studies.map.design import ANGLE, AXIAL, SPEED, TILT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 #: Local exponents n = d ln k / d ln w closer to 0 than this count as level.
 LEVEL = 0.02
@@ -14,7 +18,7 @@ LEVEL = 0.02
 SATURATED = 0.75
 
 
-def curves(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+def curves(rows: Sequence[Tables]) -> list[Tables]:
     """A curve for each axial load, tilt and contact angle; adds ``change`` and ``exponent`` to its rows.
 
     Notes
@@ -22,13 +26,13 @@ def curves(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     ``change`` of a row: k(w) / k(w0) - 1, with w0 the curve's lowest speed; None where that point failed.
     ``exponent`` of a row: n between it and the next lower speed of the curve; None where either failed.
     """
-    groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
+    groups: dict[tuple[object, ...], list[Tables]] = {}
     for row in rows:
         groups.setdefault((row["point"][ANGLE], str(row["point"][TILT]), row["point"][AXIAL]), []).append(row)
     return [_curve(sorted(group, key=lambda row: row["point"][SPEED])) for group in groups.values()]
 
 
-def _curve(rows: list[dict[str, Any]]) -> dict[str, Any]:
+def _curve(rows: list[Tables]) -> Tables:
     first = rows[0].get("stiffness")
     for row, before in zip(rows, [None, *rows[:-1]], strict=True):
         row["change"] = _ratio(row.get("stiffness"), first)
@@ -78,7 +82,7 @@ def trend(exponents: Sequence[float]) -> str:
     return ", then ".join(words) if len(words) < 4 else f"{words[0]}, then changes its sign {len(words) - 1} times"
 
 
-def _from(rows: Sequence[dict[str, Any]], holds: Any) -> float | None:
+def _from(rows: Sequence[Tables], holds: Callable[[Tables], bool]) -> float | None:
     """The lowest speed at which something holds."""
     return next((row["point"][SPEED] for row in rows if holds(row)), None)
 
@@ -88,10 +92,10 @@ def _ratio(a: float | None, b: float | None) -> float | None:
     return a / b - 1.0 if a is not None and b is not None and a > 0.0 and b > 0.0 else None
 
 
-def words(found: Sequence[dict[str, Any]], rows: Sequence[dict[str, Any]]) -> list[str]:
+def words(found: Sequence[Tables], rows: Sequence[Tables]) -> list[str]:
     """What the map says, a sentence or two for each angle and tilt."""
     out = []
-    groups: dict[tuple[Any, str], list[dict[str, Any]]] = {}
+    groups: dict[tuple[object, str], list[Tables]] = {}
     for curve in found:
         groups.setdefault((curve["contact_angle_deg"], str(curve["tilt"])), []).append(curve)
     for (angle, tilt), members in groups.items():

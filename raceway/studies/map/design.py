@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from math import pi
-from typing import Any
 
 import attrs
 
@@ -13,12 +12,13 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis, is_number, parse_axes
 from raceway.studies.many.points import tables_at
 
 AXIAL, SPEED, TILT, ANGLE = "load.axial", "excitation.speed_rpm", "supports.tilt", "bearing.contact_angle_deg"
 #: The axes in the order of the rows, with their default values.
-AXES: dict[str, tuple[Any, ...]] = {
+AXES: dict[str, tuple[float | str, ...]] = {
     ANGLE: (15.0, 25.0, 40.0),
     TILT: ("locked", "free"),
     AXIAL: (50.0, 100.0, 200.0, 400.0, 700.0, 1000.0, 2000.0, 4000.0, 7000.0, 10000.0),
@@ -28,7 +28,7 @@ AXES: dict[str, tuple[Any, ...]] = {
     ),
 }  # fmt: skip
 #: How each method turns the ring: keys of the table [integrator].
-METHODS: dict[str, dict[str, Any]] = {
+METHODS: dict[str, Tables] = {
     # 72 samples: six a pitch of 12 balls; the 1x line is the mean over the pitches.
     "quasi_static": {"kind": "quasi_static", "turns": 1, "steps_per_turn": 72},
     "periodic": {"kind": "periodic", "turns": 1, "steps_per_turn": 360},
@@ -45,20 +45,20 @@ class Design:
     tables : the scene that all points share;  axes : key -> values, in the order of the rows;  method : of ``METHODS``
     """
 
-    tables: dict[str, Any]
-    axes: dict[str, tuple[Any, ...]]
+    tables: Tables
+    axes: dict[str, tuple[float | str, ...]]
     method: str
 
-    def points(self) -> list[dict[str, Any]]:
+    def points(self) -> list[Tables]:
         """Every point, speeds innermost."""
         return [dict(zip(self.axes, values, strict=True)) for values in itertools.product(*self.axes.values())]
 
-    def scene(self, point: Mapping[str, Any], registry: Registry) -> Scene:
+    def scene(self, point: ReadTables, registry: Registry) -> Scene:
         """The scene at a point."""
         return scene_from_dict(tables_at(self.tables, point, registry), registry)
 
 
-def design(tables: Mapping[str, Any], vary: Iterable[str], method: str, registry: Registry) -> Design:
+def design(tables: ReadTables, vary: Iterable[str], method: str, registry: Registry) -> Design:
     """A design whose scenes and axes have been looked at.
 
     Parameters

@@ -5,15 +5,21 @@ from __future__ import annotations
 import csv
 import io
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.reports.pictures import save_figure
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page
 from raceway.studies.map.design import AXES
 from raceway.studies.map.picture import at_angle, can_map, change_map, curves_figure, exponent_map
 from raceway.studies.map.study import Map
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
 
 _ROW = (
     "status", "reason", "stiffness", "change", "exponent", "error", "small_signal", "force", "lost", "unseats", "reach_inner",
@@ -38,9 +44,11 @@ def write_pictures(found: Map, folder: Path) -> list[Path]:
     return [*paths, _page(content).write(folder / "map.html")]
 
 
-def _drawn(content: dict[str, Any]) -> dict[str, tuple[Any, str]]:
+def _drawn(content: Tables) -> dict[str, tuple[Callable[[Tables], Figure], str]]:
     """File -> what draws it, and what is seen on it."""
-    curves = {"map-curves.png": (curves_figure, "k over speed for each axial load")}
+    curves: dict[str, tuple[Callable[[Tables], Figure], str]] = {
+        "map-curves.png": (curves_figure, "k over speed for each axial load")
+    }
     if not can_map(content):
         return curves
     return {
@@ -50,7 +58,7 @@ def _drawn(content: dict[str, Any]) -> dict[str, tuple[Any, str]]:
     }
 
 
-def _csv(content: dict[str, Any]) -> str:
+def _csv(content: Tables) -> str:
     """A line for each point; units stand in the head."""
     memory = io.StringIO()
     lines = csv.writer(memory, lineterminator="\n")
@@ -60,7 +68,7 @@ def _csv(content: dict[str, Any]) -> str:
     return memory.getvalue()
 
 
-def _page(content: dict[str, Any]) -> Page:
+def _page(content: Tables) -> Page:
     page = Page(
         f"Hardening or softening: {content['title']}",
         f"k(speed) over axial load, tilt and contact angle; {content['amplitude']}",
@@ -94,7 +102,7 @@ def _page(content: dict[str, Any]) -> Page:
     return page
 
 
-def _curve(curve: dict[str, Any]) -> list[Any]:
+def _curve(curve: Tables) -> list[str | None]:
     def percent(name: str) -> str | None:
         return None if curve[name] is None else f"{100.0 * curve[name]:+.3g}"
 

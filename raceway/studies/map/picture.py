@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.plugins.reports.pictures import new_figure
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from matplotlib.axes import Axes
+    from matplotlib.colorbar import Colorbar
     from matplotlib.figure import Figure
 
 AXIAL, SPEED, TILT, ANGLE = "load.axial", "excitation.speed_rpm", "supports.tilt", "bearing.contact_angle_deg"
@@ -18,24 +22,24 @@ _INK = "#20262c"
 _MOST = 8.0
 _RATIOS = (0.25, 0.5, 0.7, 0.9, 0.98, 1.02, 1.1, 1.5, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
 #: Lines on the maps: key of a curve, how it looks, what it says.
-_LINES: tuple[tuple[str, dict[str, Any], str], ...] = (
+_LINES: tuple[tuple[str, Tables, str], ...] = (
     ("contact_lost_from_rpm", {"color": _INK, "linestyle": "-"}, "balls lose contact from here on"),
     ("unseats_from_rpm", {"color": _INK, "linestyle": ":"}, "the bearing unseats from here on"),
     ("edge_from_rpm", {"color": "#7a1fa2", "linestyle": (0, (5, 2))}, "ellipse over the groove's edge from here on"),
 )
 
 
-def can_map(content: dict[str, Any]) -> bool:
+def can_map(content: Tables) -> bool:
     """Whether there is an area to colour."""
     return all(len(content["axes"][key]) > 1 for key in (AXIAL, SPEED))
 
 
-def at_angle(content: dict[str, Any], angle: float) -> dict[str, Any]:
+def at_angle(content: Tables, angle: float) -> Tables:
     """The same map with one contact angle, whose pictures are narrow enough for a telephone."""
     return {**content, "axes": {**content["axes"], ANGLE: [angle]}}
 
 
-def _panels(axes: dict[str, Any], **shared: Any) -> tuple[Figure, Any, bool]:
+def _panels(axes: Tables, **shared: Any) -> tuple[Figure, np.ndarray, bool]:
     """A figure with a panel for each tilt and contact angle, and whether it is narrow."""
     tilts, angles = len(axes[TILT]), len(axes[ANGLE])
     narrow = angles == 1
@@ -43,12 +47,12 @@ def _panels(axes: dict[str, Any], **shared: Any) -> tuple[Figure, Any, bool]:
     return figure, figure.subplots(tilts, angles, squeeze=False, sharex=True, **shared), narrow
 
 
-def _bar(figure: Figure, shown: Any, panels: Any, label: str, narrow: bool) -> Any:
+def _bar(figure: Figure, shown: Any, panels: np.ndarray, label: str, narrow: bool) -> Colorbar:
     place = {"location": "bottom", "shrink": 0.95, "aspect": 35} if narrow else {"shrink": 0.85}
     return figure.colorbar(shown, ax=panels, extend="both", label=label, **place)
 
 
-def change_map(content: dict[str, Any]) -> Figure:
+def change_map(content: Tables) -> Figure:
     """k(w) / k(w0), blue softer, red stiffer; a panel for each tilt and contact angle."""
     from matplotlib.colors import LogNorm
 
@@ -63,7 +67,7 @@ def change_map(content: dict[str, Any]) -> Figure:
     return figure
 
 
-def exponent_map(content: dict[str, Any]) -> Figure:
+def exponent_map(content: Tables) -> Figure:
     """The local exponent d ln k / d ln w, with the places of its largest value and of saturation."""
     from matplotlib.colors import Normalize
 
@@ -76,7 +80,9 @@ def exponent_map(content: dict[str, Any]) -> Figure:
     return figure
 
 
-def _maps(content: dict[str, Any], quantity: str, change: Any, look: dict[str, Any], levels: tuple[float, ...]) -> Any:
+def _maps(
+    content: Tables, quantity: str, change: Callable[[np.ndarray], np.ndarray], look: Tables, levels: tuple[float, ...]
+) -> Any:
     """The figure, what its colours belong to, its panels, and whether it is narrow."""
     axes = content["axes"]
     tilts, angles = axes[TILT], axes[ANGLE]
@@ -128,7 +134,7 @@ def _contours(panel: Axes, speed: np.ndarray, axial: np.ndarray, values: np.ndar
         panel.clabel(lines, fmt="%g", fontsize=8)
 
 
-def _boundaries(panel: Axes, curves: list[dict[str, Any]], quantity: str) -> None:
+def _boundaries(panel: Axes, curves: list[Tables], quantity: str) -> None:
     from matplotlib.patheffects import Normal, Stroke
 
     curves = sorted(curves, key=lambda curve: curve["axial"])
@@ -149,7 +155,7 @@ def _legend(figure: Figure, quantity: str, failed: bool, narrow: bool) -> None:
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], linewidth=1.8, label=words, **look) for _, look, words in _LINES]
-    mark: dict[str, Any] = {"color": "#0b6b3a", "markerfacecolor": "white", "linestyle": ""}
+    mark: Tables = {"color": "#0b6b3a", "markerfacecolor": "white", "linestyle": ""}
     if quantity == "exponent":
         handles.append(Line2D([], [], marker="^", label="largest exponent", **mark))
         handles.append(Line2D([], [], marker="s", label="saturated", **mark))
@@ -158,7 +164,7 @@ def _legend(figure: Figure, quantity: str, failed: bool, narrow: bool) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=1 if narrow else 3, frameon=False, fontsize=10)
 
 
-def curves_figure(content: dict[str, Any]) -> Figure:
+def curves_figure(content: Tables) -> Figure:
     """k over speed, a line for each axial load; dashed: small signals; open marks: contact is lost."""
     import matplotlib
 
@@ -189,12 +195,12 @@ def curves_figure(content: dict[str, Any]) -> Figure:
                 panel.set_xlabel("speed [1000 r/min]")
             if column == 0:
                 panel.set_ylabel("k [N/um]")
-    place: dict[str, Any] = {"loc": "outside lower center", "ncols": 4} if narrow else {"loc": "outside right center"}
+    place: Tables = {"loc": "outside lower center", "ncols": 4} if narrow else {"loc": "outside right center"}
     figure.legend(frameon=False, fontsize=10, title="axial load", **place)
     words = "small signals at rest: dashed; open marks: balls lose contact"
     figure.suptitle(words if narrow else f"k(w): lines; {words}", fontsize=10.5 if narrow else 13)
     return figure
 
 
-def _tilt(value: Any) -> str:
+def _tilt(value: object) -> str:
     return str(value) if isinstance(value, str) else f"{value:g} N m/rad"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from raceway.errors import RacewayError
@@ -12,9 +10,10 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.scene.inner_ring import shoulder_height
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
 
-def point_row(scene: Scene, registry: Registry) -> dict[str, Any]:
+def point_row(scene: Scene, registry: Registry) -> Tables:
     """Run a scene; its numbers, or why there are none.
 
     Returns

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import attrs
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.simulate import OnProgress
+from raceway.storage.tables import Tables
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.map.curves import LEVEL, SATURATED, curves, words
@@ -36,12 +36,12 @@ class Map:
 
     design: Design
     amplitude: str
-    rows: list[dict[str, Any]]
-    curves: list[dict[str, Any]]
+    rows: list[Tables]
+    curves: list[Tables]
     words: list[str]
     fault: RacewayError | None = None
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         tables = self.design.tables
         return {
@@ -113,7 +113,7 @@ def study_map(
     return Map(design, amplitude, rows, found, words(found, rows), store.fault)
 
 
-def row_at(given: tuple[Design, dict[str, Any]], registry: Registry) -> dict[str, Any]:
+def row_at(given: tuple[Design, Tables], registry: Registry) -> Tables:
     """The row of one point of a design."""
     design, point = given
     return point_row(design.scene(point, registry), registry)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -11,6 +11,9 @@ import numpy as np
 from raceway.errors import RacewayError
 from raceway.studies.measured.marks import Marks, marks_of
 from raceway.studies.measured.recording import Recording
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 #: Change of speed from one turn to the next, and over a record, that the 1x line is followed through.
 MOST_PER_TURN, MOST_RANGE = 0.01, 0.10
@@ -92,7 +95,7 @@ def _by_marks(recording: Recording) -> Turning:
     return Turning(part, angle, spline(part.time, 1), len(marks) - 1, True, _doubt(recording.time, seen, spline))
 
 
-def _doubt(time: np.ndarray, seen: Marks, spline: Any) -> float:
+def _doubt(time: np.ndarray, seen: Marks, spline: PPoly) -> float:
     """By which all marks together may be off, half-width at 95 % [rad].
 
     Notes
@@ -118,7 +121,7 @@ def _doubt(time: np.ndarray, seen: Marks, spline: Any) -> float:
     return float(np.sqrt(shared**2 + scatter**2 + (1.96 * speed * seen.level) ** 2))
 
 
-def _smooth_angle(marks: np.ndarray) -> Any:
+def _smooth_angle(marks: np.ndarray) -> PPoly:
     """The angle over time [rad]: cubic splines with a knot every few turns, through the scatter of marks between samples."""
     from scipy.interpolate import make_lsq_spline
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import attrs
 import click
 
 from raceway.commands.frame import (
@@ -13,6 +14,7 @@ from raceway.commands.frame import (
     common,
     out_option,
     plugin_files,
+    record,
     registry_with,
     set_keys,
     show,
@@ -20,6 +22,21 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, writable
 from raceway.errors import SceneError
+
+
+@attrs.frozen
+class IdentifyOptions:
+    """What ``raceway identify`` is given."""
+
+    signals: Path
+    scene: Path
+    slow_roll: Path | None
+    run_out: str | None
+    changes: tuple[str, ...]
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command(short_help="K and C of a bearing from measured signals.")
@@ -38,17 +55,8 @@ from raceway.errors import SceneError
 @click.option("--pictures", is_flag=True, help="Also draw signals, spectrum and orbits as PNG.")
 @plugin_files
 @common
-def identify(
-    signals: Path,
-    scene: Path,
-    slow_roll: Path | None,
-    run_out: str | None,
-    changes: tuple[str, ...],
-    out: Path | None,
-    pictures: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
+@record(IdentifyOptions)
+def identify(given: IdentifyOptions) -> int:
     """Identify a bearing's K and C, with their uncertainty, from the signals of a sensor beside it.
 
     SIGNALS is a CSV file whose first line names its columns: time_s, y_um, z_um and key (once-per-turn probe) or speed_rpm.
@@ -62,21 +70,21 @@ def identify(
     """
     from raceway.scene.file import rig_of
 
-    registry = registry_with(plugins)
-    loaded = load(scene, changes, registry)
-    own, vector = rig_of(loaded), _vector(run_out)
-    if vector is not None and slow_roll is not None:
-        raise SceneError.at("--run-out", run_out, "the slow roll tells it already: leave one of them out")
+    registry = registry_with(given.plugins)
+    loaded = load(given.scene, given.changes, registry)
+    own, vector = rig_of(loaded), _vector(given.run_out)
+    if vector is not None and given.slow_roll is not None:
+        raise SceneError.at("--run-out", given.run_out, "the slow roll tells it already: leave one of them out")
     changed = loaded.title.partition("\n")[1:]
-    folder = writable(out or RESULTS / f"{slug(''.join([signals.stem, *changed]))}-identified")
-    pictures = pictures and has_matplotlib()
+    folder = writable(given.out or RESULTS / f"{slug(''.join([given.signals.stem, *changed]))}-identified")
+    pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     with show_progress() as progress:
         from raceway.pipeline.result import write_json
         from raceway.studies.measured.from_files import from_files
 
-        found = from_files(signals, loaded, own, registry, slow_roll, vector, progress)
-    content, files = {"title": loaded.title, "file": str(signals), **found.as_dict()}, list[str]()
+        found = from_files(given.signals, loaded, own, registry, given.slow_roll, vector, progress)
+    content, files = {"title": loaded.title, "file": str(given.signals), **found.as_dict()}, list[str]()
     failed = attempt(lambda: [write_json(content, folder / "identify.json")], files)
     if pictures and failed is None:
         from raceway.studies.measured.figures import write_figures
@@ -84,7 +92,7 @@ def identify(
         failed = attempt(lambda: write_figures(found, folder), files)
     from raceway.studies.rig.screen import identify_screen
 
-    show(content, as_json, failed, lambda: identify_screen(content, files))
+    show(content, given.as_json, failed, lambda: identify_screen(content, files))
     return 0
 
 

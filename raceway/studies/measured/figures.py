@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from raceway.plugins.reports.pictures import new_figure, save_figure
 from raceway.studies.measured.identify import Found
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _Y, _Z, _GREY, _GREEN = "#0b5fa5", "#c8501e", "#8793a0", "#2a8f5b"
@@ -73,7 +74,7 @@ def orbits(found: Found) -> Figure:
     plane = record.plane - record.plane.mean()
     axes.plot(_MICRO * plane[shown].real, _MICRO * plane[shown].imag, color="#d3dae1", linewidth=0.5, label="as measured")
     circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
-    found_lines: list[tuple[str, complex, str, Any]] = [
+    found_lines: list[tuple[str, complex, str, str | tuple[int, tuple[int, ...]]]] = [
         ("1x line", found.order.line, _GREY, "--"),
         ("less the run-out", state.sensor, _Y, "-"),
         ("shaft's bow", state.sensor - state.deflection, _Z, ":"),
@@ -88,7 +89,7 @@ def orbits(found: Found) -> Figure:
     return figure
 
 
-def _label(axes: Any, x: str, y: str) -> None:
+def _label(axes: Axes, x: str, y: str) -> None:
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.grid(color="#d8dee4", linewidth=0.7)

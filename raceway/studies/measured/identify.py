@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cmath import exp
 from math import pi, radians
-from typing import Any
 
 import attrs
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
+from raceway.storage.tables import Tables
 from raceway.studies.measured.angle import Turning, turning
 from raceway.studies.measured.inversion import invert, scatter, sensitivities, values, with_tilt_of
 from raceway.studies.measured.orders import Order, order
@@ -54,34 +54,12 @@ class Found:
         """Half-widths at 95 %, all causes together (4,): K [N/m] and C [N s/m] with the rig's tilt, then with it locked."""
         return np.sqrt(sum(part**2 for part in self.parts.values()))
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Tables for JSON."""
-        state, found, marked = self.state, self.order, self.order.marked
-        z, rest = state.dynamic_stiffness, self.uncertainty
-        time, locked = self.turning.recording.time, state.locked
+        state = self.state
         return without_nan(
             {
-                "signals": {
-                    "samples": len(time),
-                    "duration_s": float(time[-1] - time[0]),
-                    "turns": found.turns,
-                    "speed_rpm": {name: value * 30.0 / pi for name, value in _speeds(found).items()},
-                    "angle_from": "marks of key" if marked else "integrated speed, no mark: the phase is not known",
-                },
-                "line": {
-                    "forward_m": abs(found.line),
-                    "angle_deg": float(np.degrees(np.angle(found.line))) if marked else None,
-                    "backward_m": found.backward,
-                    "error_m": found.error,
-                    "residual": found.residual,
-                    "fourier_m": abs(found.fourier),
-                },
-                "run_out": {
-                    "amplitude_m": abs(self.run_out.vector),
-                    "angle_deg": float(np.degrees(np.angle(self.run_out.vector))),
-                    "error_m": self.run_out.error,
-                    "how": self.run_out.how,
-                },
+                **self._signals(),
                 "bearing": {
                     "force_n": abs(state.force),
                     "moment_nm": abs(state.moment),
@@ -90,29 +68,12 @@ class Found:
                     "sensor_m": abs(state.sensor),
                     "runs": state.runs,
                 },
-                "identification": {
-                    "definition": "secant: force of the shaft on the inner ring over its deflection, 1x forward, tilt as in the rig",
-                    "speed_rpm": state.speed * 30.0 / pi,
-                    "dynamic_stiffness": {"real": z.real, "imag": z.imag if marked else None, "abs": abs(z)},
-                    "equivalent_stiffness": state.stiffness,
-                    "equivalent_stiffness_error": rest[0],
-                    "equivalent_damping": state.damping if marked else None,
-                    "equivalent_damping_error": rest[1] if marked else None,
-                    "mass_used_kg": state.mass,
-                    "scene_stiffness": self.scene,
-                    "tilt_locked": {
-                        "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
-                        "equivalent_stiffness": locked[0],
-                        "equivalent_stiffness_error": rest[2],
-                        "equivalent_damping": locked[1] if marked else None,
-                        "equivalent_damping_error": rest[3] if marked else None,
-                    },
-                },
+                "identification": self._identification(),
                 "uncertainty": {
                     "how": "half-widths at 95 %: scatter of the blocks of turns, slow roll, marks between samples, least squares against "
                     "whole-turn Fourier; what is taken as known of the rig is in `sensitivities`",
                     "parts": {
-                        name: {"stiffness": part[0], "damping": part[1] if marked else None}
+                        name: {"stiffness": part[0], "damping": part[1] if self.order.marked else None}
                         for name, part in self.parts.items()
                     },
                 },
@@ -120,6 +81,55 @@ class Found:
                 "warnings": self.warnings(),
             }
         )
+
+    def _signals(self) -> Tables:
+        """What the signals hold: ``signals``, their 1x ``line``, the ``run_out``."""
+        found, marked, time = self.order, self.order.marked, self.turning.recording.time
+        return {
+            "signals": {
+                "samples": len(time),
+                "duration_s": float(time[-1] - time[0]),
+                "turns": found.turns,
+                "speed_rpm": {name: value * 30.0 / pi for name, value in _speeds(found).items()},
+                "angle_from": "marks of key" if marked else "integrated speed, no mark: the phase is not known",
+            },
+            "line": {
+                "forward_m": abs(found.line),
+                "angle_deg": float(np.degrees(np.angle(found.line))) if marked else None,
+                "backward_m": found.backward,
+                "error_m": found.error,
+                "residual": found.residual,
+                "fourier_m": abs(found.fourier),
+            },
+            "run_out": {
+                "amplitude_m": abs(self.run_out.vector),
+                "angle_deg": float(np.degrees(np.angle(self.run_out.vector))),
+                "error_m": self.run_out.error,
+                "how": self.run_out.how,
+            },
+        }
+
+    def _identification(self) -> Tables:
+        state, rest, marked = self.state, self.uncertainty, self.order.marked
+        z, locked = state.dynamic_stiffness, state.locked
+        return {
+            "definition": "secant: force of the shaft on the inner ring over its deflection, 1x forward, tilt as in the rig",
+            "speed_rpm": state.speed * 30.0 / pi,
+            "dynamic_stiffness": {"real": z.real, "imag": z.imag if marked else None, "abs": abs(z)},
+            "equivalent_stiffness": state.stiffness,
+            "equivalent_stiffness_error": rest[0],
+            "equivalent_damping": state.damping if marked else None,
+            "equivalent_damping_error": rest[1] if marked else None,
+            "mass_used_kg": state.mass,
+            "scene_stiffness": self.scene,
+            "tilt_locked": {
+                "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
+                "equivalent_stiffness": locked[0],
+                "equivalent_stiffness_error": rest[2],
+                "equivalent_damping": locked[1] if marked else None,
+                "equivalent_damping_error": rest[3] if marked else None,
+            },
+        }
 
     def warnings(self) -> list[str]:
         """What a user should know."""

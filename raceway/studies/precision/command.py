@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import attrs
 import click
 
 from raceway.commands.frame import (
@@ -13,6 +14,7 @@ from raceway.commands.frame import (
     keeping,
     out_option,
     plugin_files,
+    record,
     registry_with,
     scene_file,
     set_keys,
@@ -22,6 +24,22 @@ from raceway.commands.frame import (
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
 from raceway.errors import SceneError
 from raceway.studies.stability.command import verdict
+
+
+@attrs.frozen
+class PrecisionOptions:
+    """What ``raceway precision`` is given."""
+
+    scene: Path
+    vary: tuple[str, ...]
+    reference: tuple[str, ...]
+    repeats: int
+    limit: float
+    changes: tuple[str, ...]
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command(short_help="Error against run time: which setting is good enough.")
@@ -38,18 +56,8 @@ from raceway.studies.stability.command import verdict
 @click.option("--pictures/--no-pictures", default=True, help="Draw error against run time as PNG (default).")
 @plugin_files
 @common
-def precision(
-    scene: Path,
-    vary: tuple[str, ...],
-    reference: tuple[str, ...],
-    repeats: int,
-    limit: float,
-    changes: tuple[str, ...],
-    out: Path | None,
-    pictures: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
+@record(PrecisionOptions)
+def precision(given: PrecisionOptions) -> int:
     """Run a scene with many settings and say what each costs and how far it is from a reference with a known bound.
 
     Writes precision.json, precision.md and precision.png. Finished rows are kept in DIR/precision-rows.jsonl and reused.
@@ -59,24 +67,24 @@ def precision(
       raceway precision examples/b7206.toml --vary integrator.kind=newmark,central_difference \\
           --vary integrator.steps_per_turn=45,90,180,360
     """
-    registry = registry_with(plugins)
-    tables, mistakes = changed_tables(scene, changes, registry)
+    registry = registry_with(given.plugins)
+    tables, mistakes = changed_tables(given.scene, given.changes, registry)
     if mistakes:
         raise SceneError(mistakes)
-    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-precision")
-    pictures = pictures and has_matplotlib()
+    folder = writable(given.out or RESULTS / f"{slug(str(tables['title']))}-precision")
+    pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "precision-rows.jsonl"
     with show_progress() as progress:
         from raceway.studies.precision.study import precision as study
 
         with keeping("rows", kept):
-            found = study(tables, vary, reference, repeats, limit, kept, registry, progress)
+            found = study(tables, given.vary, given.reference, given.repeats, given.limit, kept, registry, progress)
     content, files = found.as_dict(), list[str]()
     failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
     if failed is None:
-        failed = verdict(content, found.converged, bool(reference))
+        failed = verdict(content, found.converged, bool(given.reference))
     from raceway.studies.precision.screen import precision_screen
 
-    show(content, as_json, failed, lambda: precision_screen(content["title"], found.table(), content["words"], files))
+    show(content, given.as_json, failed, lambda: precision_screen(content["title"], found.table(), content["words"], files))
     return 0

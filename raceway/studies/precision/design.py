@@ -13,17 +13,18 @@ models            what changes the physics, one at a time: law, discretisation, 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from itertools import product
-from typing import Any
 
 import attrs
 
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.contracts import Integrator
 from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import parse_axes, points
 from raceway.studies.many.points import refuse_mistakes, tables_at
 
@@ -57,9 +58,9 @@ class Setting:
     """
 
     family: str
-    values: dict[str, Any]
-    model: dict[str, Any]
-    tables: dict[str, Any]
+    values: Tables
+    model: Tables
+    tables: Tables
     scene: Scene | None
     physics: str = ""
     predicted_s: float = 0.0
@@ -71,7 +72,7 @@ class Design:
     """Settings to run; what was left out with its reason; the physics that other models are held against."""
 
     settings: tuple[Setting, ...]
-    left_out: tuple[tuple[str, dict[str, Any], str], ...]
+    left_out: tuple[tuple[str, Tables, str], ...]
     base: str
     title: str
     notes: tuple[str, ...] = ()
@@ -82,7 +83,7 @@ def is_numerical(key: str) -> bool:
     return key.partition(".")[0] in NUMERICAL
 
 
-def make_design(tables: Mapping[str, Any], vary: Iterable[str], limit_s: float, registry: Registry) -> Design:
+def make_design(tables: ReadTables, vary: Iterable[str], limit_s: float, registry: Registry) -> Design:
     """The settings of a study.
 
     Parameters
@@ -120,7 +121,7 @@ def make_design(tables: Mapping[str, Any], vary: Iterable[str], limit_s: float, 
 
 
 def setting_at(
-    tables: Mapping[str, Any], family: str, values: dict[str, Any], registry: Registry, notes: list[str] | None = None
+    tables: ReadTables, family: str, values: Tables, registry: Registry, notes: list[str] | None = None
 ) -> Setting:
     """One setting, checked and planned."""
     changed = tables_at(tables, values, registry, notes)
@@ -140,7 +141,7 @@ def needs_motion(scene: Scene) -> bool:
     return scene.excitation is not None and "record" in scene.identifier.method.needs
 
 
-def _base(tables: Mapping[str, Any], settings: list[Setting], registry: Registry) -> str:
+def _base(tables: ReadTables, settings: list[Setting], registry: Registry) -> str:
     """The scene's own physics where it is among the settings, else the first's."""
     own = setting_at(tables, "", {}, registry).physics
     found = [setting.physics for setting in settings if setting.scene is not None]
@@ -153,17 +154,17 @@ def _physics(scene: Scene) -> str:
     return json.dumps([content, inertial], sort_keys=True, default=str)
 
 
-def default_points(scene: Scene, registry: Registry) -> list[tuple[str, dict[str, Any]]]:
+def default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]:
     """Family and values of every setting of the default design that has a meaning for the scene."""
-    found: list[tuple[str, dict[str, Any]]] = []
+    found: list[tuple[str, Tables]] = []
     if needs_motion(scene):
-        methods: dict[str, Any] = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
+        methods: Tables = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
         steady = [name for name, method in methods.items() if is_steady(method)]
         for name, steps in product((n for n, m in methods.items() if m.inertial and n not in steady), STEPS):
             found.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
         for name, tolerance in product(steady, TOLERANCES):
             known = {field.name for field in attrs.fields(methods[name])}
-            one: dict[str, Any] = {"integrator.kind": name}
+            one: Tables = {"integrator.kind": name}
             found.append(("steady orbit", {**one, "integrator.tolerance": tolerance} if "tolerance" in known else one))
         own = scene.integrator.method
         if own.inertial and not is_steady(type(own)):
@@ -188,10 +189,9 @@ def default_points(scene: Scene, registry: Registry) -> list[tuple[str, dict[str
     return found
 
 
-def is_steady(method: type) -> bool:
+def is_steady(method: type[Integrator]) -> bool:
     """Whether an integrator solves for the periodic motion itself."""
-    steady: bool = method.steady  # type: ignore[attr-defined]
-    return steady
+    return method.steady
 
 
 def short(text: str) -> str:

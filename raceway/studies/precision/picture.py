@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.framework.options import between, option
 from raceway.plugins.reports.pictures import new_figure, save_figure
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -32,7 +35,7 @@ class PrecisionReport:
     picture: bool = option(True, help="whether to draw precision.png")
     dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
 
-    def write(self, result: Any, folder: Any) -> list[Path]:
+    def write(self, result: Tables, folder: Path) -> list[Path]:
         """Write the files.
 
         Parameters
@@ -56,7 +59,7 @@ class PrecisionReport:
         return files
 
 
-def page(result: dict[str, Any], picture: bool = False) -> str:
+def page(result: Tables, picture: bool = False) -> str:
     """The study as Markdown."""
     lines = [f"# Error against run time: {result['title']}", ""]
     lines += ["![error against run time](precision.png)", ""] if picture else []
@@ -72,7 +75,7 @@ def page(result: dict[str, Any], picture: bool = False) -> str:
     return "\n".join(lines)
 
 
-def _table(result: dict[str, Any]) -> str:
+def _table(result: Tables) -> str:
     head = (
         "",
         "setting",
@@ -110,7 +113,7 @@ def _table(result: dict[str, Any]) -> str:
     return "\n".join([*lines, "", notes])
 
 
-def _quantities(result: dict[str, Any]) -> str:
+def _quantities(result: Tables) -> str:
     """Errors of all quantities, those of Z's parts relative to |Z|."""
     rows = [row for row in result["rows"] if row["errors"]]
     names = list(dict.fromkeys(name for row in rows for name in row["errors"]))
@@ -119,7 +122,7 @@ def _quantities(result: dict[str, Any]) -> str:
     return "\n".join([*lines, "", "z real and z imag: relative to the size of Z."])
 
 
-def _models(models: list[dict[str, Any]]) -> str:
+def _models(models: list[Tables]) -> str:
     lines = [_line(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")), _line(["---"] * 6)]
     for model in models:
         parts = model["differences"]
@@ -130,7 +133,7 @@ def _models(models: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
-def _line(cells: Any) -> str:
+def _line(cells: Sequence[object]) -> str:
     return "| " + " | ".join(str(cell).replace("|", "\\|") if cell != "\\*" else cell for cell in cells) + " |"
 
 
@@ -142,11 +145,11 @@ def _milli(value: float | None) -> float | None:
     return None if value is None else 1e3 * value
 
 
-def _words(setting: dict[str, Any]) -> str:
+def _words(setting: Tables) -> str:
     return ", ".join("without inertia" if key == "inertia" else f"{key} = {value}" for key, value in setting.items()) or "-"
 
 
-def draw(result: dict[str, Any]) -> Figure:
+def draw(result: Tables) -> Figure:
     """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front."""
     figure = new_figure(12.8, 8.6)
     panel = figure.add_subplot()
@@ -185,7 +188,7 @@ def draw(result: dict[str, Any]) -> Figure:
     return figure
 
 
-def _front(panel: Axes, result: dict[str, Any], least: float) -> None:
+def _front(panel: Axes, result: Tables, least: float) -> None:
     points = [_point(result["rows"][place], least) for place in result["front"]]
     if points:
         x, y = zip(*points, strict=True)
@@ -194,22 +197,22 @@ def _front(panel: Axes, result: dict[str, Any], least: float) -> None:
         panel.plot(x, y, linestyle="", marker="o", markersize=13, markerfacecolor="none", markeredgecolor="black")
 
 
-def _drawn(row: dict[str, Any]) -> bool:
+def _drawn(row: Tables) -> bool:
     return row["error"] is not None and row["time_s"] is not None
 
 
-def _of_base(row: dict[str, Any]) -> bool:
+def _of_base(row: Tables) -> bool:
     return bool(row["base"])
 
 
-def _point(row: dict[str, Any], least: float) -> tuple[float, float]:
+def _point(row: Tables, least: float) -> tuple[float, float]:
     return row["time_s"], max(row["error"], least)
 
 
 _RUNGS = ("integrator.steps_per_turn", "integrator.turns", "integrator.tolerance", "mesh.element_size")
 
 
-def _series(row: dict[str, Any]) -> str:
+def _series(row: Tables) -> str:
     """Rows of one line: the same but for the family's ladder."""
     ladder = _ladder(row)
     rest = {key: value for key, value in row["setting"].items() if key != ladder}
@@ -217,12 +220,12 @@ def _series(row: dict[str, Any]) -> str:
     return f"{row['family']}: {_words(short)}"
 
 
-def _ladder(row: dict[str, Any]) -> str | None:
+def _ladder(row: Tables) -> str | None:
     wanted = ("integrator.turns",) if row["family"] == "turns and start" else _RUNGS
     return next((key for key in wanted if key in row["setting"]), None)
 
 
-def _rung(row: dict[str, Any]) -> str:
+def _rung(row: Tables) -> str:
     ladder = _ladder(row)
     value = row["setting"].get(ladder) if ladder else None
     return "" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

@@ -12,15 +12,19 @@ In this order:
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.framework.registry import Registry
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.measured_run import measured_once
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.precision.design import Setting, is_steady, needs_motion, setting_at
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator, Mesher
 
 #: Steps of the reference over the finest steps of the rows, and its least steps and turns.
 FINER = 4
@@ -79,7 +83,7 @@ class Runner:
     limit_s: float
     on_run: Callable[[str], None]
 
-    def at(self, setting: Setting, values: Mapping[str, Any]) -> dict[str, Any] | None:
+    def at(self, setting: Setting, values: ReadTables) -> Tables | None:
         """The measured run of a setting with some values changed; None where it is refused, fails or takes too long."""
         tables = tables_at(setting.tables, values, self.registry)
         found = setting_at(tables, "reference", {}, self.registry)
@@ -90,7 +94,7 @@ class Runner:
         return row if row["status"] == "completed" else None
 
 
-def find_reference(group: list[Setting], runner: Runner, given: Mapping[str, Any] | None) -> Reference:
+def find_reference(group: list[Setting], runner: Runner, given: ReadTables | None) -> Reference:
     """The reference of settings that share their physics."""
     sizes = sorted({float(size) for s in group if (size := getattr(_mesh(s), "element_size", None)) is not None})
     first = next((s for s in group if getattr(_mesh(s), "element_size", None) == (sizes[0] if sizes else None)), group[0])
@@ -110,11 +114,11 @@ def find_reference(group: list[Setting], runner: Runner, given: Mapping[str, Any
     return Reference(finer.values, bounds, how)
 
 
-def _mesh(setting: Setting) -> Any:
+def _mesh(setting: Setting) -> Mesher | None:
     return None if setting.scene is None else setting.scene.mesh
 
 
-def _given(first: Setting, given: Mapping[str, Any], runner: Runner) -> Reference:
+def _given(first: Setting, given: ReadTables, runner: Runner) -> Reference:
     words = ", ".join(f"{key} = {value}" for key, value in given.items())
     row = runner.at(first, given)
     if row is None:
@@ -125,7 +129,7 @@ def _given(first: Setting, given: Mapping[str, Any], runner: Runner) -> Referenc
     return Reference(row["quantities"], _all(row["quantities"], bound), f"given: {words}; its error {note}")
 
 
-def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: Mapping[str, Any] | None = None) -> Reference:
+def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: ReadTables | None = None) -> Reference:
     scene, extra = first.scene, dict(extra or {})
     assert scene is not None
     if not needs_motion(scene):
@@ -171,7 +175,7 @@ def _all(values: Values, relative: float) -> Values:
     return {name: relative * (size if name in ("z_real", "z_imag") else abs(value)) for name, value in values.items()}
 
 
-def _equilibria(first: Setting, steps: int, runner: Runner, extra: dict[str, Any]) -> Reference:
+def _equilibria(first: Setting, steps: int, runner: Runner, extra: Tables) -> Reference:
     rows = [runner.at(first, {**extra, "integrator.steps_per_turn": n * steps}) for n in (2, FINER)]
     if rows[0] is None or rows[1] is None:
         return Reference({}, {}, "the series of equilibria at finer steps could not be run")
@@ -182,7 +186,7 @@ def _equilibria(first: Setting, steps: int, runner: Runner, extra: dict[str, Any
     return Reference(values, bounds, how)
 
 
-def _direct(first: Setting, extra: dict[str, Any], runner: Runner) -> Reference | None:
+def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
     """The steady orbit solved for directly, by whatever integrator is made for that."""
     registry = runner.registry
     for name in registry.names("integrator"):
@@ -198,7 +202,7 @@ def _direct(first: Setting, extra: dict[str, Any], runner: Runner) -> Reference 
     return None
 
 
-def _transients(first: Setting, finest: int, common: dict[str, Any], runner: Runner) -> Reference:
+def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> Reference:
     steps = max(FINER * finest, _LEAST_STEPS)
     found: list[tuple[str, Values, Values, float]] = []
     while not found and steps > finest:
@@ -228,14 +232,14 @@ def _transients(first: Setting, finest: int, common: dict[str, Any], runner: Run
 
 
 def _extrapolated(
-    first: Setting, name: str, steps: int, common: dict[str, Any], runner: Runner
+    first: Setting, name: str, steps: int, common: Tables, runner: Runner
 ) -> tuple[str, Values, Values, float] | None:
     """Method, values at step zero, the change to them, and what is left of the transient [relative]."""
     at = {**common, "integrator.kind": name}
     coarse, fine = (runner.at(first, {**at, "integrator.steps_per_turn": n}) for n in (steps // 2, steps))
     if coarse is None or fine is None:
         return None
-    method: Any = runner.registry.find("integrator", name).plugin
+    method: type[Integrator] = runner.registry.find("integrator", name).plugin
     gain = 1.0 / (2.0**method.order - 1.0)
     change = {key: gain * part for key, part in minus(fine["quantities"], coarse["quantities"]).items()}
     values = {key: fine["quantities"][key] + part for key, part in change.items()}

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
 from raceway.studies.precision.reference import Reference, distance, main_size, minus
 
@@ -20,7 +20,7 @@ EXACT = 10.0
 _ORDER_MARGIN = 5.0
 #: Axes along which errors have an order: the exponent of 1 / value (True) or of the value itself.
 LADDERS = {"integrator.steps_per_turn": True, "mesh.element_size": False}
-Row = dict[str, Any]
+Row = Tables
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -39,7 +39,7 @@ class Precision:
     rows: tuple[Row, ...]
     references: dict[str, Reference]
     base: str
-    left_out: tuple[tuple[str, dict[str, Any], str], ...]
+    left_out: tuple[tuple[str, Tables, str], ...]
     notes: tuple[str, ...] = ()
     fault: RacewayError | None = None
 
@@ -117,7 +117,7 @@ class Precision:
         return any(self.bounded(row) <= THRESHOLDS[0] for row in known) if known else bool(found)
 
     @property
-    def models(self) -> list[dict[str, Any]]:
+    def models(self) -> list[Tables]:
         """Each model: what sets it apart, its reference, its difference from the base, its own front."""
         base = self.references[self.base]
         found = []
@@ -163,7 +163,7 @@ class Precision:
                 lines.append(f"model error: {words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
         return [*lines, *self.notes]
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         keep = (
             "family",
             "setting",
@@ -212,7 +212,7 @@ class Precision:
         return PrecisionReport(picture=pictures).write(self.as_dict(), folder)
 
 
-def _reference_table(reference: Reference) -> dict[str, Any]:
+def _reference_table(reference: Reference) -> Tables:
     known = bool(reference.values)
     return {
         "value": reference.size if known else None,
@@ -240,10 +240,10 @@ def _ladders(rows: list[Row], key: str) -> list[list[int]]:
     return [places for places in found.values() if len(places) > 1]
 
 
-def words_of(setting: dict[str, Any]) -> str:
+def words_of(setting: Tables) -> str:
     """A setting for people: the keys' last parts, or what kind of table it is."""
 
-    def word(key: str, value: Any) -> str:
+    def word(key: str, value: object) -> str:
         table, _, last = key.rpartition(".")
         if key == "inertia":
             return "without inertia"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -12,11 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.commands.screen.text import written
+from raceway.storage.tables import ReadTables
 
 
-def precision_screen(
-    title: str, rows: Sequence[Mapping[str, Any]], words: Sequence[str], files: Sequence[str]
-) -> RenderableType:
+def precision_screen(title: str, rows: Sequence[ReadTables], words: Sequence[str], files: Sequence[str]) -> RenderableType:
     """A line for each setting, and what they come to in words."""
     table = Table(header_style="bold", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     # A column of blanks would cost the settings their room.

@@ -7,13 +7,14 @@ finished, ``result`` judges.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.file import parse_change
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.measured_run import measured_once
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.precision.design import Setting, make_design, needs_motion, setting_at
@@ -29,7 +30,7 @@ LIMIT_S = 30.0
 
 
 def precision(
-    tables: Mapping[str, Any],
+    tables: ReadTables,
     vary: Iterable[str] = (),
     reference: Iterable[str] = (),
     repeats: int = REPEATS,
@@ -85,7 +86,7 @@ def precision(
     return Precision(design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault)
 
 
-def _given(settings: tuple[Setting, ...], changes: Iterable[str], registry: Registry) -> dict[str, Any]:
+def _given(settings: tuple[Setting, ...], changes: Iterable[str], registry: Registry) -> Tables:
     """The reference that the user names, checked with the first setting that can run."""
     given = dict(parse_change(text) for text in changes)
     first = next((setting for setting in settings if setting.scene is not None), None)
@@ -96,7 +97,7 @@ def _given(settings: tuple[Setting, ...], changes: Iterable[str], registry: Regi
     return given
 
 
-def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) -> dict[str, Any]:
+def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) -> Tables:
     """One row: measured now, or taken from what an earlier study has kept."""
     head = {
         "family": setting.family,
@@ -107,7 +108,7 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) ->
         "reused": False,
     }
     if setting.scene is None:
-        lost: dict[str, Any] = {
+        lost: Tables = {
             "status": "refused",
             "reason": setting.reason,
             "quantities": {},

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.plugins.reports.pictures import new_figure
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from raceway.studies.rig.study import RigStudy
@@ -52,7 +53,7 @@ def causes(study: RigStudy) -> Figure:
     """Error of K by one cause at a time: a dot for each speed and load, on a logarithmic scale."""
     names = list(dict.fromkeys((cause.kind, cause.what) for point in study.points for cause in point.causes))
     figure = new_figure(9.2, 0.34 * len(names) + 1.1)
-    axes: Any = figure.subplots()
+    axes: Axes = figure.subplots()
     for row, (kind, what) in enumerate(reversed(names)):
         errors = [100.0 * abs(c.error) for p in study.points for c in p.causes if (c.kind, c.what) == (kind, what)]
         sizes = np.maximum(errors, _LEAST_PERCENT)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway import __version__
 from raceway.plugins.reports.pictures import save_figure
+from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page
 from raceway.studies.measured.figures import orbits, signals, spectrum
 from raceway.studies.rig.figures import causes, procedures
@@ -37,6 +38,15 @@ def write_page(study: RigStudy, folder: Path) -> list[Path]:
     return [page(study, drawn).write(folder / "rig.html"), *files]
 
 
+_ASSUMED = [
+    "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are left out.",
+    "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
+    "The bearing is the scene's, nonlinear: force and moment of the shaft act on it in a run of its own, until shaft and "
+    "bearing move alike. Motion at other orders than 1x is left out of the signals.",
+    "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
+]
+
+
 def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     """Words, tables and figures."""
     content = study.as_dict()
@@ -65,6 +75,14 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         "force is amplified, too, because the bow moves the disc outwards.",
     )
     out.table(*_printed(rows), caption="K over the true K, by the correction for the shaft")
+    _signals(out, study, drawn)
+    out.section("What is assumed")
+    out.listing(_ASSUMED)
+    return out
+
+
+def _signals(out: Page, study: RigStudy, drawn: dict[str, Figure]) -> None:
+    """Signals, spectrum and orbits; the error by its causes."""
     out.section("Signals")
     out.figures(
         [
@@ -87,18 +105,7 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         [(drawn["error-split"], "dots of error for each cause on a logarithmic scale", "Error of K by its causes")],
         wide=True,
     )
-    out.table(*_split(rows), caption="Error of K [%] by one cause at a time")
-    out.section("What is assumed")
-    out.listing(
-        [
-            "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are left out.",
-            "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
-            "The bearing is the scene's, nonlinear: force and moment of the shaft act on it in a run of its own, until shaft and "
-            "bearing move alike. Motion at other orders than 1x is left out of the signals.",
-            "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
-        ]
-    )
-    return out
+    out.table(*_split(study.as_dict()["rows"]), caption="Error of K [%] by one cause at a time")
 
 
 def _rig_words(study: RigStudy) -> str:
@@ -110,11 +117,11 @@ def _rig_words(study: RigStudy) -> str:
     )
 
 
-def _name(row: dict[str, Any]) -> str:
+def _name(row: Tables) -> str:
     return f"{row['speed_rpm']:.0f} r/min, {row['axial_n']:.0f} N"
 
 
-def _truth(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+def _truth(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
     columns = ["point", "force [N]", "over m e w²/2", "bearing [µm]", "sensor [µm]", "true K [N/µm]", "identified", "uncertainty", "off [%]"]  # fmt: skip
     lines = []
     for row in rows:
@@ -126,7 +133,7 @@ def _truth(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
     return columns, lines
 
 
-def _printed(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+def _printed(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
     names = [one["correction"] for one in rows[0]["printed"]]
     lines = [
         [name, *(f"{one['over_true']:.3f}" for row in rows for one in row["printed"] if one["correction"] == name)]
@@ -135,7 +142,7 @@ def _printed(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
     return ["correction", *(_name(row) for row in rows)], lines
 
 
-def _split(rows: list[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+def _split(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
     lines = []
     for place, cause in enumerate(rows[0]["split"]):
         errors = [f"{100 * row['split'][place]['error']:.3g}" for row in rows]

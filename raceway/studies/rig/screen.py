@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from raceway.commands.screen import number, rows_table, sections, written
+from raceway.storage.tables import ReadTables
 
 #: Corrections of the article's kind that the screen shows; all of them are in rig.json.
 _SHOWN = {"as printed": "printed", "simply supported beam, amplified bow and force": "derived"}
 
 
-def rig_screen(study: Mapping[str, Any], files: Sequence[str]) -> RenderableType:
+def rig_screen(study: ReadTables, files: Sequence[str]) -> RenderableType:
     """A line for each speed and load: the true bearing, the article's procedure, the beam inverted."""
     rows = [_point(row) for row in study["rows"]]
     worst = study["worst"]
@@ -38,7 +38,7 @@ def rig_screen(study: Mapping[str, Any], files: Sequence[str]) -> RenderableType
     return Group(*parts, *written(files))
 
 
-def _point(row: Mapping[str, Any]) -> dict[str, str]:
+def _point(row: ReadTables) -> dict[str, str]:
     true, found = row["true"], row["identified"]
     ratios = {one["correction"]: one["over_true"] for one in row["printed"]}
     return {
@@ -53,11 +53,11 @@ def _point(row: Mapping[str, Any]) -> dict[str, str]:
     }
 
 
-def _causes(causes: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
+def _causes(causes: Sequence[ReadTables]) -> list[dict[str, str]]:
     return [{"cause": one["kind"], "what": one["what"], "error %": f"{100 * one['error']:+.3g}"} for one in causes]
 
 
-def identify_screen(found: Mapping[str, Any], files: Sequence[str]) -> RenderableType:
+def identify_screen(found: ReadTables, files: Sequence[str]) -> RenderableType:
     """Signals, line, bearing, K and C."""
     signals, line, run_out, bearing = found["signals"], found["line"], found["run_out"], found["bearing"]
     known, speed = found["identification"], signals["speed_rpm"]

@@ -6,7 +6,6 @@ from cmath import exp
 from collections.abc import Callable
 from math import pi, radians
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -15,6 +14,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.measured.angle import turning
@@ -56,7 +56,7 @@ class Point:
     def name(self) -> str:
         return f"{self.state.speed * 30.0 / pi:.0f}rpm-{self.axial:.0f}N"
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         state, true = self.state, self.state.stiffness
         return {
             "speed_rpm": state.speed * 30.0 / pi,
@@ -86,7 +86,7 @@ class Point:
             "split": [attrs.asdict(cause) for cause in self.causes],
         }
 
-    def _identified(self) -> dict[str, Any]:
+    def _identified(self) -> Tables:
         found, true = self.found.as_dict(), self.state.stiffness
         uncertain = found["identification"]["equivalent_stiffness_error"] / true
         return {**found, "error": self.found.state.stiffness / true - 1.0, "relative_uncertainty": uncertain}
@@ -102,10 +102,10 @@ class RigStudy:
     rig: Rig
     critical: dict[str, float]
     points: list[Point]
-    failed: list[dict[str, Any]]
+    failed: list[Tables]
     fault: RacewayError | None = None
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """Everything but the signals, as plain tables for JSON."""
         return without_nan(
             {
@@ -121,7 +121,7 @@ class RigStudy:
         )
 
     @property
-    def worst_by_cause(self) -> list[dict[str, Any]]:
+    def worst_by_cause(self) -> list[Tables]:
         """Of each cause alone the error of K that is largest over all points, with its sign."""
         worst: dict[tuple[str, str], float] = {}
         for cause in (cause for point in self.points for cause in point.causes):
@@ -178,7 +178,7 @@ def study(
     def point(place: int, held: Bearing) -> Point:
         return _point(rig, held, grid[place][1] * pi / 30.0, rig.signals.seed + 2 * place)
 
-    def row_at(place: int, _registry: Registry) -> dict[str, Any]:
+    def row_at(place: int, _registry: Registry) -> Tables:
         """What the bearing answered: nearly all of the time; signals, and what is read from them, follow again from that."""
         held = under[grid[place][0]].anew()
         try:

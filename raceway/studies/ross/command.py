@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
+import attrs
 import click
 
 from raceway.commands.console import warn
-from raceway.commands.frame import PATH, attempt, common, show
+from raceway.commands.frame import PATH, attempt, common, record, show
 from raceway.commands.inputs import slug, writable
+from raceway.storage.tables import Tables
 from raceway.studies.sweep.store_command import at_option, head, selection_of, store_argument, told
+
+
+@attrs.frozen
+class ExportOptions:
+    """What ``raceway export`` is given."""
+
+    store: Path
+    ross: Path
+    at: tuple[str, ...]
+    source: str | None
+    damping: float
+    ross_version: str | None
+    node: int
+    as_json: bool
 
 
 @click.command(short_help="Write a sweep's coefficients for a rotor program.")
@@ -33,16 +48,8 @@ from raceway.studies.sweep.store_command import at_option, head, selection_of, s
     "--node", type=click.IntRange(min=0), default=0, show_default=True, help="Of the rotor, where the bearing stands."
 )
 @common
-def export(
-    store: Path,
-    ross: Path,
-    at: tuple[str, ...],
-    source: str | None,
-    damping: float,
-    ross_version: str | None,
-    node: int,
-    as_json: bool,
-) -> int:
+@record(ExportOptions)
+def export(given: ExportOptions) -> int:
     """Write kyy, kyz, kzy, kzz, cyy, ... over speed, and over speed and frequency, for ROSS.
 
     ROSS's axes X, Y, Z are y, z, x here. The sweep has at least 5 values of excitation.speed_rpm; over
@@ -56,19 +63,19 @@ def export(
     from raceway.studies.ross.coefficients import coefficients
     from raceway.studies.ross.file import check_name, installed_generation, ross_file
 
-    check_name(ross)
-    writable(ross.parent)
-    selection = selection_of(store, at)
+    check_name(given.ross)
+    writable(given.ross.parent)
+    selection = selection_of(given.store, given.at)
     found = installed_generation()
-    generation = int(ross_version) if ross_version else found or 3
-    if ross_version is None and found is None:
+    generation = int(given.ross_version) if given.ross_version else found or 3
+    if given.ross_version is None and found is None:
         warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
-    table = coefficients(selection, source, damping)
-    file = ross_file(table, generation, slug(selection.title), node, head(selection))
+    table = coefficients(selection, given.source, given.damping)
+    file = ross_file(table, generation, slug(selection.title), given.node, head(selection))
     files: list[str] = []
-    failed = attempt(lambda: [file.write(ross)], files)
-    content: dict[str, Any] = {
-        "store": str(store),
+    failed = attempt(lambda: [file.write(given.ross)], files)
+    content: Tables = {
+        "store": str(given.store),
         "ross": generation,
         "source": table.source,
         "definition": table.definition,
@@ -80,11 +87,11 @@ def export(
     }
     from raceway.commands.screen.text import rows_table
 
-    show(content, as_json, failed, lambda: told(export_words(content), rows_table(export_rows(content))))
+    show(content, given.as_json, failed, lambda: told(export_words(content), rows_table(export_rows(content))))
     return 0
 
 
-def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
+def export_rows(content: Tables) -> list[Tables]:
     """One row a point of a table over one axis; the ends of a table over two."""
     import numpy as np
 
@@ -98,9 +105,7 @@ def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
     for place in np.ndindex(shape):
         if len(shape) == 2 and any(0 < k < size - 1 for k, size in zip(place, shape, strict=True)):
             continue
-        row: dict[str, Any] = {
-            f"{name} (rad/s)": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)
-        }
+        row: Tables = {f"{name} (rad/s)": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
         for name in shown:
             scale, unit = (1e-6, "N/µm") if name[0] == "k" else (1.0, "N s/m")
             row[f"{name} ({unit})"] = float(columns[name][place]) * scale
@@ -108,6 +113,6 @@ def export_rows(content: dict[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
-def export_words(content: dict[str, Any]) -> list[str]:
+def export_words(content: Tables) -> list[str]:
     """Definition, assumptions, losses, file."""
     return [f"for ROSS {content['ross']}", *content["notes"], *(f"written: {name}" for name in content["files"])]

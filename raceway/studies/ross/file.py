@@ -17,13 +17,13 @@ import json
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 from raceway.studies.ross.coefficients import SPEED, SPIN, Coefficients
 
 DISTRIBUTION = "ross-rotordynamics"
@@ -53,7 +53,7 @@ class RossFile:
 
     tag: str
     generation: int
-    content: dict[str, Any]
+    content: Tables
     notes: tuple[str, ...]
 
     def write(self, path: Path) -> Path:
@@ -120,7 +120,7 @@ def ross_file(table: Coefficients, generation: int, tag: str, node: int, head: t
     """
     axes = _axes(table, generation)
     columns = table.columns()
-    content: dict[str, Any] = {"n": node, "tag": tag}
+    content: Tables = {"n": node, "tag": tag}
     content |= {ross: columns[ours].tolist() for ours, ross in NAMES.items()}
     content |= {name: values.tolist() for name, values in axes.items()}
     notes = (

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 def smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -57,7 +60,7 @@ class _Points:
         self.inside = PchipInterpolator(axis, values)
         self.slopes = tuple(float(self.inside(end, 1)) for end in self.ends)
 
-    def __call__(self, frequency: Any) -> np.ndarray:
+    def __call__(self, frequency: ArrayLike) -> np.ndarray:
         x = np.asarray(frequency, dtype=float)
         clipped = np.clip(x, *self.ends)
         slope = np.where(x < self.ends[0], *self.slopes)

@@ -6,13 +6,18 @@ and notes for the table's reader.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
 from raceway.studies.many.axes import is_number
 from raceway.studies.sweep.selection import Selection, listed
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from xarray import Dataset
 
 DIRECTION = "excitation.direction_deg"
 #: Backward over forward amplitude, or cross over direct receptance, above which one number does not stand for the bearing.
@@ -125,14 +130,14 @@ def _symmetric(first: np.ndarray, cross: np.ndarray, last: np.ndarray) -> np.nda
     return np.stack([np.stack([first, cross], -1), np.stack([cross, last], -1)], -2)
 
 
-def _errors(data: Any) -> np.ndarray:
+def _errors(data: Dataset) -> np.ndarray:
     """Relative errors of Z; 0 where none was estimated."""
     if "error_total" not in data:
         return np.zeros(data["z_real"].shape)
     return np.asarray(np.nan_to_num(data["error_total"].values), dtype=float)
 
 
-def _across(data: Any, given: list[Any], h: dict[Any, np.ndarray]) -> dict[int, np.ndarray]:
+def _across(data: Dataset, given: list[float], h: dict[Hashable, np.ndarray]) -> dict[int, np.ndarray]:
     """Motion across a force along y (0) and z (90) over the motion along it."""
     found = {}
     for angle in (0, 90):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -10,6 +10,8 @@ from raceway.plugins.excitations.bidirectional import Bidirectional
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from raceway.core.jit import Kernel
 
 
 @attrs.frozen(kw_only=True)
@@ -25,7 +27,7 @@ class ShaftLoad(Bidirectional):
         force, moment = complex(self.turning_force), complex(self.turning_moment)
         return np.array([self.whirl_speed, force.real, force.imag, moment.real, moment.imag])
 
-    def kernel(self) -> Any:
+    def kernel(self) -> Kernel:
         from raceway.studies.shaft.shaft_load_kernel import shaft_load
 
         return shaft_load

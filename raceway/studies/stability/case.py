@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.storage.tables import Tables
 
 AS_EXPECTED, FAILED = "as expected", "failed"
 _LONGEST = 200
@@ -28,7 +28,7 @@ class Case:
 
     name: str
     measure: str
-    arguments: dict[str, Any] = attrs.field(factory=dict)
+    arguments: Tables = attrs.field(factory=dict)
     weight: float = 1.0
 
 
@@ -47,7 +47,7 @@ class Row:
     """
 
     case: str
-    setting: dict[str, Any]
+    setting: Tables
     quantity: str
     expected: str
     predicted: float | None
@@ -107,7 +107,7 @@ Measured = tuple[float, float | None]
 
 def judged(
     case: str,
-    setting: dict[str, Any],
+    setting: Tables,
     quantity: str,
     expectation: Expectation,
     predicted: float | None,
@@ -128,7 +128,7 @@ def judged(
 
 def unexpected(
     case: str,
-    setting: dict[str, Any],
+    setting: Tables,
     quantity: str,
     expectation: Expectation,
     why: RacewayError,
@@ -139,7 +139,7 @@ def unexpected(
     return Row(*head, None, None, FAILED, expectation.reason, f"refused, unexpectedly: {short(why)}")
 
 
-def refused(case: str, setting: dict[str, Any], words: str, reason: str, measure: Callable[[], Any]) -> Row:
+def refused(case: str, setting: Tables, words: str, reason: str, measure: Callable[[], object]) -> Row:
     """A row of what must be refused, with a message that holds ``words``."""
     head = (case, setting, "message", f"refused: '{words}'", None, None, None)
     try:
@@ -161,5 +161,5 @@ def short(error: BaseException) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
-def _plain(arguments: dict[str, Any]) -> dict[str, Any]:
+def _plain(arguments: Tables) -> Tables:
     return {key: value for key, value in arguments.items() if isinstance(value, str | int | float)}

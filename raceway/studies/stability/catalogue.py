@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry
+from raceway.storage.tables import ReadTables
 from raceway.studies.stability.case import Case
 from raceway.studies.stability.elastic import elastic_cases
 from raceway.studies.stability.extremes import CONDENSED, PENALTIES, REFUSALS, SCENES, WARNINGS, Changes, force
@@ -14,7 +14,7 @@ from raceway.studies.stability.surface import surface_cases
 from raceway.studies.stability.systems import BASE, pair_laws, transient
 
 
-def catalogue(registry: Registry, tables: Mapping[str, Any] | None = None) -> tuple[Case, ...]:
+def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Case, ...]:
     """All cases; of a scene those that any scene can be put through.
 
     Parameters

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import attrs
 import click
 
 from raceway.commands.frame import (
@@ -14,6 +15,7 @@ from raceway.commands.frame import (
     out_option,
     plugin_files,
     processes_at_a_time,
+    record,
     registry_with,
     scene_if_any,
     set_keys,
@@ -22,6 +24,20 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import changed_tables, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
+
+
+@attrs.frozen
+class StabilityOptions:
+    """What ``raceway stability`` is given."""
+
+    scene: Path | None
+    only: str | None
+    processes: int
+    every: bool
+    changes: tuple[str, ...]
+    out: Path | None
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command(short_help="Stiff and extreme cases: what must hold, holds.")
@@ -33,16 +49,8 @@ from raceway.errors import ConvergenceError, SceneError
 @out_option(f"{RESULTS}/stability")
 @plugin_files
 @common
-def stability(
-    scene: Path | None,
-    only: str | None,
-    processes: int,
-    every: bool,
-    changes: tuple[str, ...],
-    out: Path | None,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
+@record(StabilityOptions)
+def stability(given: StabilityOptions) -> int:
     """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
 
     With SCENE, that scene is put through the cases that suit any scene. Writes stability.json and stability.md. Finished
@@ -52,31 +60,31 @@ def stability(
     Example:
       raceway stability --only chatter --all
     """
-    registry = registry_with(plugins)
+    registry = registry_with(given.plugins)
     tables = None
-    if scene is not None:
+    if given.scene is not None:
         from raceway.scene.file import scene_from_dict
 
-        tables, mistakes = changed_tables(scene, changes, registry)
+        tables, mistakes = changed_tables(given.scene, given.changes, registry)
         if mistakes:
             raise SceneError(mistakes)
         scene_from_dict(tables, registry)
-    elif changes:
-        raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
+    elif given.changes:
+        raise SceneError.at("--set", given.changes[0], "changes a scene, and none is given: name one, or leave it out")
     name = "stability" if tables is None else f"{slug(str(tables['title']))}-stability"
-    folder = writable(out or RESULTS / name)
+    folder = writable(given.out or RESULTS / name)
     tell_faults(registry)
     kept = folder / "stability-rows.jsonl"
     with show_progress() as progress:
         from raceway.studies.stability.study import stability as study
 
         with keeping("cases", kept):
-            found = study(tables, only, processes, kept, registry, plugins, progress)
+            found = study(tables, given.only, given.processes, kept, registry, given.plugins, progress)
     content, files = found.as_dict(), list[str]()
     failed = attempt(lambda: found.write(folder), files) or found.fault
     from raceway.studies.stability.screen import stability_screen
 
-    show(content, as_json, failed, lambda: stability_screen(content, every, files))
+    show(content, given.as_json, failed, lambda: stability_screen(content, given.every, files))
     return 1 if found.failed else 0
 
 

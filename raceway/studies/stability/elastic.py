@@ -9,18 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from raceway.core.schemes.drivers import integrate
 from raceway.framework.registry import Registry
+from raceway.storage.tables import Tables
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.pipeline.result import Result
+
 #: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
-_TINY: dict[str, Any] = {
+_TINY: Tables = {
     "title": "three balls on few elements",
     "bearing": {"preset": "B7206C", "ball_count": 3},
     "bodies": {"kind": "elastic", "formulation": "one_point"},
@@ -68,7 +75,7 @@ _MORE = 0.02
 
 def elastic_cases(base: Changes, registry: Registry) -> Iterator[Case]:
     """Whole contacts and pressures at points, with every law that both can have."""
-    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
     both = [one.name for one in entries if {"nodal", "resultant"} <= set(one.plugin.discretisations)]
     for law in both:
         for name, changes in _RESULTANTS if law == "hertz" else _RESULTANTS[:1]:
@@ -122,15 +129,15 @@ def _known(value: float) -> Measured:
     return value, None
 
 
-def _axial(equilibrium: Any) -> float:
+def _axial(equilibrium: Equilibrium) -> float:
     return float(equilibrium.displacement[0])
 
 
-def _radial(equilibrium: Any) -> float:
+def _radial(equilibrium: Equilibrium) -> float:
     return float(equilibrium.stiffness[1, 1])
 
 
-def _carried(case: Case, load: float, result: Any) -> Row:
+def _carried(case: Case, load: float, result: Callable[[], Result]) -> Row:
     def reaction() -> Measured:
         return -float(result().as_dict()["model"]["reaction_n"]["x"]), None
 
@@ -146,7 +153,7 @@ def points_at_rest(case: Case, registry: Registry) -> list[Row]:
     scene = scene_at(a["tables"], a["changes"], registry)
     load = scene.load.axial
 
-    def settled(axial: float) -> tuple[float, float, Any]:
+    def settled(axial: float) -> tuple[float, float, Result]:
         found = run(scene_at(a["tables"], {**a["changes"], "load.axial": axial}, registry), registry)
         stored = found.as_dict()["model"]["energies_j"]
         return float(found.equilibrium.displacement[0]), stored["elastic"] + stored["contact"], found
@@ -180,7 +187,7 @@ def motion(case: Case, registry: Registry) -> list[Row]:
     ring: Any = model.system
     start = at_rest(ring, still.displacement, still.ball, False)
     limit = float(ring.critical_time_step(still.stiffness))
-    method: Any = registry.find("integrator", a["integrator"]).plugin()
+    method = registry.find("integrator", a["integrator"]).plugin()
     if "tolerance" in {field.name for field in attrs.fields(type(method))}:
         method = attrs.evolve(method, tolerance=1e-6)
     step = (_EXPLICIT if method.implicit else 1.0) * 0.9 * limit

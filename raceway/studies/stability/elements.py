@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -98,7 +97,7 @@ def locking(case: Case, registry: Registry) -> list[Row]:
     for kind in KINDS:
         setting = {"elements": kind, "poisson": 0.4999}
         if kind == "full":
-            bound: Any = AtMost(0.75, "full integration locks: why it is not the default")
+            bound: AtMost | AtLeast = AtMost(0.75, "full integration locks: why it is not the default")
         elif kind == "one_point":
             bound = AtMost(
                 0.75, "its hourglass control is a share of lambda + 2 mu, which grows without limit: it locks, too"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -17,6 +17,9 @@ from raceway.errors import ConvergenceError
 from raceway.framework.registry import Registry
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged
 from raceway.studies.stability.systems import UNDAMPED, Still, scene_at, still
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import ContactLaw, Integrator
 
 _BLOCKS = 20
 #: Heights of the fall that chatter is looked for at, over the approach at rest.
@@ -33,7 +36,7 @@ def million_steps(case: Case, registry: Registry) -> list[Row]:
     a = case.arguments
     found = still(scene_at(a["tables"], {**UNDAMPED, **a.get("changes", {})}, registry))
     opens = a["amplitude"] > 1.0
-    method: Any = registry.find("integrator", a["integrator"]).plugin()
+    method: Integrator = registry.find("integrator", a["integrator"]).plugin()
     options: dict[str, float] = {}
     if not opens:  # where contacts open, rounding ends some iterations above so small a tolerance
         method, options = _sharp(method)
@@ -56,7 +59,7 @@ def million_steps(case: Case, registry: Registry) -> list[Row]:
     return [attrs.evolve(row, note="; ".join([*note, row.note]).strip("; "))]
 
 
-def _sharp(method: Any) -> tuple[Any, dict[str, float]]:
+def _sharp(method: Any) -> tuple[Integrator, dict[str, float]]:
     """An implicit method with steps solved as far as rounding allows: 1e-9 of the load a step adds up to 1e-5 of a small
     motion's energy in a million steps."""
     if "tolerance" not in {field.name for field in attrs.fields(type(method))}:
@@ -92,7 +95,7 @@ def impact(case: Case, registry: Registry) -> list[Row]:
     depth = _depth(law, params, 0.5 * mass * speed**2)
     system = impact_system(mass, law, params)
     force = float(system.evaluate(np.array([depth, 0.0, 0.0, 0.0, 0.0]), ball=np.zeros((1, 2))).force[0])
-    method: Any = registry.find("integrator", a["integrator"]).plugin()
+    method: Integrator = registry.find("integrator", a["integrator"]).plugin()
     dt = pi * depth / speed / a["steps"]
     balls = np.zeros((1, 2))
     first = Motion(
@@ -112,7 +115,7 @@ def impact(case: Case, registry: Registry) -> list[Row]:
     ]
 
 
-def _depth(law: Any, params: np.ndarray, energy: float) -> float:
+def _depth(law: ContactLaw, params: np.ndarray, energy: float) -> float:
     """Approach at which a contact has stored an energy [m], by bisection."""
     low, high = 0.0, 1.0
     two, stored = np.ascontiguousarray(np.repeat(params, 2, axis=0)), np.empty(2)
@@ -128,7 +131,7 @@ def deep_penetration(case: Case, registry: Registry) -> list[Row]:
     """The ring let go far inside the balls: it flies out, and no energy is made."""
     a = case.arguments
     found = still(scene_at(a["tables"], UNDAMPED | a["changes"], registry))
-    method: Any = registry.find("integrator", a["integrator"]).plugin()
+    method: Integrator = registry.find("integrator", a["integrator"]).plugin()
     start = found.displaced(np.array([a["depth"], 0.3 * a["depth"], 0.0, 0.0, 0.0]))
     limit = found.system.critical_time_step(found.system.evaluate(start.q, ball=start.ball).stiffness)
     setting = {"integrator": a["integrator"], **a["shown"], "depth [m]": a["depth"], "step/limit there": 0.05}
@@ -180,7 +183,7 @@ def chatter(case: Case, registry: Registry) -> list[Row]:
     k = float(at_rest.evaluate(q, ball=np.zeros((1, 2))).stiffness[0, 0])
     system = impact_system(mass, law, params, load=load, damping=2.0 * 0.2 * sqrt(k * mass))
     period = 2.0 * pi * sqrt(mass / k)
-    method: Any = attrs.evolve(registry.find("integrator", a["integrator"]).plugin(), **a["options"])
+    method: Integrator = attrs.evolve(registry.find("integrator", a["integrator"]).plugin(), **a["options"])
     setting = {"integrator": a["integrator"], **a["options"], **a["shown"], "step/period": a["step"]}
     note: list[str] = []
 

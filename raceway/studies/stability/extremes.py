@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+from raceway.storage.tables import Tables
 from raceway.studies.stability.systems import UNDAMPED
 
-Changes = dict[str, Any]
+Changes = Tables
 
 
 def force(newton: float) -> Changes:

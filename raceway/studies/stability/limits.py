@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import ceil
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from raceway.planning.plan import make_plan
 from raceway.planning.recording import SAFETY
 from raceway.studies.stability.case import AtLeast, AtMost, Case, Expectation, Measured, Near, Row, judged
 from raceway.studies.stability.systems import UNDAMPED, scene_at, still
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator
 
 #: Parts of the predicted limit.
 FACTORS = (0.5, 0.9, 0.98, 1.02, 1.1)
@@ -60,7 +63,7 @@ def _around_the_limit(
     case: Case, registry: Registry, system: System, start: Motion, rest: np.ndarray, limit: float
 ) -> list[Row]:
     name = case.arguments["integrator"]
-    method: Any = registry.find("integrator", name).plugin()
+    method: Integrator = registry.find("integrator", name).plugin()
     weight = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
     size = float(np.abs((start.q - rest) * weight).max())
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import attrs
 
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen
@@ -18,7 +19,7 @@ class StabilityReport:
 
     name: ClassVar[str] = "stability"
 
-    def write(self, result: Any, folder: Any) -> list[Path]:
+    def write(self, result: Tables, folder: Path) -> list[Path]:
         """Write the files.
 
         Parameters
@@ -39,7 +40,7 @@ class StabilityReport:
         ]
 
 
-def page(result: dict[str, Any]) -> str:
+def page(result: Tables) -> str:
     """The study as Markdown: what failed first, then a table for each case."""
     rows = result["rows"]
     bad = [row for row in rows if row["verdict"] == "failed"]
@@ -54,7 +55,7 @@ def page(result: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _table(rows: Iterable[dict[str, Any]]) -> list[str]:
+def _table(rows: Iterable[Tables]) -> list[str]:
     lines = ["| setting | quantity | expected | predicted | observed | energy drift | verdict | why |", "|---" * 8 + "|"]
     for row in rows:
         cells = [
@@ -71,7 +72,7 @@ def _table(rows: Iterable[dict[str, Any]]) -> list[str]:
     return lines
 
 
-def _number(value: Any) -> str:
+def _number(value: object) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
 
 import attrs
 import numpy as np
@@ -17,6 +16,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.closed_form import series_factor
 from raceway.planning.plan import make_plan
+from raceway.storage.tables import Tables
 from raceway.studies.stability.case import (
     AS_EXPECTED,
     FAILED,
@@ -44,7 +44,7 @@ _FINER = Near(0.01, "360 steps a turn cost 1e-5 as a rule, a few 1e-3 where ball
 _ENERGY = AtMost(0.05, "steps of a turn / 360 balance energy to 1e-4 as a rule; impacts that few steps resolve cost more")
 #: What |Z| of a motion is held against; "any": a user's scene, which ``periodic`` may be unable to take; "finer": no orbit is
 #: steady, or friction remembers how the motion began, so that the same motion in finer steps is the truth.
-_JUDGES: dict[str, dict[str, Any]] = {
+_JUDGES: dict[str, Tables] = {
     "orbit": {"integrator.kind": "periodic"},
     "slow": {"integrator.kind": "quasi_static"},
     "any": {"integrator.kind": "periodic"},
@@ -92,9 +92,7 @@ def _predicted(judge: str) -> tuple[str, Near]:
     return (_STEPS, _FINER) if judge == "finer" else (_STEADY, _ORBIT)
 
 
-def _moving(
-    case: Case, setting: dict[str, Any], changes: dict[str, Any], known: complex | None, note: str, registry: Registry
-) -> list[Row]:
+def _moving(case: Case, setting: Tables, changes: Tables, known: complex | None, note: str, registry: Registry) -> list[Row]:
     """|Z| where it is known; the balance of energy where no orbit is steady."""
     tables, judge = case.arguments["tables"], case.arguments["judge"]
 
@@ -133,7 +131,7 @@ def _dynamic(result: Result) -> complex:
     return found.dynamic_stiffness
 
 
-def _at_rest(case: Case, shown: dict[str, Any], changes: dict[str, Any], registry: Registry) -> list[Row]:
+def _at_rest(case: Case, shown: Tables, changes: Tables, registry: Registry) -> list[Row]:
     """Axial forces of the contacts against the load; the approach by a closed form where there is one."""
     a = case.arguments
     # Nothing turns and nothing rubs: the balls' loads are along their contact angles.
@@ -165,7 +163,7 @@ def _at_rest(case: Case, shown: dict[str, Any], changes: dict[str, Any], registr
     return rows
 
 
-def _too_stiff(case: Case, shown: dict[str, Any], changes: dict[str, Any], registry: Registry) -> Row | None:
+def _too_stiff(case: Case, shown: Tables, changes: Tables, registry: Registry) -> Row | None:
     """The row of a law that elastic bodies refuse as too stiff, if they do: expected of no law softer than Hertz's."""
     tables = case.arguments["tables"]
     scene, stiff = (scene_at(tables, {**changes, "bodies.kind": kind}, registry) for kind in ("condensed", "rigid"))
@@ -196,14 +194,14 @@ def hertz_factor(case: Case, registry: Registry) -> list[Row]:
     return [judged(case.name, {}, quantity, _ROUGH, series_factor(scene) ** (-2.0 / 3.0), softness)]
 
 
-def _default_penalty(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
+def _default_penalty(tables: Tables, changes: Tables, registry: Registry) -> float:
     """The penalty [N/m3] that gives the inner races the stiffness of the default."""
     own, unit = ({**changes, "contact.stiffness": value} for value in (None, 1.0))
     factors = [_inner_factor(tables, each, registry) for each in (own, unit)]
     return factors[0] / factors[1]
 
 
-def _inner_factor(tables: dict[str, Any], changes: dict[str, Any], registry: Registry) -> float:
+def _inner_factor(tables: Tables, changes: Tables, registry: Registry) -> float:
     scene = scene_at(tables, changes, registry)
     from raceway.core.ring.surrogate import surrogate
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -12,9 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.commands.screen.text import written
+from raceway.storage.tables import ReadTables
 
 
-def stability_screen(content: Mapping[str, Any], every: bool, files: Sequence[str]) -> RenderableType:
+def stability_screen(content: ReadTables, every: bool, files: Sequence[str]) -> RenderableType:
     """A line for each case, or for each row; what is not as expected in full."""
     rows = content["rows"]
     bad = [row for row in rows if row["verdict"] == "failed"]
@@ -46,7 +46,7 @@ def stability_screen(content: Mapping[str, Any], every: bool, files: Sequence[st
     return Group(*parts)
 
 
-def _stability_cells(row: Mapping[str, Any]) -> list[str]:
+def _stability_cells(row: ReadTables) -> list[str]:
     setting = ", ".join(f"{key} {value}" for key, value in row["setting"].items())
     numbers = ("" if row[name] is None else f"{row[name]:.6g}" for name in ("predicted", "observed"))
     return [row["case"], setting, row["quantity"], row["expected"], *numbers, row["verdict"]]

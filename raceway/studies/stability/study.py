@@ -7,15 +7,16 @@ cases in processes of their own; ``limits``, ``energy``, ``scenes``, ``surface``
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.engine import processor_time
 from raceway.studies.many.row_store import RowStore
 from raceway.studies.stability.case import FAILED, Row
@@ -52,7 +53,7 @@ class Stability:
     def failed(self) -> tuple[Row, ...]:
         return tuple(row for row in self.rows if row.verdict == FAILED)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {
             "title": self.title,
             "cases": self.cases,
@@ -78,7 +79,7 @@ class Stability:
 
 
 def stability(
-    tables: Mapping[str, Any] | None = None,
+    tables: ReadTables | None = None,
     only: str | None = None,
     processes: int = PROCESSES,
     store: Path | None = None,

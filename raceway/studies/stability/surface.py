@@ -6,7 +6,7 @@ An equilibrium takes a second and a step a tenth of one, so there are few steps.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from raceway.framework.registry import Registry
 from raceway.studies.stability.case import Case, Measured, Near, Row, judged
 from raceway.studies.stability.extremes import CERAMIC, NEARLY_INCOMPRESSIBLE, RUBBER, STATIC, Changes
 from raceway.studies.stability.systems import scene_at, transient
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator
 
 _POINTS: Changes = {
     "bodies.kind": "condensed", "contact.discretisation": "nodal", "mesh": {"kind": "structured", "nodes_per_semi_axis": 2}, **STATIC,
@@ -45,7 +48,7 @@ _WARNED: tuple[tuple[str, Changes, str, str], ...] = (
 
 def surface_cases(base: Changes, registry: Registry) -> Iterator[Case]:
     """Condensed bodies with every law that surface points can have."""
-    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
     laws = [entry for entry in entries if "nodal" in entry.plugin.discretisations]
     for law in (entry.name for entry in laws):
         shown: Changes = {"law": law, "bodies": "condensed, points"}
@@ -69,7 +72,7 @@ def _moving(base: Changes, law: str, name: str, registry: Registry) -> Case:
         "integrator": name,
         "shown": {"law": law, "bodies": "condensed, points", "integrator": name},
     }
-    method: Any = registry.find("integrator", name).plugin
+    method: type[Integrator] = registry.find("integrator", name).plugin
     if method.implicit:
         return Case("surface points: a turn", "surface:turn", {**arguments, "changes": changes}, 12.0)
     arguments["changes"] = {**changes, "integrator.kind": name}

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -12,6 +11,7 @@ from raceway.framework.registry import Entry, Registry
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.points import tables_at
 
 if TYPE_CHECKING:
@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     from raceway.bodies.model import Model
     from raceway.core.ring.system import System
     from raceway.core.stepping.record import Motion
+    from raceway.framework.contracts import Integrator
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
-BASE: dict[str, Any] = {
+BASE: Tables = {
     "title": "B7206C, 1 kN axial, rig unbalance at 12 000 r/min",
     "bearing": {"preset": "B7206C"},
     "rotor": {"mass": 2.0},
@@ -47,17 +48,17 @@ def transient(registry: Registry) -> list[str]:
 
 
 def is_transient(entry: Entry) -> bool:
-    plugin: Any = entry.plugin
+    plugin: type[Integrator] = entry.plugin
     return plugin.inertial and not plugin.steady
 
 
 def pair_laws(registry: Registry) -> list[str]:
     """Names of the laws that rigid bodies can use, without memory: they have a stored energy."""
-    entries: list[Any] = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
     return [e.name for e in entries if "resultant" in e.plugin.discretisations]
 
 
-def scene_at(tables: Mapping[str, Any], changes: Mapping[str, Any], registry: Registry) -> Scene:
+def scene_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Scene:
     """A scene with some keys changed; a value None takes the key out."""
     changed = tables_at(tables, {key: value for key, value in changes.items() if value is not None}, registry)
     for key in (key for key, value in changes.items() if value is None):

@@ -8,11 +8,12 @@ import traceback
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.framework.registry import Registry
+from raceway.storage.tables import Tables
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, program_key
 from raceway.studies.stability.case import Case, Row, lost, short
@@ -57,7 +58,7 @@ def _key(case: Case, program: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
-def _plain(case: Case, registry: Registry) -> dict[str, Any]:
+def _plain(case: Case, registry: Registry) -> Tables:
     return {"rows": [attrs.asdict(row) for row in rows_of(case, registry)]}
 
 

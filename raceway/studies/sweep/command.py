@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import click
@@ -16,6 +16,7 @@ from raceway.commands.frame import (
     common,
     out_option,
     plugin_files,
+    record,
     registry_with,
     scene_file,
     set_keys,
@@ -24,10 +25,32 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import changed_tables, has_netcdf, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
     from raceway.framework.registry import Registry
     from raceway.studies.sweep import Design, Store
+
+
+@attrs.frozen
+class SweepOptions:
+    """What ``raceway sweep`` is given."""
+
+    scene: Path
+    axes: tuple[str, ...]
+    listed: Path | None
+    design: Path | None
+    changes: tuple[str, ...]
+    executor: str
+    workers: int | None
+    scheduler: str | None
+    out: Path | None
+    resume: bool
+    retry_failed: bool
+    as_csv: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command(short_help="One scene at thousands of points, kept in a store; parallel, resumable.")
@@ -47,22 +70,8 @@ if TYPE_CHECKING:
 @click.option("--csv", "as_csv", is_flag=True, help="Write STORE/results.csv, too.")
 @plugin_files
 @common
-def sweep(
-    scene: Path,
-    axes: tuple[str, ...],
-    listed: Path | None,
-    design: Path | None,
-    changes: tuple[str, ...],
-    executor: str,
-    workers: int | None,
-    scheduler: str | None,
-    out: Path | None,
-    resume: bool,
-    retry_failed: bool,
-    as_csv: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
+@record(SweepOptions)
+def sweep(given: SweepOptions) -> int:
     """Compute a scene at the points of a grid or a list, and keep every point in a store.
 
     STORE holds points.sqlite (states and values, written as points finish) and results.nc (an xarray data set). Ctrl-C, a
@@ -77,31 +86,31 @@ def sweep(
     from raceway.studies.sweep import sweep as study
     from raceway.studies.sweep.store import exists
 
-    registry = registry_with(plugins)
-    points = _design(axes, listed, design)
-    chosen = _executor(registry, executor, {"workers": workers, "scheduler": scheduler})
-    tables, mistakes = changed_tables(scene, changes, registry)
+    registry = registry_with(given.plugins)
+    points = _design(given.axes, given.listed, given.design)
+    chosen = _executor(registry, given.executor, {"workers": given.workers, "scheduler": given.scheduler})
+    tables, mistakes = changed_tables(given.scene, given.changes, registry)
     if mistakes:
         raise SceneError(mistakes)
-    folder = writable(out or RESULTS / f"{slug(str(tables['title']))}-sweep")
+    folder = writable(given.out or RESULTS / f"{slug(str(tables['title']))}-sweep")
     tell_faults(registry)
-    if (resume or retry_failed) and not exists(folder):
+    if (given.resume or given.retry_failed) and not exists(folder):
         warn(f"`{folder}` holds no sweep to go on with: it is begun anew", label="")
-    prepared = prepare(tables, points, folder, plugins, resume or retry_failed)
+    prepared = prepare(tables, points, folder, given.plugins, given.resume or given.retry_failed)
     for note in prepared.survey.notes:
         warn(note)
     stopped: BaseException | None = None
-    with show_progress(remaining=True, waiting=f"waiting for {scheduler}" if scheduler else None) as progress:
+    with show_progress(remaining=True, waiting=f"waiting for {given.scheduler}" if given.scheduler else None) as progress:
         from raceway.studies.sweep import open_store
 
         try:
-            store = study(prepared, chosen, retry_failed, progress)
+            store = study(prepared, chosen, given.retry_failed, progress)
         except (KeyboardInterrupt, RacewayError) as why:
             if not (folder / "points.sqlite").is_file():
                 raise
             store, stopped = open_store(folder), why
     with store:
-        return _show(store, as_csv, as_json, stopped)
+        return _show(store, given.as_csv, given.as_json, stopped)
 
 
 def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | None) -> int:
@@ -134,7 +143,7 @@ def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | No
     return 0
 
 
-def _row(row: dict[str, Any]) -> dict[str, Any]:
+def _row(row: Tables) -> Tables:
     """What does not change from one sweep to the next: no costs, no names of machines."""
     kept = {"point": row["point"], "status": row["status"], "values": row["values"]}
     return kept | {name: row[name] for name in ("reason", "warnings") if row[name]}
@@ -151,7 +160,7 @@ def _design(axes: Sequence[str], listed: Path | None, design: Path | None) -> De
     return design_file(design) if design is not None else grid(axes)
 
 
-def _executor(registry: Registry, name: str, given: dict[str, Any]) -> Any:
+def _executor(registry: Registry, name: str, given: Tables) -> Executor:
     """An executor of that name, with the options that are given and that it has."""
     plugin = registry.find("executor", name).plugin
     options = {key: value for key, value in given.items() if value is not None}

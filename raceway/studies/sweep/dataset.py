@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
+import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, extra
@@ -15,29 +17,54 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
 from raceway.storage.files import scratch_file, write_whole
+from raceway.storage.tables import Tables
 from raceway.studies.many.axes import is_number
 from raceway.studies.sweep.survey import key_facts
 from raceway.studies.sweep.variables import ARRAYS, DOF, NUMBERS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import h5netcdf
     import xarray
 
+    from raceway.studies.sweep.design import Design
+
 RESULTS, TABLE = "results.nc", "results.csv"
+#: Words of any length, as HDF5 has them.
+_WORDS = np.dtype("O", metadata={"vlen": str})
+#: Dimensions, values and attributes of a variable.
+Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 
 
 class Rows(Protocol):
     """A store as it is read."""
 
-    design: Any
-    facts: Any
+    design: Design
+    facts: Tables
     path: Path
 
     @property
     def title(self) -> str: ...
     @property
-    def scene(self) -> dict[str, Any]: ...
-    def rows(self) -> Iterator[dict[str, Any]]: ...
+    def scene(self) -> Tables: ...
+    def rows(self) -> Iterator[Tables]: ...
     def to_xarray(self) -> xarray.Dataset: ...
+
+
+@attrs.frozen
+class Table:
+    """The labelled results of a store, before any library of arrays has them.
+
+    Attributes
+    ----------
+    variables, coordinates : name -> its dimensions, values and attributes
+    attributes : of the whole
+    """
+
+    variables: dict[str, Labelled]
+    coordinates: dict[str, Labelled]
+    attributes: dict[str, str | int]
 
 
 def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
@@ -48,11 +75,20 @@ def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
     RacewayError
         xarray is missing.
     """
-    xarray = _xarray()
+    try:
+        import xarray
+    except ImportError as why:
+        raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
+    found = table_of(store, registry)
+    return xarray.Dataset(found.variables, found.coordinates, found.attributes)
+
+
+def table_of(store: Rows, registry: Registry | None = None) -> Table:
+    """The same as plain arrays: xarray, and what it imports, takes longer than a hundred points."""
     design = store.design
     dims = design.keys if design.axes else ("point",)
     columns, status, warnings = _columns(store)
-    variables: dict[str, Any] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
+    variables: dict[str, Labelled] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
     if columns:
         about = {"units": "1", "long_name": "number of warnings of the point: their words are in the JSON and the CSV"}
         variables["warnings"] = (dims, warnings.reshape(design.shape), about)
@@ -70,7 +106,7 @@ def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
         "created": store.facts["created"],
         "note": "NaN: not finished, or not estimated; see status",
     }
-    return xarray.Dataset(variables, _coordinates(store, registry or default_registry()), attributes)
+    return Table(variables, _coordinates(store, registry or default_registry()), attributes)
 
 
 def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
@@ -89,24 +125,25 @@ def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray
     return {name: found[name] for name in order if name in found}, status, warnings
 
 
-def _coordinates(store: Rows, registry: Registry) -> dict[str, Any]:
+def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
     design = store.design
     try:
         scene: Scene | None = scene_from_dict(store.scene, registry)
     except RacewayError:  # its plug-ins are not installed here: values are there, units of its keys are not
         scene = None
-    found: dict[str, Any] = {"dof": ("dof", list(DOF)), "dof2": ("dof2", list(DOF))}
+    names = np.array(DOF, dtype=object)
+    found: dict[str, Labelled] = {"dof": (("dof",), names, {}), "dof2": (("dof2",), names, {})}
     for key in design.keys:
         values = next(a.values for a in design.axes if a.key == key) if design.axes else [p[key] for p in design.listed]
         unit, words = ("", "") if scene is None else key_facts(scene, key)
         dim = key if design.axes else "point"
-        found[key] = (dim, _labels(values), {"units": unit or "1", "long_name": f"{key}: {words}" if words else key})
+        found[key] = ((dim,), _labels(values), {"units": unit or "1", "long_name": f"{key}: {words}" if words else key})
     if not design.axes:
-        found["point"] = ("point", np.arange(design.size), {"long_name": "number of the point in the list"})
+        found["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
     return found
 
 
-def _labels(values: Any) -> np.ndarray:
+def _labels(values: Sequence[object]) -> np.ndarray:
     """Numbers as numbers; anything else as text."""
     if all(is_number(value) for value in values):
         return np.array(values)
@@ -114,22 +151,40 @@ def _labels(values: Any) -> np.ndarray:
 
 
 def write_netcdf(store: Rows) -> Path:
-    """``results.nc`` in the store, whole or not at all.
+    """``results.nc`` in the store, whole or not at all: what xarray writes of ``dataset(store)``, without it.
 
     Raises
     ------
     RacewayError
-        xarray or h5netcdf is missing, or a disk that takes no more.
+        h5netcdf or h5py is missing, or a disk that takes no more.
     """
-    data = store.to_xarray()
     try:
-        # In memory first: the HDF5 library takes the whole process down where a disk is full.
-        content = bytes(data.to_netcdf(engine="h5netcdf"))
-    except (ImportError, ValueError) as why:
-        if isinstance(why, ValueError) and "h5netcdf" not in str(why):
-            raise
+        import h5netcdf
+    except ImportError as why:
         raise RacewayError(f"NetCDF needs h5netcdf and h5py: {extra('sweep')} ({why})") from None
-    return write_whole(content, store.path / RESULTS)
+    table, memory = table_of(store), io.BytesIO()
+    # In memory first: the HDF5 library takes the whole process down where a disk is full.
+    with h5netcdf.File(memory, "w") as file:
+        file.attrs.update(table.attributes)
+        every = {**table.variables, **table.coordinates}
+        sizes = {dim: size for dims, values, _ in every.values() for dim, size in zip(dims, values.shape, strict=True)}
+        file.dimensions = sizes
+        beside = " ".join(sorted(name for name in table.coordinates if name not in sizes))
+        for name, (dims, values, about) in every.items():
+            _put(file, name, dims, values, about, beside if name in table.variables else "")
+    return write_whole(memory.getvalue(), store.path / RESULTS)
+
+
+def _put(
+    file: h5netcdf.File, name: str, dims: tuple[str, ...], values: np.ndarray, about: Mapping[str, str], coordinates: str
+) -> None:
+    """One variable by the conventions that xarray follows: a number that is missing is NaN."""
+    kind = _WORDS if values.dtype == object else values.dtype
+    variable = file.create_variable(name, dims, kind, fillvalue=np.nan if values.dtype.kind == "f" else None)
+    variable[...] = values
+    variable.attrs.update(about)
+    if coordinates:
+        variable.attrs["coordinates"] = coordinates
 
 
 def write_csv(store: Rows, path: Path) -> Path:
@@ -145,7 +200,7 @@ def write_csv(store: Rows, path: Path) -> Path:
     return path
 
 
-def _lines(store: Rows) -> Iterator[list[Any]]:
+def _lines(store: Rows) -> Iterator[list[object]]:
     keys = store.design.keys
     places: dict[str, list[tuple[str, ...]]] = {
         "displacement": [(name,) for name in DOF],
@@ -165,11 +220,3 @@ def _lines(store: Rows) -> Iterator[list[Any]]:
         point = [v if isinstance(v, str) or is_number(v) else json.dumps(v) for v in row["point"].values()]
         words = [row["status"], row["reason"], "; ".join(row["warnings"])]
         yield [*point, *words, *(values.get(n, "") for n in NUMBERS), *(v for a in arrays for v in a)]
-
-
-def _xarray() -> Any:
-    try:
-        import xarray
-    except ImportError as why:
-        raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
-    return xarray

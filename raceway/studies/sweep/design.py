@@ -6,14 +6,14 @@ import csv
 import itertools
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.scene.file import parse_value, read_toml
+from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of
 from raceway.studies.many.axes import Axis, parse_axes, shown
 
@@ -37,7 +37,7 @@ class Design:
     """
 
     axes: tuple[Axis, ...] = ()
-    listed: tuple[dict[str, Any], ...] = ()
+    listed: tuple[Tables, ...] = ()
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -51,7 +51,7 @@ class Design:
     def keys(self) -> tuple[str, ...]:
         return tuple(axis.key for axis in self.axes) if self.axes else tuple(self.listed[0])
 
-    def point(self, number: int) -> dict[str, Any]:
+    def point(self, number: int) -> Tables:
         """Key -> value of one point."""
         if not self.axes:
             return dict(self.listed[number])
@@ -61,7 +61,7 @@ class Design:
             found[axis.key] = axis.values[place]
         return {axis.key: found[axis.key] for axis in self.axes}
 
-    def points(self) -> Iterator[dict[str, Any]]:
+    def points(self) -> Iterator[Tables]:
         return (self.point(number) for number in range(self.size))
 
     def chains(self, length: int) -> Iterator[list[int]]:
@@ -86,13 +86,13 @@ class Design:
             return 0
         return max(range(len(self.axes)), key=lambda k: (self.axes[k].numeric, len(self.axes[k].values), k))
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         if self.axes:
             return {"axes": [axis.as_dict() for axis in self.axes]}
         return {"points": list(self.listed)}
 
     @classmethod
-    def from_dict(cls, tables: Mapping[str, Any]) -> Design:
+    def from_dict(cls, tables: ReadTables) -> Design:
         axes = tuple(Axis(one["key"], tuple(one["values"])) for one in tables.get("axes", ()))
         return cls(axes, tuple(tables.get("points", ())))
 
@@ -123,7 +123,7 @@ class Design:
         return f"{' x '.join(str(n) for n in self.shape)} points over {', '.join(self.keys)}"
 
 
-def _few(values: Sequence[Any]) -> str:
+def _few(values: Sequence[object]) -> str:
     """Values of an axis; of a long one the ends and how many."""
     if len(values) <= _MOST_SHOWN:
         return ", ".join(shown(value) for value in values)
@@ -178,7 +178,7 @@ def design_file(path: Path) -> Design:
     return grid(f"{key}={','.join(values)}" for key, values in words)
 
 
-def _dotted(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+def _dotted(table: ReadTables, before: str = "") -> Iterator[tuple[str, object]]:
     """``a.b`` for [grid] "a.b" and for [grid.a] b alike."""
     for key, value in table.items():
         if isinstance(value, dict):
@@ -187,7 +187,7 @@ def _dotted(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
             yield f"{before}{key}", value
 
 
-def _csv_points(path: Path) -> list[dict[str, Any]]:
+def _csv_points(path: Path) -> list[Tables]:
     text = _text(path)
     rows = list(csv.reader(line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")))
     if not rows:
@@ -203,7 +203,7 @@ def _csv_points(path: Path) -> list[dict[str, Any]]:
     return [{key: parse_value(value) for key, value in zip(keys, row, strict=True)} for row in rows[1:]]
 
 
-def _json_points(path: Path) -> Any:
+def _json_points(path: Path) -> object:
     try:
         return json.loads(_text(path))
     except ValueError as why:
@@ -224,7 +224,7 @@ def _text(path: Path) -> str:
         raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
 
 
-def _listed(path: Path, points: Any) -> Design:
+def _listed(path: Path, points: object) -> Design:
     if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
         raise SceneError.at(str(path), None, "must hold a list of points, each with keys of the scene and their values")
     points = [dict(_dotted(point)) for point in points]
@@ -245,5 +245,5 @@ def _listed(path: Path, points: Any) -> Design:
     return Design(listed=tuple({key: point[key] for key in keys} for point in points))
 
 
-def point_words(point: Mapping[str, Any], keys: Sequence[str] | None = None) -> str:
+def point_words(point: ReadTables, keys: Sequence[str] | None = None) -> str:
     return ", ".join(f"{key} = {shown(point[key])}" for key in keys or point)

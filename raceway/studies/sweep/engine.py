@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.framework.contracts import Lost
+from raceway.framework.contracts import Batch, Lost
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.planning.wall_time import START_S
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.engine import answers
 from raceway.studies.many.identity import differences, identity
 from raceway.studies.many.work import Work, registry_of
@@ -22,6 +23,9 @@ from raceway.studies.sweep.design import Design
 from raceway.studies.sweep.store import Store, exists, open_store, written
 from raceway.studies.sweep.survey import Survey, survey
 from raceway.studies.sweep.work import Chain, unfinished_row
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
 
 #: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
 _LONGEST, _CHAIN_S = 16, 1.0
@@ -38,18 +42,16 @@ class Sweep:
     length : of chains [points]
     """
 
-    tables: dict[str, Any]
+    tables: Tables
     design: Design
     store: Path
     plugins: tuple[str, ...]
     survey: Survey
-    facts: dict[str, Any]
+    facts: Tables
     length: int
 
 
-def prepare(
-    tables: Mapping[str, Any], design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False
-) -> Sweep:
+def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False) -> Sweep:
     """Look over a sweep; nothing is computed or written.
 
     Parameters
@@ -101,7 +103,7 @@ def _chain_length(found: Survey, design: Design) -> int:
     return max(1, min(_LONGEST, by_time, design.size // _CHAINS))
 
 
-def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progress: OnProgress | None = None) -> Store:
+def sweep(prepared: Sweep, executor: Executor, retry_failed: bool = False, on_progress: OnProgress | None = None) -> Store:
     """Compute what is not finished; the store, open to be read.
 
     Parameters
@@ -128,7 +130,7 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
         done, total = design.size - len(waiting), design.size
         chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []
 
-        def batches() -> Iterator[tuple[int, list[Any]]]:
+        def batches() -> Iterator[Batch]:
             for number, chain in enumerate(chains):
                 left = [n for n in chain if n in waiting]
                 store.mark(left, "running")
@@ -152,7 +154,7 @@ def sweep(prepared: Sweep, executor: Any, retry_failed: bool = False, on_progres
     return open_store(prepared.store)
 
 
-def _refuse_other(there: Store, facts: Mapping[str, Any], store: Path) -> None:
+def _refuse_other(there: Store, facts: ReadTables, store: Path) -> None:
     """A store that holds something else is named and left alone."""
     reasons = _changed(there.scene, facts["scene"]) or _changed(there.facts.get("tables", {}), facts.get("tables", {}))
     what = "another scene"
@@ -169,7 +171,7 @@ def _refuse_other(there: Store, facts: Mapping[str, Any], store: Path) -> None:
         )
 
 
-def _changed(old: Any, new: Any, place: str = "") -> list[str]:
+def _changed(old: object, new: object, place: str = "") -> list[str]:
     """``key: old, now new`` for every leaf of two trees of tables that differs."""
     if isinstance(old, dict) and isinstance(new, dict):
         keys = [*old, *(key for key in new if key not in old)]

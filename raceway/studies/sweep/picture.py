@@ -14,6 +14,10 @@ from raceway.plugins.reports.pictures import new_figure
 from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.collections import Collection
     from matplotlib.figure import Figure
     from xarray import DataArray
 
@@ -117,7 +121,7 @@ def _figure(kind: str, count: int) -> Figure:
     return new_figure(2.0 + 4.0 * columns, 1.2 + (3.9 if kind != "surface" else 4.2) * rows)
 
 
-def _curves(axes: Any, data: DataArray, x: str, y: str | None, label: str) -> None:
+def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> None:
     """A curve for each value of y; the points of a list without lines, since they may have no order."""
     scattered = _LIST in data.dims
     values: list[Any] = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
@@ -143,18 +147,18 @@ def _curves(axes: Any, data: DataArray, x: str, y: str | None, label: str) -> No
     _dress(axes, data, x)
 
 
-def _map(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, float], first: bool) -> Any:
+def _map(axes: Axes, data: DataArray, x: str, y: str, limits: tuple[float, float], first: bool) -> Collection:
     """A cell round each point; contours where every point has a result."""
-    look = {"cmap": "viridis", "vmin": limits[0], "vmax": limits[1]}
+    low, high = limits
     axes.set_ylabel(_axis(data, y) if first else "", fontsize=11)
     if _LIST in data.dims:
-        shown = axes.scatter(data[x].values, data[y].values, c=data.values, s=42, **look)
+        found = axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
         _dress(axes, data, x)
-        return shown
+        return found
     at_x, at_y = data[x].values, data[y].values
     values = data.transpose(y, x).values
     axes.set_facecolor(_NO_RESULT)
-    shown = axes.pcolormesh(at_x, at_y, np.ma.masked_invalid(values), shading="nearest", **look)
+    shown = axes.pcolormesh(at_x, at_y, np.ma.masked_invalid(values), shading="nearest", cmap="viridis", vmin=low, vmax=high)
     if np.isfinite(values).all() and min(values.shape) >= 4:
         lines = axes.contour(at_x, at_y, values, levels=8, colors="white", linewidths=0.8, alpha=0.85)
         axes.clabel(lines, fontsize=8.5, fmt="%.4g")
@@ -163,7 +167,7 @@ def _map(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, float]
     return shown
 
 
-def _surface(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, float], label: str) -> Any:
+def _surface(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, float], label: str) -> Collection:
     across, along = np.meshgrid(data[x].values, data[y].values)
     values = data.transpose(y, x).values
     shown = axes.plot_surface(
@@ -179,7 +183,7 @@ def _surface(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, fl
     return shown
 
 
-def _dress(axes: Any, data: DataArray, x: str) -> None:
+def _dress(axes: Axes, data: DataArray, x: str) -> None:
     axes.set_xlabel(_axis(data, x), fontsize=11)
     axes.tick_params(labelsize=10)
     axes.grid(True, color=_GRID, linewidth=0.8)
@@ -202,7 +206,7 @@ def _places(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
     return np.array([names.index(_text(value)) for value in plain], dtype=float), names
 
 
-def _colour(place: int, values: list[Any]) -> Any:
+def _colour(place: int, values: list[Any]) -> str | tuple[float, float, float, float]:
     """Ordered colours for numbers, distinct ones for words."""
     if not _numeric(values) or len(values) == 1:
         return _WORDS[place % len(_WORDS)]
@@ -222,11 +226,11 @@ def _unit(data: DataArray, key: str, brackets: bool = False) -> str:
     return f" [{unit}]" if brackets else f" {unit}"
 
 
-def _numeric(values: list[Any]) -> bool:
+def _numeric(values: Sequence[object]) -> bool:
     return all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

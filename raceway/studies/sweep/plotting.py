@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -15,6 +15,8 @@ from raceway.studies.sweep.selection import LIST, Selection, listed
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
+
+    from raceway.storage.tables import Tables
 
 #: First that is there: what a sweep is made for, then what a static scene has.
 _DEFAULTS = ("equivalent_stiffness", "z_real", "stiffness:y,y", "axial_displacement")
@@ -158,18 +160,18 @@ def names(dataset: Dataset) -> list[str]:
     return [str(name) for name, data in dataset.data_vars.items() if data.dtype.kind in "fiu"]
 
 
-def _kind(axes: dict[str, list[Any]], numeric: list[str]) -> str:
+def _kind(axes: Tables, numeric: list[str]) -> str:
     both = len(axes) == 2 and len(numeric) == 2
     return "map" if both and min(len(values) for values in axes.values()) > _MOST_COLOURS else "curves"
 
 
-def _best(axes: dict[str, list[Any]], keys: list[str], kind: str) -> str:
+def _best(axes: Tables, keys: list[str], kind: str) -> str:
     if not keys:
         raise RacewayError(f"{kind}: no axis is left for x: leave out --y, or an --at")
     return min(keys, key=lambda key: (key not in _FIRST_X, -len(axes[key])))
 
 
-def _colour(axes: dict[str, list[Any]], rest: list[str]) -> str | None:
+def _colour(axes: Tables, rest: list[str]) -> str | None:
     """The axis with most values that still can be told apart; panels take the other one."""
     fitting = [key for key in rest if len(axes[key]) <= _MOST_COLOURS]
     return max(fitting or rest, key=lambda key: len(axes[key]), default=None)
@@ -200,7 +202,7 @@ def _refuse_flat(kind: str, x: str, y: str | None, numeric: list[str]) -> None:
             raise SceneError.at(option, key, f"has words for values, and a {kind} takes numbers: choose --kind curves")
 
 
-def _refuse_rest(axes: dict[str, list[Any]], over: list[str], kind: str) -> None:
+def _refuse_rest(axes: Tables, over: list[str], kind: str) -> None:
     if over:
         raise SceneError(
             [

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from raceway.commands.screen.text import rows_table, written
+from raceway.storage.tables import ReadTables
+
+if TYPE_CHECKING:
+    from raceway.storage.tables import Tables
 
 #: Points of a sweep that a screen shows one by one.
 _MOST_ROWS, _MOST_REASONS = 30, 5
@@ -17,16 +21,19 @@ _MOST_ROWS, _MOST_REASONS = 30, 5
 _NUMBER = re.compile(r"\d+(\.\d+)?(e[+-]?\d+)?")
 
 
-def sweep_screen(content: Mapping[str, Any], rows: Iterable[Mapping[str, Any]], files: Sequence[str]) -> RenderableType:
+def sweep_screen(content: ReadTables, rows: Iterable[ReadTables], files: Sequence[str]) -> RenderableType:
     """How many points are in each state, the first of them with their stiffness, why points failed, and what they warn of."""
     from raceway.studies.sweep.design import point_words
 
     shown: list[dict[str, str]] = []
     reasons: list[str] = []
-    told: dict[str, list[Any]] = {}  # warning without its numbers -> count, its words and the point that has it first
+    told: dict[
+        str, tuple[int, str, Tables]
+    ] = {}  # warning without its numbers -> count, its words and the point that has it first
     for row in rows:
         for text in row["warnings"]:
-            told.setdefault(_NUMBER.sub("#", text), [0, text, row["point"]])[0] += 1
+            count, first, point = told.get(key := _NUMBER.sub("#", text), (0, text, row["point"]))
+            told[key] = count + 1, first, point
         if len(shown) < _MOST_ROWS:
             shown.append(_sweep_row(row))
         if row["status"] == "failed" and len(reasons) < _MOST_REASONS:
@@ -43,7 +50,7 @@ def sweep_screen(content: Mapping[str, Any], rows: Iterable[Mapping[str, Any]], 
     return Group(*parts, *written(files))
 
 
-def _sweep_row(row: Mapping[str, Any]) -> dict[str, str]:
+def _sweep_row(row: ReadTables) -> dict[str, str]:
     from raceway.studies.many.axes import shown
 
     values = row["values"]

@@ -13,6 +13,7 @@ import numpy as np
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.scene.file import parse_value
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import is_number, shown
 
 if TYPE_CHECKING:
@@ -39,8 +40,8 @@ class Selection:
     """
 
     dataset: Dataset
-    axes: dict[str, list[Any]]
-    fixed: dict[str, Any]
+    axes: Tables
+    fixed: Tables
     unfinished: dict[str, int]
 
     @property
@@ -48,12 +49,12 @@ class Selection:
         return str(self.scene.get("title", "sweep"))
 
     @property
-    def scene(self) -> dict[str, Any]:
+    def scene(self) -> Tables:
         """The scene that was swept; keys of ``axes`` and ``fixed`` have other values."""
         found = json.loads(self.dataset.attrs.get("scene", "{}"))
         return found if isinstance(found, dict) else {}
 
-    def value(self, key: str, default: Any = None) -> Any:
+    def value(self, key: str, default: object = None) -> Any:
         """What a key of the scene is at all points of the selection; ``default`` where it is not given.
 
         Raises
@@ -78,7 +79,7 @@ class Selection:
         return ", ".join(f"{count} {state}" for state, count in self.unfinished.items())
 
 
-def parse_at(texts: Iterable[str]) -> dict[str, Any]:
+def parse_at(texts: Iterable[str]) -> Tables:
     """``KEY=VALUE`` texts as a mapping.
 
     Raises
@@ -86,7 +87,7 @@ def parse_at(texts: Iterable[str]) -> dict[str, Any]:
     SceneError
         With every text that is not of this form, and every key that stands twice.
     """
-    chosen: dict[str, Any] = {}
+    chosen: Tables = {}
     mistakes = []
     for text in texts:
         key, sign, value = (part.strip() for part in text.partition("="))
@@ -108,7 +109,7 @@ def keys_of(dataset: Dataset) -> list[str]:
     return [str(name) for name in dataset.dims if name in dataset.coords and "." in str(name)]
 
 
-def select(dataset: Dataset, at: Mapping[str, Any]) -> Selection:
+def select(dataset: Dataset, at: ReadTables) -> Selection:
     """The results at chosen values.
 
     Parameters
@@ -122,7 +123,7 @@ def select(dataset: Dataset, at: Mapping[str, Any]) -> Selection:
         An unknown key, or a value that the sweep does not hold; the nearest one is named.
     """
     keys = keys_of(dataset)
-    mistakes, chosen = [], dict[str, Any]()
+    mistakes, chosen = [], Tables()
     for key, wanted in at.items():
         if key not in keys:
             message = f"is not an axis of this sweep{nearest(key, keys)}; axes: {', '.join(keys)}"
@@ -137,7 +138,7 @@ def select(dataset: Dataset, at: Mapping[str, Any]) -> Selection:
     if mistakes:
         raise SceneError(mistakes)
     part = _list_at(dataset, chosen) if LIST in dataset.dims else dataset.sel(chosen)
-    axes, fixed = dict[str, list[Any]](), dict[str, Any]()
+    axes, fixed = Tables(), Tables()
     for key in keys:
         values = _values(part[key].values)
         if key in chosen or len(values) == 1:
@@ -155,12 +156,12 @@ def same(one: Any, other: Any) -> bool:
     return _text(one) == _text(other)
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     """What is no number has its JSON text on an axis."""
     return value if isinstance(value, str) else json.dumps(value)
 
 
-def listed(values: Sequence[Any]) -> str:
+def listed(values: Sequence[object]) -> str:
     """Values for a message; long lists are shortened in the middle."""
     texts = [shown(value) for value in values]
     if len(texts) > _SHOWN:
@@ -195,7 +196,7 @@ def _values(array: np.ndarray) -> list[Any]:
     return sorted(found) if all(is_number(value) for value in found) else found
 
 
-def _list_at(dataset: Dataset, chosen: Mapping[str, Any]) -> Dataset:
+def _list_at(dataset: Dataset, chosen: ReadTables) -> Dataset:
     keep = np.ones(dataset.sizes[LIST], dtype=bool)
     for key, value in chosen.items():
         keep &= np.array([same(one, value) for one in dataset[key].values.tolist()])
@@ -211,7 +212,7 @@ def _unfinished(dataset: Dataset) -> dict[str, int]:
     return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state != DONE}
 
 
-def _as_grid(part: Dataset, axes: Mapping[str, list[Any]], fixed: Mapping[str, Any]) -> Dataset:
+def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
     """Axes that do not vary dropped, the others sorted; a list becomes a grid where it fills one."""
     keys = list(axes)
     if LIST not in part.dims:

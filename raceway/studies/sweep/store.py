@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.errors import RacewayError
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis
 from raceway.studies.sweep.design import Design
 
@@ -32,7 +33,7 @@ _MOMENT_S = 0.2
 POINTS, LOCK = "points.sqlite", ".lock"
 _CONTENT = "state, reason, key, content, warnings, cost"
 #: What a row that was damaged is read as: the point waits to be computed again.
-_EMPTY: dict[str, Any] = {
+_EMPTY: Tables = {
     "status": "waiting", "reason": "its row in the store is damaged", "values": {}, "warnings": [], "key": "", "cost": {},
 }  # fmt: skip
 _TABLES = (
@@ -59,7 +60,7 @@ class Store:
         self._committed = -_MOMENT_S
         with self._told():
             found = connection.execute("SELECT name, value FROM facts").fetchall()
-        self.facts: dict[str, Any] = _read_facts(path, dict(found))
+        self.facts: Tables = _read_facts(path, dict(found))
         if self.facts.get("schema") != SCHEMA:
             raise RacewayError(
                 f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
@@ -83,7 +84,7 @@ class Store:
         return str(self.facts["scene"]["title"])
 
     @property
-    def scene(self) -> dict[str, Any]:
+    def scene(self) -> Tables:
         """Every key of the scene at the first point."""
         return dict(self.facts["scene"])
 
@@ -98,7 +99,7 @@ class Store:
             found = dict(self._connection.execute("SELECT state, COUNT(*) FROM points GROUP BY state").fetchall())
         return {**{state: found.get(state, 0) for state in STATES}, "total": self.design.size}
 
-    def rows(self) -> Iterator[dict[str, Any]]:
+    def rows(self) -> Iterator[Tables]:
         """``{point, status, reason, values, warnings, key, cost}`` of every point, in the order of the design.
 
         One row a point, whatever the file says: readers put the values of the n-th row at the n-th point.
@@ -125,7 +126,7 @@ class Store:
                 return
             yield from some
 
-    def _row(self, number: int, stored: list[Any] | None) -> dict[str, Any]:
+    def _row(self, number: int, stored: list[Any] | None) -> Tables:
         if stored is None:
             return {**_EMPTY, "point": self.design.point(number)}
         state, reason, key, content, warnings, cost = stored
@@ -161,7 +162,7 @@ class Store:
         self._connection.commit()
         self._committed = time.monotonic()
 
-    def put(self, rows: Iterable[Mapping[str, Any]]) -> None:
+    def put(self, rows: Iterable[ReadTables]) -> None:
         """Keep finished rows, all in one transaction.
 
         Raises
@@ -210,11 +211,11 @@ class Store:
                 self._connection.execute("UPDATE points SET state = 'waiting', reason = NULL WHERE state = ?", (state,))
             self._commit()
 
-    def _digest(self, number: int, state: str, rest: tuple[Any, ...]) -> str:
+    def _digest(self, number: int, state: str, rest: tuple[object, ...]) -> str:
         """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
         return hashlib.blake2b(repr((self._origin, number, state, *rest)).encode(), digest_size=16).hexdigest()
 
-    def _sound(self, number: int, state: Any, rest: tuple[Any, ...], digest: Any) -> bool:
+    def _sound(self, number: int, state: object, rest: tuple[object, ...], digest: object) -> bool:
         """Whether a row says what was written: finished ones have a digest, the others a state alone."""
         if state in ("waiting", "running"):
             return True
@@ -245,7 +246,7 @@ def open_store(path: str | Path) -> Store:
 
 
 @contextmanager
-def written(folder: Path, facts: Mapping[str, Any] | None) -> Iterator[Store]:
+def written(folder: Path, facts: ReadTables | None) -> Iterator[Store]:
     """A store to write, for one process at a time; made with ``facts`` where there is none yet.
 
     Raises
@@ -310,7 +311,7 @@ def _made(connection: sqlite3.Connection) -> bool:
     return connection.execute("SELECT 1 FROM sqlite_master WHERE name = 'facts'").fetchone() is not None
 
 
-def _make(connection: sqlite3.Connection, facts: Mapping[str, Any]) -> None:
+def _make(connection: sqlite3.Connection, facts: ReadTables) -> None:
     """All in one transaction: a store is there with all its points, or not at all."""
     size = Design.from_dict(facts["design"]).size
     whole = {**facts, "schema": SCHEMA, "created": datetime.now(UTC).isoformat(timespec="seconds")}
@@ -335,7 +336,7 @@ def facts_digest(texts: Mapping[str, str]) -> str:
     return hashlib.blake2b(repr(told).encode(), digest_size=16).hexdigest()
 
 
-def _read_facts(folder: Path, texts: Mapping[str, str]) -> dict[str, Any]:
+def _read_facts(folder: Path, texts: Mapping[str, str]) -> Tables:
     try:
         return {name: json.loads(text) for name, text in texts.items()}
     except (ValueError, TypeError):
@@ -346,7 +347,7 @@ def _damaged(folder: Path, how: str = "what it says of its scene and design is n
     return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
 
 

@@ -3,18 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+import attrs
 import click
 
-from raceway.commands.frame import PATH, attempt, common, show
+from raceway.commands.frame import PATH, attempt, common, record, show
 from raceway.commands.inputs import require_matplotlib, slug, writable
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from raceway.studies.sweep.selection import Selection
 
 store_argument = click.argument("store", type=PATH)
 at_option = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a value of an axis; repeat for more.")
+
+
+@attrs.frozen
+class PlotOptions:
+    """What ``raceway plot`` is given."""
+
+    store: Path
+    value: str | None
+    x: str | None
+    y: str | None
+    at: tuple[str, ...]
+    kind: str | None
+    out: Path | None
+    as_json: bool
 
 
 @click.command(short_help="Draw a sweep: curves, maps, surfaces.")
@@ -30,16 +48,8 @@ at_option = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choos
 )
 @click.option("--out", type=PATH, metavar="FILE", help="A .png or .svg [STORE/NAME-KIND.png].")
 @common
-def plot(
-    store: Path,
-    value: str | None,
-    x: str | None,
-    y: str | None,
-    at: tuple[str, ...],
-    kind: str | None,
-    out: Path | None,
-    as_json: bool,
-) -> int:
+@record(PlotOptions)
+def plot(given: PlotOptions) -> int:
     """Draw one quantity of a sweep over the keys that were varied.
 
     One more axis becomes panels; what is left over has to be chosen with --at. Points without a result leave gaps, which
@@ -50,16 +60,16 @@ def plot(
       raceway plot raceway-out/B7206C-sweep --value p0 --x excitation.speed_rpm --at load.axial=1000
     """
     require_matplotlib("read the values with raceway sweep --json or --csv")
-    selection = selection_of(store, at)
+    selection = selection_of(given.store, given.at)
     from raceway.studies.sweep.plotting import layout
 
-    picture = layout(selection, value, kind, x, y)
-    path = out or store / f"{slug(picture.name.replace(':', '-').replace(',', '-'))}-{picture.kind}.png"
+    picture = layout(selection, given.value, given.kind, given.x, given.y)
+    path = given.out or given.store / f"{slug(picture.name.replace(':', '-').replace(',', '-'))}-{picture.kind}.png"
     writable(path.parent)
     files: list[str] = []
     failed = attempt(lambda: [picture.write(path)], files)
     content = {
-        "store": str(store),
+        "store": str(given.store),
         "value": picture.name,
         "units": picture.data.attrs.get("units"),
         "kind": picture.kind,
@@ -70,7 +80,7 @@ def plot(
         "unfinished": selection.unfinished,
         "files": files,
     }
-    show(content, as_json, failed, lambda: told(plot_words(content)))
+    show(content, given.as_json, failed, lambda: told(plot_words(content)))
     return 0
 
 
@@ -92,7 +102,7 @@ def head(selection: Selection) -> tuple[str, ...]:
     return tuple(word.replace("\n", "; ") for word in words if word)
 
 
-def plot_words(content: dict[str, Any]) -> list[str]:
+def plot_words(content: Tables) -> list[str]:
     """What was drawn, in sentences."""
     axes = [content["x"], *(key for key in (content["y"], content["panels"]) if key)]
     lines = [f"{content['value']} over {', '.join(axes)} ({content['kind']})"]
@@ -101,7 +111,7 @@ def plot_words(content: dict[str, Any]) -> list[str]:
     return lines + [f"written: {name}" for name in content["files"]]
 
 
-def told(lines: list[str], *tables: Any) -> Any:
+def told(lines: list[str], *tables: RenderableType) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 import attrs
 
@@ -13,6 +12,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
 from raceway.scene.tables import TABLES, Scene
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.identity import plugins_of
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.row_store import files_of
@@ -38,7 +38,7 @@ class Survey:
     notes: tuple[str, ...]
 
 
-def survey(tables: Mapping[str, Any], design: Design, registry: Registry) -> Survey:
+def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
     """Check every value of a grid, each at the first values of the others, or every point of a list.
 
     Raises
@@ -66,7 +66,7 @@ def survey(tables: Mapping[str, Any], design: Design, registry: Registry) -> Sur
     return Survey(first, frozenset(used), {name: _hash(name) for name in sorted(files)}, tuple(notes))
 
 
-def _blamed(mistakes: Iterable[Mistake], point: Mapping[str, Any], changed: str) -> list[Mistake]:
+def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> list[Mistake]:
     """Those that the changed value makes by itself: of a swept key, or of its whole table where no other axis has a part."""
     found = []
     for mistake in mistakes:
@@ -78,7 +78,7 @@ def _blamed(mistakes: Iterable[Mistake], point: Mapping[str, Any], changed: str)
     return found
 
 
-def _others(design: Design) -> Iterator[tuple[str, str, dict[str, Any]]]:
+def _others(design: Design) -> Iterator[tuple[str, str, Tables]]:
     """(where, key that differs from the first point, point)."""
     first = design.point(0)
     for axis in design.axes:
@@ -97,13 +97,13 @@ def key_facts(scene: Scene, key: str) -> tuple[str, str]:
     """(unit, words) of a key of the scene; empty for one that declares none."""
     table, _, rest = key.partition(".")
     names = rest.split(".")
-    parts: list[Any] = [TABLES.get(table), type(getattr(scene, table, None))]
+    parts: list[type | None] = [TABLES.get(table), type(getattr(scene, table, None))]
     if table in PLUGIN_TABLES and table in TABLES:
         frame = getattr(scene, table)
         slot = next(f.name for f in attrs.fields(type(frame)) if "plugin" in f.metadata)
         parts.append(type(getattr(frame, slot)))
     for cls in parts:
-        holder: Any = cls
+        holder = cls
         for name in names[:-1]:
             holder = type(getattr(getattr(scene, table), name, None)) if holder is not None else None
         field = attrs.fields_dict(holder).get(names[-1]) if holder is not None and attrs.has(holder) else None

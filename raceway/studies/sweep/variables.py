@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
@@ -43,10 +45,10 @@ ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
 }
 
 
-def values_of(result: Result) -> dict[str, Any]:
+def values_of(result: Result) -> Tables:
     """Plain numbers and lists of a result; what it does not have is absent."""
     found, still = result.identification, result.equilibrium
-    values: dict[str, Any] = {}
+    values: Tables = {}
     if found is not None:
         z = found.dynamic_stiffness
         values |= {
@@ -69,7 +71,7 @@ def values_of(result: Result) -> dict[str, Any]:
     return values | {"displacement": still.displacement.tolist(), "stiffness": still.stiffness.tolist()}
 
 
-def _loads(result: Result) -> dict[str, Any]:
+def _loads(result: Result) -> Tables:
     """Of the motion where there is one, else of the equilibrium."""
     from raceway.pipeline.motion import motion_table
 

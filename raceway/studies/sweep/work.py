@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -10,6 +11,7 @@ import attrs
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import Tables
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.row_store import row_key
 from raceway.studies.many.work import worker
@@ -32,20 +34,20 @@ class Chain:
     A row is ``{"number", "state": "done" | "failed", "reason", "key", "values", "warnings", "cost"}``.
     """
 
-    tables: dict[str, Any]
+    tables: Tables
     program: str
 
-    def __call__(self, points: list[Any], registry: Registry) -> list[dict[str, Any]]:
+    def __call__(self, points: list[tuple[int, Tables]], registry: Registry) -> list[Tables]:
         before: Result | None = None
-        rows, parts = [], dict[Any, Any]()
+        rows, parts = [], dict[Hashable, Any]()
         for number, point in points:
             row, before = self._row(number, point, registry, before, parts)
             rows.append(row)
         return rows
 
     def _row(
-        self, number: int, point: dict[str, Any], registry: Registry, before: Result | None, parts: dict[Any, Any]
-    ) -> tuple[dict[str, Any], Result | None]:
+        self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Hashable, Any]
+    ) -> tuple[Tables, Result | None]:
         from raceway.pipeline.run import run
 
         wall, cpu = time.perf_counter(), time.process_time()
@@ -71,6 +73,6 @@ class Chain:
         return row, result
 
 
-def unfinished_row(number: int, reason: str) -> dict[str, Any]:
+def unfinished_row(number: int, reason: str) -> Tables:
     """A row of a point that failed, or that has nothing yet."""
     return {"number": number, "state": "failed", "reason": reason, "key": "", "values": {}, "warnings": [], "cost": {}}

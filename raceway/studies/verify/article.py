@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
+from raceway.storage.tables import Tables
 from raceway.studies.many.reference import Case, Number
 
 
@@ -42,7 +42,7 @@ def article_pressures(case: Case, registry: Registry) -> Iterator[Number]:
 
 def _model(axial: float, radial: float, points: int | None, registry: Registry) -> Model:
     """B7206C with rigid bodies and Hertz, or with so many surface points along each semi-axis."""
-    tables: dict[str, Any] = {
+    tables: Tables = {
         "title": "article, section 3.2",
         "bearing": {"preset": "B7206C"},
         "load": {"axial": float(axial), "radial": [float(radial), 0.0]},

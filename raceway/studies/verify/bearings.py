@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
 from raceway.studies.many.reference import Case, Number
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Excitation
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
@@ -146,7 +149,7 @@ def _excited(kind: str, rpm: float, moment: float, share: float, registry: Regis
     return scene_from_dict(tables, registry)
 
 
-def _largest_force(excitation: Any) -> float:
+def _largest_force(excitation: Excitation) -> float:
     """Largest radial force [N] over one turn, sampled at eight instants, the first of which is a crest."""
     kernel, params, out = excitation.kernel(), excitation.parameters(), np.zeros(5)
     largest = 0.0

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import gamma, pi, sqrt
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -24,7 +24,11 @@ from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.framework.registry import Entry, Registry
+from raceway.storage.tables import Tables
 from raceway.studies.many.reference import Case, Number
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator
 
 #: Peak force and contact time of an integrator at this many steps a contact, and how close they have to come: 0.1 %.
 STEPS_PER_CONTACT = 100
@@ -59,7 +63,7 @@ class Impact:
         return _CONTACT_TIME * self.largest_approach / self.speed
 
 
-def impact_of(inputs: dict[str, Any]) -> Impact:
+def impact_of(inputs: Tables) -> Impact:
     """The impact that a case describes; its ``type`` says what the sphere meets."""
     radius, speed = inputs["R_m"], inputs["v_each_m_s"]
     mass = inputs["rho_kg_m3"] * 4.0 / 3.0 * pi * radius**3
@@ -74,7 +78,7 @@ def impact_of(inputs: dict[str, Any]) -> Impact:
 def transient_integrators(registry: Registry) -> list[Entry]:
     """Integrators that march through time with inertia.  One that finds a steady orbit instead says ``steady = True``."""
     found = [entry for entry in registry.all() if entry.kind == "integrator"]
-    return [e for e in found if e.plugin.inertial and not e.plugin.steady]  # type: ignore[attr-defined]
+    return [e for e in found if e.plugin.inertial and not e.plugin.steady]
 
 
 def impact_of_spheres(case: Case, registry: Registry) -> Iterator[Number]:
@@ -95,7 +99,7 @@ def impact_of_spheres(case: Case, registry: Registry) -> Iterator[Number]:
         yield Number(f"contact time, {entry.name} [s]", out["tc_s"], time, TRANSIENT_TOLERANCE, note)
 
 
-def worst_measured(method: Any, impact: Impact, steps: int) -> tuple[float, float]:
+def worst_measured(method: Integrator, impact: Impact, steps: int) -> tuple[float, float]:
     """Peak force [N] and contact time [s] that lie farthest off, over touches at several instants within a step."""
     measured = [measure(method, impact, steps, phase) for phase in _PHASES]
     force = max((m[0] for m in measured), key=lambda f: abs(f - impact.largest_force))
@@ -103,7 +107,7 @@ def worst_measured(method: Any, impact: Impact, steps: int) -> tuple[float, floa
     return force, time
 
 
-def measure(method: Any, impact: Impact, steps: int, phase: float) -> tuple[float, float]:
+def measure(method: Integrator, impact: Impact, steps: int, phase: float) -> tuple[float, float]:
     """Peak force [N] and contact time [s] of one impact at ``steps`` steps a contact.
 
     Parameters

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -12,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.commands.screen.text import number
+from raceway.storage.tables import ReadTables
 from raceway.studies.many.reference import BASES
 
 #: Columns of numbers in the table of ``verify`` and their significant digits.
@@ -20,7 +20,7 @@ _VERIFIED = (("reference", 5), ("computed", 5), ("error", 2), ("tolerance", 2))
 _IN_FULL = ("seed-static-pressures",)
 
 
-def verify_screen(verification: Mapping[str, Any], passed: bool, every: bool = False) -> RenderableType:
+def verify_screen(verification: ReadTables, passed: bool, every: bool = False) -> RenderableType:
     """Reference cases, what was computed, and whether it agrees.
 
     Parameters
@@ -49,10 +49,10 @@ def verify_screen(verification: Mapping[str, Any], passed: bool, every: bool = F
     return Group(table, Text(f"within their tolerance: {', '.join(counts)}", style="green" if passed else "red"))
 
 
-def _worst(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+def _worst(rows: Sequence[ReadTables]) -> list[ReadTables]:
     """Of each case the number closest to its tolerance, all that are off and all of ``_IN_FULL``, in their order."""
 
-    def strain(row: Mapping[str, Any]) -> float:
+    def strain(row: ReadTables) -> float:
         return float("inf") if row["error"] is None or not row["tolerance"] else row["error"] / row["tolerance"]
 
     closest = {case: max((r for r in rows if r["case"] == case), key=strain) for case in {r["case"] for r in rows}}

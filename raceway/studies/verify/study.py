@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from math import isfinite
-from typing import Any
 
 import attrs
 
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
+from raceway.storage.tables import Tables
 from raceway.studies.many.reference import BASES, Case, Number, reference_cases
 from raceway.studies.verify.article import article_pressures
 from raceway.studies.verify.bearings import ellipse_table, masta, nsk_pair, race_ellipse, rig_force
@@ -86,7 +86,7 @@ class Verification:
                 found[row.case] = row
         return tuple(found.values())
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         return {"passed": self.passed, "kept": self.kept, "rows": [attrs.asdict(row) for row in self.rows]}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,13 +13,19 @@ from raceway.storage.files import write_whole
 from raceway.studies.view import scene, surfaces
 from raceway.studies.view.bearing import Bearing, Part
 
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from raceway.studies.view.bearing import State
+    from raceway.studies.view.states import Turn
+
 _SIZE = (640, 640)
 _SECONDS = 4.0
 _INK, _ORBIT, _FORCE = "#20262c", "#c8501e", "#0b5fa5"
 
 
 def animate(
-    bearing: Bearing, turn: Any, heading: str, path: Path, on_frame: Callable[[int, int], None] | None = None
+    bearing: Bearing, turn: Turn, heading: str, path: Path, on_frame: Callable[[int, int], None] | None = None
 ) -> Path:
     """Write a GIF that repeats itself.
 
@@ -57,7 +63,7 @@ def animate(
     return write_whole(_gif(frames), path)
 
 
-def _rings(bearing: Bearing, state: Any) -> list[Part]:
+def _rings(bearing: Bearing, state: State) -> list[Part]:
     """The outer ring, seen through, where it is, and the inner one where its motion takes it."""
     import attrs
 
@@ -72,7 +78,7 @@ def _rings(bearing: Bearing, state: Any) -> list[Part]:
     return parts
 
 
-def _inside(bearing: Bearing, turn: Any, k: int, strongest: float) -> list[Part]:
+def _inside(bearing: Bearing, turn: Turn, k: int, strongest: float) -> list[Part]:
     """In the bore: the orbit as it is drawn, the ring's centre on it, the force as an arrow."""
     size, front = bearing.diameter, 500.0 * bearing.shape.width
     # As large as fits the bore, whatever the factor of the bodies is.
@@ -90,7 +96,7 @@ def _inside(bearing: Bearing, turn: Any, k: int, strongest: float) -> list[Part]
     return parts
 
 
-def _frame(pyvista: Any, parts: list[Part], heading: str, words: str, top: float, peak: float) -> np.ndarray:
+def _frame(pyvista: ModuleType, parts: list[Part], heading: str, words: str, top: float, peak: float) -> np.ndarray:
     plotter = scene.new_plotter(pyvista, _SIZE)
     scene.add_parts(pyvista, plotter, parts, top, peak)
     scene.colour_bar(pyvista, plotter, "ball load [N]", scene.LOADS, top, (0.075, 0.05))

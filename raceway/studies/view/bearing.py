@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from raceway.studies.view import surfaces
 from raceway.studies.view.surfaces import Surface
+
+if TYPE_CHECKING:
+    from raceway.pipeline.result import Result
+    from raceway.scene.tables import Bearing as Dimensions
+    from raceway.storage.tables import Tables
 
 _MM = 1e3
 #: Azimuths that are cut out of the rings [rad], from +y towards +z.
@@ -70,19 +75,19 @@ class Bearing:
     assumed : dimensions that the scene does not give
     """
 
-    result: Any
+    result: Result
     shape: Any
     assumed: tuple[str, ...]
 
     @classmethod
-    def of(cls, result: Any) -> Bearing:
+    def of(cls, result: Result) -> Bearing:
         """From a result; rings without dimensions get usual ones, which are named."""
         b = result.model.scene.bearing
         wall = 0.85 * b.ball_diameter
         usual = {
             "bore": b.pitch_diameter - 2.0 * wall, "outer_diameter": b.pitch_diameter + 2.0 * wall, "width": 1.7 * b.ball_diameter
         }  # fmt: skip
-        missing = {name: value for name, value in usual.items() if getattr(b, name) is None}
+        missing: Tables = {name: value for name, value in usual.items() if getattr(b, name) is None}
         return cls(result, attrs.evolve(b, **missing), tuple(missing))
 
     @property
@@ -196,7 +201,7 @@ class Bearing:
         return np.asarray(outward * (axial + np.cos(angle)[:, None] * radial))
 
 
-def _groove(bearing: Any) -> float:
+def _groove(bearing: Dimensions) -> float:
     """Radius of the circle of inner groove centres [m]."""
     return float(
         0.5 * bearing.pitch_diameter

@@ -4,15 +4,46 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
+import attrs
 import click
 
-from raceway.commands.frame import RESULTS, common, on_scene, out_folder, plugin_files, registry_with, show, show_progress
+from raceway.commands.frame import (
+    RESULTS,
+    common,
+    on_scene,
+    out_folder,
+    plugin_files,
+    record,
+    registry_with,
+    show,
+    show_progress,
+)
 from raceway.commands.inputs import load, slug, tell_faults, writable
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.duties import traits_of
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from raceway.scene.tables import Scene
+
+
+@attrs.frozen
+class ViewOptions:
+    """What ``raceway view`` is given."""
+
+    scene: Path
+    changes: tuple[str, ...]
+    out: Path | None
+    page: bool
+    animate: bool
+    frames: int
+    plugins: tuple[Path, ...]
+    as_json: bool
 
 
 @click.command(short_help="Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.")
@@ -27,10 +58,8 @@ from raceway.plugins.system_libraries import refuse_pictures
 )
 @plugin_files
 @common
-def view(
-    scene: Path, changes: tuple[str, ...], out: Path | None, page: bool, animate: bool, frames: int, plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:  # fmt: skip
+@record(ViewOptions)
+def view(given: ViewOptions) -> int:
     """Compute one scene and draw it: the bearing cut open with its ball loads, contact ellipses with their pressure, ball
     loads by azimuth, the orbit, the mesh of elastic bodies. Needs no display.
 
@@ -38,14 +67,14 @@ def view(
     Example:
       raceway view examples/b7206.toml --html --animate
     """
-    registry = registry_with(plugins)
-    loaded = load(scene, changes, registry)
-    folder = writable(out or RESULTS / slug(loaded.title))
+    registry = registry_with(given.plugins)
+    loaded = load(given.scene, given.changes, registry)
+    folder = writable(given.out or RESULTS / slug(loaded.title))
     for package in ("pyvista", "matplotlib"):
         if find_spec(package) is None:
             raise RacewayError(f"pictures need {package}: {extra('view')}")
     refuse_pictures()
-    if animate and loaded.excitation is None:
+    if given.animate and loaded.excitation is None:
         raise SceneError.at("excitation", None, "is missing, so that nothing moves: add the table, or leave out --animate")
     tell_faults(registry)
     with show_progress() as progress:
@@ -54,19 +83,19 @@ def view(
 
         result = run(loaded, registry, progress)
         mesh = _mesh(loaded, folder) if traits_of(loaded).every_node else None
-        content = draw(result, folder, Wanted(page, frames if animate else 0, mesh), progress)
-    show(content, as_json, None, lambda: _screen(content))
+        content = draw(result, folder, Wanted(given.page, given.frames if given.animate else 0, mesh), progress)
+    show(content, given.as_json, None, lambda: _screen(content))
     return 0
 
 
-def _mesh(scene: Any, folder: Path) -> Path:
+def _mesh(scene: Scene, folder: Path) -> Path:
     from raceway.bodies.meshing import mesh_scene
     from raceway.studies.view.mesh_picture import draw
 
     return draw(mesh_scene(scene), f"{scene.title}\nthe mesh", folder / "mesh.png")
 
 
-def _screen(content: dict[str, Any]) -> Any:
+def _screen(content: Tables) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from raceway.studies.view.bearing import INNER, OUTER, Bearing, State
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
 
 _MM, _INK = 1e3, "#20262c"
@@ -83,7 +84,7 @@ def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, place: float) 
     axes.add_collection(PolyCollection(corners[profile.quads], facecolor="none", edgecolor=_INK, linewidth=0.25, alpha=0.7))
 
 
-def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: float) -> Any:
+def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: float) -> QuadMesh:
     a, b = _MM * state.half[i]
     x, y = np.meshgrid(np.linspace(-reach, reach, 401), np.linspace(-0.35 * reach, 0.35 * reach, 201))
     inside = 1.0 - (x / max(a, 1e-12)) ** 2 - (y / max(b, 1e-12)) ** 2

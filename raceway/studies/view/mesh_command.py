@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import click
@@ -26,8 +26,12 @@ from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.sources import blamed
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from raceway.framework.contracts import Format
     from raceway.framework.registry import Entry
 
 
@@ -79,7 +83,7 @@ def mesh(
         from raceway.core.mesh.summary import summary
 
         progress("judging the cells", 0, 0)
-        content: dict[str, Any] = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
+        content: Tables = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
         files: list[str] = []
         failed = attempt(lambda: _write(written, meshes, folder, progress), files)
         if picture and failed is None:
@@ -87,7 +91,7 @@ def mesh(
             failed = attempt(lambda: [_draw(meshes, content, folder)], files)
     content["files"] = files
 
-    def screen() -> Any:
+    def screen() -> RenderableType:
         from raceway.studies.view.mesh_screen import mesh_screen
 
         return mesh_screen(content)
@@ -96,7 +100,7 @@ def mesh(
     return 0
 
 
-def _write(form: Entry, meshes: dict[str, Any], folder: Path, progress: ProgressBar) -> list[Path]:
+def _write(form: Entry, meshes: Tables, folder: Path, progress: ProgressBar) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -105,14 +109,14 @@ def _write(form: Entry, meshes: dict[str, Any], folder: Path, progress: Progress
     for done, (name, body) in enumerate(meshes.items()):
         progress(f"writing {name}", done, len(meshes))
         with blamed(str(form), "write()"):
-            writer: Any = form.plugin()
+            writer: Format = form.plugin()
             path = folder / f"{slug(name)}{writer.suffixes[0]}"
             writer.write(path, body)
         paths.append(path)
     return paths
 
 
-def _draw(meshes: dict[str, Any], content: dict[str, Any], folder: Path) -> Path:
+def _draw(meshes: Tables, content: Tables, folder: Path) -> Path:
     from raceway.studies.view.mesh_picture import draw
 
     size = f"{content['elements']} hexahedra, {content['nodes']} nodes, {len(meshes)} bodies"

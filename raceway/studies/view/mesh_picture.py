@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from raceway.core.mesh.hex_mesh import FACES, HexMesh, boundary
 from raceway.errors import RacewayError, extra
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.files import write_whole
+
+if TYPE_CHECKING:
+    from types import ModuleType
 
 #: Inner ring, outer ring, everything else.
 _COLOURS = {"inner": "#4f8fc0", "outer": "#c9a24d"}
@@ -44,9 +47,9 @@ def draw(meshes: Mapping[str, HexMesh], title: str, path: Path) -> Path:
     return write_whole(_png(image), path)
 
 
-def _image(pyvista: Any, meshes: Mapping[str, HexMesh], title: str) -> np.ndarray:
+def _image(pyvista: ModuleType, meshes: Mapping[str, HexMesh], title: str) -> np.ndarray:
     """(rows, columns, 3) bytes."""
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(_SIZE))
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(_SIZE))
     plotter.background_color = "white"
     outside: dict[int, np.ndarray] = {}  # balls share one array of cells
     for name, mesh in meshes.items():

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from raceway.commands.screen import Row, grouped, number, sections, written
+from raceway.storage.tables import ReadTables
 
 
-def mesh_screen(found: Mapping[str, Any]) -> RenderableType:
+def mesh_screen(found: ReadTables) -> RenderableType:
     """Numbers of the whole, then a line a body.
 
     Parameters

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 from string import Template
-from typing import Any
 
 import numpy as np
 
+from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page, data_uri
 from raceway.studies.view.bearing import Bearing, Part, State
 from raceway.studies.view.scene import LOADS, PRESSURES
@@ -33,7 +33,7 @@ _COLUMNS = [
 ]  # fmt: skip
 
 
-def view_page(bearing: Bearing, state: State, words: dict[str, Any], pictures: Sequence[tuple[bytes, str, str]]) -> Page:
+def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[tuple[bytes, str, str]]) -> Page:
     """The page.
 
     Parameters
@@ -85,13 +85,13 @@ def _stage(bearing: Bearing, state: State) -> str:
     return Template(files("raceway").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts)
 
 
-def _scene(bearing: Bearing, state: State, top: float, peak: float) -> dict[str, Any]:
+def _scene(bearing: Bearing, state: State, top: float, peak: float) -> Tables:
     """Content that the script draws."""
     z, centres = len(state.azimuth), bearing.centres(state)
     shapes = {"ball": _packed(ball(bearing.diameter, 20, 32))}
-    parts: list[dict[str, Any]] = []
+    parts: list[Tables] = []
 
-    def add(part: Part, shape: str, at: Any, colour: Any) -> None:
+    def add(part: Part, shape: str, at: np.ndarray, colour: np.ndarray | list[float]) -> None:
         parts.append(
             {"name": part.name, "shape": shape, "at": _short(at), "colour": _short(colour), "opacity": part.opacity}
         )
@@ -136,7 +136,7 @@ def _ball_words(state: State, k: int) -> str:
     return "; ".join(words)
 
 
-def _balls(state: State, inner: bool) -> list[list[Any]]:
+def _balls(state: State, inner: bool) -> list[list[object]]:
     """A row for each ball, cells as ``_COLUMNS`` says."""
     z, rows = len(state.azimuth), []
     for k in range(z):
@@ -168,7 +168,7 @@ def _text(array: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode()
 
 
-def _tone(colours: str, share: Any) -> np.ndarray:
+def _tone(colours: str, share: np.ndarray | float) -> np.ndarray:
     """Red, green, blue from 0 to 1 at shares (n,) from 0 to 1 of a colour map."""
     import matplotlib
 
@@ -190,5 +190,5 @@ def _hex(colour: str | None) -> list[float]:
     return [int(text[k : k + 2], 16) / 255.0 for k in (0, 2, 4)]
 
 
-def _short(values: Any) -> list[float]:
+def _short(values: np.ndarray | list[float]) -> list[float]:
     return [round(float(value), 4) for value in np.asarray(values).ravel()]

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.tables import Tables
 from raceway.studies.view.bearing import Bearing, Part, State
 
+if TYPE_CHECKING:
+    from types import ModuleType
+
+T = TypeVar("T")
 LOADS, PRESSURES = "viridis", "inferno"
 _INK = "#20262c"
-_BAR: dict[str, Any] = {
+_BAR: Tables = {
     "color": _INK,
     "title_font_size": 28,
     "label_font_size": 26,
@@ -23,7 +28,7 @@ _BAR: dict[str, Any] = {
 }
 
 
-def pyvista_of(otherwise: str) -> Any:
+def pyvista_of(otherwise: str) -> ModuleType:
     """The package.
 
     Raises
@@ -39,7 +44,7 @@ def pyvista_of(otherwise: str) -> Any:
     return pyvista
 
 
-def quietly(pyvista: Any, draw: Callable[..., Any], *given: Any) -> Any:
+def quietly(pyvista: ModuleType, draw: Callable[..., T], *given: object) -> T:
     """Draw; without a display VTK says so on standard error, and then draws in memory as it was asked to.
 
     Raises
@@ -54,20 +59,20 @@ def quietly(pyvista: Any, draw: Callable[..., Any], *given: Any) -> Any:
         raise RacewayError(f"the picture cannot be drawn: {error}") from None
 
 
-def new_plotter(pyvista: Any, size: tuple[int, int]) -> Any:
+def new_plotter(pyvista: ModuleType, size: tuple[int, int]) -> Any:
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
     plotter.background_color = "white"
     return plotter
 
 
-def add_parts(pyvista: Any, plotter: Any, parts: Sequence[Part], top_load: float, top_pressure: float) -> None:
+def add_parts(pyvista: ModuleType, plotter: Any, parts: Sequence[Part], top_load: float, top_pressure: float) -> None:
     """Put parts into a scene; colours of loads and pressures reach from 0 to the given ends [N, MPa]."""
     for part in parts:
         mesh = pyvista.PolyData.from_regular_faces(part.surface.points, part.surface.triangles)
         mesh.point_data["Normals"] = part.surface.normals
         mesh.point_data.active_normals_name = "Normals"
         # Loads are equal all over a part: as a field, so that all parts share one colour bar.
-        look: dict[str, Any] = {
+        look: Tables = {
             "smooth_shading": True,
             "split_sharp_edges": False,
             "opacity": part.opacity,
@@ -84,7 +89,7 @@ def add_parts(pyvista: Any, plotter: Any, parts: Sequence[Part], top_load: float
             plotter.add_mesh(mesh, scalars="load", cmap=LOADS, clim=(0.0, top_load), ambient=0.3, **look)
 
 
-def colour_bar(pyvista: Any, plotter: Any, title: str, colours: str, top: float, place: tuple[float, float]) -> None:
+def colour_bar(pyvista: ModuleType, plotter: Any, title: str, colours: str, top: float, place: tuple[float, float]) -> None:
     """A colour bar of its own, from 0 to ``top``."""
     table = pyvista.LookupTable(colours, scalar_range=(0.0, top))
     hidden = pyvista.PolyData(np.zeros((1, 3)))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 from textwrap import wrap
-from typing import Any
 
 import attrs
 
@@ -12,6 +11,7 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.reports.pictures import ball_loads, orbit, save_figure
 from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page
 from raceway.studies.view.animation import animate
 from raceway.studies.view.bearing import Bearing, State
@@ -38,8 +38,11 @@ class Wanted:
 #: A page larger than this [bytes] has its animation beside it; some room is left below the 5 MB that a page may have.
 LARGEST_PAGE = 4_900_000
 
+#: File -> its path, what is seen on it, what is told below it.
+Pictures = dict[str, tuple[Path, str, str]]
 
-def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) -> dict[str, Any]:
+
+def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) -> Tables:
     """Write the pictures of a result; ``files`` and what is shown on them.
 
     Raises
@@ -47,7 +50,6 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
     RacewayError
         A package that is missing, a folder that cannot be written; an animation of what does not move.
     """
-    from raceway.studies.view.mesh_picture import _png
 
     turn = last_turn(result, wanted.frames) if wanted.frames else None
     bearing = Bearing.of(result)
@@ -56,27 +58,7 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
     if result.simulation is not None:
         shown, angle = at_peak(result)
         when = f"when a ball carries most, {angle:.0f} deg into the turn"
-    states = {"bearing.png": (rest, "at rest")} | ({"bearing-peak.png": (shown, when)} if shown is not rest else {})
-    pictures: dict[str, tuple[Path, str, str]] = {}
-    for name, (state, words) in states.items():
-        on_progress(f"drawing {name}", len(pictures), 0)
-        path = write_whole(
-            _png(overview(bearing, state, f"{_short(result.title)}\n{words}: {_loads(state)}")), folder / name
-        )
-        pictures[name] = (
-            path,
-            f"the bearing cut open, balls coloured by their load, {words}",
-            f"Loads {words}: {_loads(state)}",
-        )
-    on_progress("drawing contacts.png", len(pictures), 0)
-    path = save_figure(contacts(bearing, shown, f"{_short(result.title)}, {when}"), folder / "contacts.png", 110)
-    told = f"Section and contact ellipses of the most loaded ball {when}; Hertz's pressure"
-    pictures["contacts.png"] = path, "section of the rings with the ball, and its two contact ellipses", told
-    path = save_figure(ball_loads(result), folder / "ball-loads.png", 110)
-    pictures["ball-loads.png"] = path, "ball loads by azimuth", "Ball loads on the inner race by azimuth"
-    if result.simulation is not None:
-        path = save_figure(orbit(result), folder / "orbit.png", 110)
-        pictures["orbit.png"] = path, "orbit of the inner ring", "Orbit of the inner ring's reference point"
+    pictures = _still(result, bearing, rest, (shown, when), folder, on_progress)
     if turn is not None:
         heading = f"{_short(result.title)}\nmotion x {turn.factor:g}"
         path = animate(
@@ -105,7 +87,38 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
     }
 
 
-def _page(bearing: Bearing, state: State, text: dict[str, Any], pictures: dict[str, tuple[Path, str, str]]) -> Page:
+def _still(
+    result: Result, bearing: Bearing, rest: State, peak: tuple[State, str], folder: Path, on_progress: OnProgress
+) -> Pictures:
+    """Pictures of single states, at rest and when a ball carries most, and of the whole record."""
+    from raceway.studies.view.mesh_picture import _png
+
+    shown, when = peak
+    states = {"bearing.png": (rest, "at rest")} | ({"bearing-peak.png": (shown, when)} if shown is not rest else {})
+    pictures: Pictures = {}
+    for name, (state, words) in states.items():
+        on_progress(f"drawing {name}", len(pictures), 0)
+        path = write_whole(
+            _png(overview(bearing, state, f"{_short(result.title)}\n{words}: {_loads(state)}")), folder / name
+        )
+        pictures[name] = (
+            path,
+            f"the bearing cut open, balls coloured by their load, {words}",
+            f"Loads {words}: {_loads(state)}",
+        )
+    on_progress("drawing contacts.png", len(pictures), 0)
+    path = save_figure(contacts(bearing, shown, f"{_short(result.title)}, {when}"), folder / "contacts.png", 110)
+    told = f"Section and contact ellipses of the most loaded ball {when}; Hertz's pressure"
+    pictures["contacts.png"] = path, "section of the rings with the ball, and its two contact ellipses", told
+    path = save_figure(ball_loads(result), folder / "ball-loads.png", 110)
+    pictures["ball-loads.png"] = path, "ball loads by azimuth", "Ball loads on the inner race by azimuth"
+    if result.simulation is not None:
+        path = save_figure(orbit(result), folder / "orbit.png", 110)
+        pictures["orbit.png"] = path, "orbit of the inner ring", "Orbit of the inner ring's reference point"
+    return pictures
+
+
+def _page(bearing: Bearing, state: State, text: Tables, pictures: Pictures) -> Page:
     """The page with all pictures, the animation among them where it has room."""
     images = {name: (path.read_bytes(), seen, told) for name, (path, seen, told) in pictures.items()}
     page = view_page(bearing, state, text, list(images.values()))

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.core.contact.damping import add_damping, stored_energy
 from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps
 from raceway.core.elastic.contacts.traction import Friction
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+    from raceway.core.jit import Kernel
 
 #: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
 _STIFFER = 1.02
@@ -45,7 +50,7 @@ class Contact(ABC):
         area: np.ndarray,
         counts: np.ndarray,
         surfaces: np.ndarray,
-        law: Any,
+        law: Kernel,
         params: np.ndarray,
         state_size: int = 0,
         damping: float = 0.0,
@@ -63,7 +68,7 @@ class Contact(ABC):
         self.normal, self.bend = np.zeros((n, 3)), np.zeros((n, 3, 3))
         self.force, self.stiffness, self.rate_stiffness = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
         self._stiffest = np.zeros(n)
-        self.move: Any = None
+        self.move: csr_matrix = None
 
     # What kinds of contacts differ in
 
@@ -141,7 +146,7 @@ class Contact(ABC):
         moved = (self.move @ u).reshape(-1, 3)
         return np.asarray(self.move.T @ np.einsum("iab,ib->ia", blocks, moved).reshape(-1))
 
-    def tangent(self, blocks: np.ndarray) -> Any:
+    def tangent(self, blocks: np.ndarray) -> csr_matrix:
         """(3 nodes, 3 nodes) sparse B^T D B, of the points whose block is not zero."""
         from scipy.sparse import bsr_array
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -11,6 +11,11 @@ from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.surface import SurfacePoints
 from raceway.core.elastic.contacts.traction import Friction
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+    from raceway.core.jit import Kernel
 
 #: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
 _MOVED = 0.02
@@ -54,7 +59,7 @@ class NodalContact(Contact):
         self,
         pairs: list[Pair],
         nodes: int,
-        law: Any,
+        law: Kernel,
         params: np.ndarray,
         state_size: int = 0,
         damping: float = 0.0,
@@ -69,7 +74,7 @@ class NodalContact(Contact):
         self.outside = np.zeros(len(area))
         self._projected = np.full((len(area), 3), np.inf)
         self._short = np.zeros(len(area))
-        self._weights: Any = None
+        self._weights: csr_matrix = None
         self.update(self.place)
 
     @property

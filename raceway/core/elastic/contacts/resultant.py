@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -10,6 +10,11 @@ import numpy as np
 from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.contacts.footprint import Footprint
 from raceway.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+    from raceway.core.jit import Kernel
 
 #: Newton's iterations of the law with the mesh's compliance, and their tolerance over the deepest gap.
 _ITERATIONS, _TOLERANCE = 60, 1e-12
@@ -65,7 +70,7 @@ class ResultantContact(Contact):
     whole = True
 
     def __init__(
-        self, touches: list[Touch], nodes: int, law: Any, params: np.ndarray, state_size: int = 0, damping: float = 0.0
+        self, touches: list[Touch], nodes: int, law: Kernel, params: np.ndarray, state_size: int = 0, damping: float = 0.0
     ) -> None:
         self.touches = touches
         place, surfaces = np.array([t.centre for t in touches]), np.array([t.surface for t in touches])
@@ -146,7 +151,7 @@ class ResultantContact(Contact):
         return super().energy() - 0.5 * float(self.local @ self._carried**2)
 
 
-def _moves(touches: list[Touch], nodes: int) -> Any:
+def _moves(touches: list[Touch], nodes: int) -> csr_matrix:
     """(3 n, 3 nodes) sparse displacement of balls against races."""
     from scipy.sparse import coo_array
 

@@ -12,7 +12,7 @@ ring's wall, is right.  A ball needs no depths: its c is that of the exact spher
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -21,6 +21,9 @@ from raceway.core.contact.half_space import normal_displacement
 from raceway.core.elastic.contacts.footprint import Footprint, ellipse
 from raceway.core.elastic.contacts.interior import locate
 from raceway.core.linear.statics import StaticSolver
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 #: Depths between which the fields are compared, over the body's reach, and how many.
 DEPTHS, COUNT = (0.5, 0.9), 7
@@ -59,7 +62,7 @@ class LoadedBody:
         self,
         points: np.ndarray,
         cells: np.ndarray,
-        stiffness: Any,
+        stiffness: csr_matrix,
         held: np.ndarray,
         mass: np.ndarray | None,
         material: tuple[float, float, float],
