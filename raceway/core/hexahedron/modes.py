@@ -4,23 +4,21 @@ A trilinear field is the sum over k of a_k h_k, with h = (1, xi, eta, zeta, eta 
 numbered 0 to 7.  The values of h_k at the nodes are the columns of a Hadamard matrix, so nodal values become modes, and
 back, by additions alone.  Here a mode is the plain sum A_k = sum_I h_k(I) a_I = 8 a_k; mode 0, the mean, is never needed.
 
-The functions take and return scalars and are written into their callers, which LLVM can then vectorise.
+The functions take and return tuples and are written into their callers, where the tuples become registers and LLVM can
+vectorise the loop around them.
 """
 
 from numba import float64, types
 
 from raceway.core.jit import jit
 
-_SCALAR = float64
+_SIX, _SEVEN, _EIGHT = (types.UniTuple(float64, count) for count in (6, 7, 8))
 
 
-def _returns(count, arguments):
-    return types.UniTuple(_SCALAR, count)(*([_SCALAR] * arguments))
-
-
-@jit(_returns(7, 8), inline=True)
-def modes(a0, a1, a2, a3, a4, a5, a6, a7):
+@jit(_SEVEN(_EIGHT), inline=True)
+def modes(a):
     """Modes 1 to 7 of eight nodal values in VTK's order: butterflies along xi, then eta, then zeta."""
+    a0, a1, a2, a3, a4, a5, a6, a7 = a
     s0, s1, s2, s3 = a1 + a0, a2 + a3, a5 + a4, a6 + a7
     d0, d1, d2, d3 = a1 - a0, a2 - a3, a5 - a4, a6 - a7
     below, above = s1 - s0, s3 - s2
@@ -32,9 +30,10 @@ def modes(a0, a1, a2, a3, a4, a5, a6, a7):
     )  # fmt: skip
 
 
-@jit(_returns(8, 7), inline=True)
-def nodal(m1, m2, m3, m4, m5, m6, m7):
+@jit(_EIGHT(_SEVEN), inline=True)
+def nodal(m):
     """Nodal values sum_k m_k h_k(I), I = 0 to 7, of modes 1 to 7: the transpose of ``modes``."""
+    m1, m2, m3, m4, m5, m6, m7 = m
     e0, e1 = m2 - m4, m2 + m4
     c0, c1 = m1 - m5, m1 + m5
     t0, t1 = m6 - m7, m6 + m7
@@ -43,13 +42,13 @@ def nodal(m1, m2, m3, m4, m5, m6, m7):
     return s0 - d0, s0 + d0, s1 + d1, s1 - d1, s2 - d2, s2 + d2, s3 + d3, s3 - d3
 
 
-@jit(_returns(6, 14), inline=True)
-def gradient_modes(y1, y2, y3, y4, y5, y6, y7, z1, z2, z3, z4, z5, z6, z7):
+@jit(_SIX(_SEVEN, _SEVEN), inline=True)
+def gradient_modes(y, z):
     """Modes 1 to 6 of the exact mean gradient along x; call with (z, x) for y and with (x, y) for z.
 
     Parameters
     ----------
-    y1 ... z7 : modes of the two other coordinates [m]
+    y, z : modes 1 to 7 of the two other coordinates [m]
 
     Returns
     -------
@@ -62,6 +61,8 @@ def gradient_modes(y1, y2, y3, y4, y5, y6, y7, z1, z2, z3, z4, z5, z6, z7):
     cube, a polynomial; <xi^2> = 1/3 is all that is left of it.  Mode 7 vanishes, and so do all products with y7 and z7.
     """
     third = 1.0 / 3.0
+    y1, y2, y3, y4, y5, y6, _ = y
+    z1, z2, z3, z4, z5, z6, _ = z
     return (
         y2 * z3 - y3 * z2 + third * (y6 * z5 - y5 * z6),
         y3 * z1 - y1 * z3 + third * (y4 * z6 - y6 * z4),
@@ -72,7 +73,13 @@ def gradient_modes(y1, y2, y3, y4, y5, y6, y7, z1, z2, z3, z4, z5, z6, z7):
     )  # fmt: skip
 
 
-@jit(_SCALAR(*([_SCALAR] * 12)), inline=True)
-def dot6(a1, a2, a3, a4, a5, a6, b1, b2, b3, b4, b5, b6):
-    """Inner product of six numbers."""
-    return a1 * b1 + a2 * b2 + a3 * b3 + a4 * b4 + a5 * b5 + a6 * b6
+@jit(float64(_SIX, _SEVEN), inline=True)
+def mean_gradient(b, u):
+    """Inner product of a gradient's modes with those of a field, of which mode 7 has no part in it."""
+    return b[0] * u[0] + b[1] * u[1] + b[2] * u[2] + b[3] * u[3] + b[4] * u[4] + b[5] * u[5]
+
+
+@jit(float64(_SIX), inline=True)
+def square(b):
+    """Inner product of a gradient's modes with themselves."""
+    return b[0] * b[0] + b[1] * b[1] + b[2] * b[2] + b[3] * b[3] + b[4] * b[4] + b[5] * b[5]

@@ -22,7 +22,7 @@ Meth. Engng 17 (1981) 679-706.
 
 from numba import float64, int64, types, uint32, uint64, void
 
-from raceway.core.hexahedron.modes import dot6, gradient_modes, modes, nodal
+from raceway.core.hexahedron.modes import gradient_modes, mean_gradient, modes, nodal, square
 from raceway.core.jit import jit
 
 #: Elements of a block.
@@ -33,21 +33,59 @@ WORK = 48 * WIDTH
 _W = float64[::1]
 
 
-@jit(types.UniTuple(float64, 7)(_W, uint64), inline=True)
+_THREE, _FOUR, _SIX, _SEVEN = (types.UniTuple(float64, count) for count in (3, 4, 6, 7))
+
+
+@jit(_SEVEN(_W, uint64), inline=True)
 def _load(w, at):
     """Modes of the eight nodal values that lie a block's width apart."""
-    return modes(
+    return modes((
         w[at], w[at + uint64(16)], w[at + uint64(32)], w[at + uint64(48)],
         w[at + uint64(64)], w[at + uint64(80)], w[at + uint64(96)], w[at + uint64(112)],
-    )  # fmt: skip
+    ))  # fmt: skip
 
 
-@jit(void(_W, uint64, *([float64] * 7)), inline=True)
-def _store(w, at, m1, m2, m3, m4, m5, m6, m7):
+@jit(void(_W, uint64, _SEVEN), inline=True)
+def _store(w, at, m):
     """The eight nodal values of seven modes, a block's width apart."""
-    f0, f1, f2, f3, f4, f5, f6, f7 = nodal(m1, m2, m3, m4, m5, m6, m7)
+    f0, f1, f2, f3, f4, f5, f6, f7 = nodal(m)
     w[at], w[at + uint64(16)], w[at + uint64(32)], w[at + uint64(48)] = f0, f1, f2, f3
     w[at + uint64(64)], w[at + uint64(80)], w[at + uint64(96)], w[at + uint64(112)] = f4, f5, f6, f7
+
+
+@jit(_THREE(float64, types.UniTuple(_SIX, 3), _SEVEN), inline=True)
+def _gradient(r, b, u):
+    """Mean gradient of a field by its modes; r = 1 / (64 V)."""
+    return r * mean_gradient(b[0], u), r * mean_gradient(b[1], u), r * mean_gradient(b[2], u)
+
+
+@jit(_FOUR(float64, _THREE, _SEVEN, types.UniTuple(_SEVEN, 3)), inline=True)
+def _hourglass(k, g, u, x):
+    """Forces k gamma_a . u in the four hourglass modes: what the linear field of gradient g leaves of u."""
+    return (
+        k * (u[3] - g[0] * x[0][3] - g[1] * x[1][3] - g[2] * x[2][3]),
+        k * (u[4] - g[0] * x[0][4] - g[1] * x[1][4] - g[2] * x[2][4]),
+        k * (u[5] - g[0] * x[0][5] - g[1] * x[1][5] - g[2] * x[2][5]),
+        k * (u[6] - g[0] * x[0][6] - g[1] * x[1][6] - g[2] * x[2][6]),
+    )
+
+
+@jit(float64(float64, _FOUR, _SEVEN), inline=True)
+def _orthogonal(r, q, x):
+    """What the hourglass forces q take off the stress along a coordinate, so that linear fields feel none of them."""
+    return r * (q[0] * x[3] + q[1] * x[4] + q[2] * x[5] + q[3] * x[6])
+
+
+@jit(_SEVEN(_THREE, types.UniTuple(_SIX, 3), _FOUR), inline=True)
+def _force(s, b, q):
+    """Modes of the nodal forces along one direction, of its stresses s and its hourglass forces q."""
+    f, g, h = s
+    x, y, z = b
+    return (
+        f * x[0] + g * y[0] + h * z[0], f * x[1] + g * y[1] + h * z[1], f * x[2] + g * y[2] + h * z[2],
+        f * x[3] + g * y[3] + h * z[3] + q[0], f * x[4] + g * y[4] + h * z[4] + q[1],
+        f * x[5] + g * y[5] + h * z[5] + q[2], q[3],
+    )  # fmt: skip
 
 
 @jit(void(_W, uint64, float64, float64, float64), inline=True)
@@ -64,64 +102,23 @@ def _block(w, base, lame, shear, hourglass):
     """
     for i in range(WIDTH):
         at = base + uint64(i)  # unsigned: numba then checks for no index from the end
-        x1, x2, x3, x4, x5, x6, x7 = _load(w, at)
-        y1, y2, y3, y4, y5, y6, y7 = _load(w, at + uint64(128))
-        z1, z2, z3, z4, z5, z6, z7 = _load(w, at + uint64(256))
-        a1, a2, a3, a4, a5, a6 = gradient_modes(y1, y2, y3, y4, y5, y6, y7, z1, z2, z3, z4, z5, z6, z7)
-        b1, b2, b3, b4, b5, b6 = gradient_modes(z1, z2, z3, z4, z5, z6, z7, x1, x2, x3, x4, x5, x6, x7)
-        c1, c2, c3, c4, c5, c6 = gradient_modes(x1, x2, x3, x4, x5, x6, x7, y1, y2, y3, y4, y5, y6, y7)
-        r = 1.0 / dot6(a1, a2, a3, a4, a5, a6, x1, x2, x3, x4, x5, x6)  # 1 / (64 V)
-        k = (
-            hourglass
-            * r
-            * (  # kappa / 8, as B:B = squares / 512
-                dot6(a1, a2, a3, a4, a5, a6, a1, a2, a3, a4, a5, a6)
-                + dot6(b1, b2, b3, b4, b5, b6, b1, b2, b3, b4, b5, b6)
-                + dot6(c1, c2, c3, c4, c5, c6, c1, c2, c3, c4, c5, c6)
-            )
-        )
-        u1, u2, u3, u4, u5, u6, u7 = _load(w, at + uint64(384))
-        v1, v2, v3, v4, v5, v6, v7 = _load(w, at + uint64(512))
-        w1, w2, w3, w4, w5, w6, w7 = _load(w, at + uint64(640))
-        uxx = r * dot6(a1, a2, a3, a4, a5, a6, u1, u2, u3, u4, u5, u6)
-        uxy = r * dot6(b1, b2, b3, b4, b5, b6, u1, u2, u3, u4, u5, u6)
-        uxz = r * dot6(c1, c2, c3, c4, c5, c6, u1, u2, u3, u4, u5, u6)
-        uyx = r * dot6(a1, a2, a3, a4, a5, a6, v1, v2, v3, v4, v5, v6)
-        uyy = r * dot6(b1, b2, b3, b4, b5, b6, v1, v2, v3, v4, v5, v6)
-        uyz = r * dot6(c1, c2, c3, c4, c5, c6, v1, v2, v3, v4, v5, v6)
-        uzx = r * dot6(a1, a2, a3, a4, a5, a6, w1, w2, w3, w4, w5, w6)
-        uzy = r * dot6(b1, b2, b3, b4, b5, b6, w1, w2, w3, w4, w5, w6)
-        uzz = r * dot6(c1, c2, c3, c4, c5, c6, w1, w2, w3, w4, w5, w6)
-        bulk = lame * (uxx + uyy + uzz)
-        sxy, syz, szx = shear * (uxy + uyx), shear * (uyz + uzy), shear * (uzx + uxz)
-        twice = 2.0 * shear
-        u4, u5 = k * (u4 - uxx * x4 - uxy * y4 - uxz * z4), k * (u5 - uxx * x5 - uxy * y5 - uxz * z5)
-        u6, u7 = k * (u6 - uxx * x6 - uxy * y6 - uxz * z6), k * (u7 - uxx * x7 - uxy * y7 - uxz * z7)
-        v4, v5 = k * (v4 - uyx * x4 - uyy * y4 - uyz * z4), k * (v5 - uyx * x5 - uyy * y5 - uyz * z5)
-        v6, v7 = k * (v6 - uyx * x6 - uyy * y6 - uyz * z6), k * (v7 - uyx * x7 - uyy * y7 - uyz * z7)
-        w4, w5 = k * (w4 - uzx * x4 - uzy * y4 - uzz * z4), k * (w5 - uzx * x5 - uzy * y5 - uzz * z5)
-        w6, w7 = k * (w6 - uzx * x6 - uzy * y6 - uzz * z6), k * (w7 - uzx * x7 - uzy * y7 - uzz * z7)
-        f = bulk + twice * uxx - r * (u4 * x4 + u5 * x5 + u6 * x6 + u7 * x7)
-        g = sxy - r * (u4 * y4 + u5 * y5 + u6 * y6 + u7 * y7)
-        h = szx - r * (u4 * z4 + u5 * z5 + u6 * z6 + u7 * z7)
-        _store(
-            w, at + uint64(384), f * a1 + g * b1 + h * c1, f * a2 + g * b2 + h * c2, f * a3 + g * b3 + h * c3,
-            f * a4 + g * b4 + h * c4 + u4, f * a5 + g * b5 + h * c5 + u5, f * a6 + g * b6 + h * c6 + u6, u7,
-        )  # fmt: skip
-        f = sxy - r * (v4 * x4 + v5 * x5 + v6 * x6 + v7 * x7)
-        g = bulk + twice * uyy - r * (v4 * y4 + v5 * y5 + v6 * y6 + v7 * y7)
-        h = syz - r * (v4 * z4 + v5 * z5 + v6 * z6 + v7 * z7)
-        _store(
-            w, at + uint64(512), f * a1 + g * b1 + h * c1, f * a2 + g * b2 + h * c2, f * a3 + g * b3 + h * c3,
-            f * a4 + g * b4 + h * c4 + v4, f * a5 + g * b5 + h * c5 + v5, f * a6 + g * b6 + h * c6 + v6, v7,
-        )  # fmt: skip
-        f = szx - r * (w4 * x4 + w5 * x5 + w6 * x6 + w7 * x7)
-        g = syz - r * (w4 * y4 + w5 * y5 + w6 * y6 + w7 * y7)
-        h = bulk + twice * uzz - r * (w4 * z4 + w5 * z5 + w6 * z6 + w7 * z7)
-        _store(
-            w, at + uint64(640), f * a1 + g * b1 + h * c1, f * a2 + g * b2 + h * c2, f * a3 + g * b3 + h * c3,
-            f * a4 + g * b4 + h * c4 + w4, f * a5 + g * b5 + h * c5 + w5, f * a6 + g * b6 + h * c6 + w6, w7,
-        )  # fmt: skip
+        x = _load(w, at), _load(w, at + uint64(128)), _load(w, at + uint64(256))
+        b = gradient_modes(x[1], x[2]), gradient_modes(x[2], x[0]), gradient_modes(x[0], x[1])
+        r = 1.0 / mean_gradient(b[0], x[0])  # 1 / (64 V)
+        k = hourglass * r * (square(b[0]) + square(b[1]) + square(b[2]))  # kappa / 8, as B:B = squares / 512
+        u, v, z = _load(w, at + uint64(384)), _load(w, at + uint64(512)), _load(w, at + uint64(640))
+        gu, gv, gz = _gradient(r, b, u), _gradient(r, b, v), _gradient(r, b, z)
+        bulk, twice = lame * (gu[0] + gv[1] + gz[2]), 2.0 * shear
+        sxy, syz, szx = shear * (gu[1] + gv[0]), shear * (gv[2] + gz[1]), shear * (gu[2] + gz[0])
+        q = _hourglass(k, gu, u, x)
+        s = bulk + twice * gu[0] - _orthogonal(r, q, x[0]), sxy - _orthogonal(r, q, x[1]), szx - _orthogonal(r, q, x[2])
+        _store(w, at + uint64(384), _force(s, b, q))
+        q = _hourglass(k, gv, v, x)
+        s = sxy - _orthogonal(r, q, x[0]), bulk + twice * gv[1] - _orthogonal(r, q, x[1]), syz - _orthogonal(r, q, x[2])
+        _store(w, at + uint64(512), _force(s, b, q))
+        q = _hourglass(k, gz, z, x)
+        s = szx - _orthogonal(r, q, x[0]), syz - _orthogonal(r, q, x[1]), bulk + twice * gz[2] - _orthogonal(r, q, x[2])
+        _store(w, at + uint64(640), _force(s, b, q))
 
 
 @jit(void(int64, int64[:, ::1], uint32[:, ::1], _W, _W, _W, _W, _W), releases=True)

@@ -25,7 +25,7 @@ class Address(types.WrapperAddressProtocol):
     """A kernel of one signature, its machine code looked up once; can be called from Python too."""
 
     def __init__(self, kernel: Any, pointer: Any) -> None:
-        self.pointer, self.__name__ = pointer, kernel.__name__
+        self.pointer = pointer
         self._kernel, self._signature = kernel, pointer.signature
         self._address = _get_wrapper_address(kernel, pointer.signature)
 

@@ -22,7 +22,7 @@ from raceway.core.schemes.compiled import (
 from raceway.core.signatures import Outer, Recording, State, Steps
 from raceway.core.stepping.record import Motion, OnChunk, Record, Schedule
 from raceway.core.stepping.states import check_start
-from raceway.errors import ConvergenceError, StabilityError
+from raceway.errors import ConvergenceError, RacewayError, StabilityError
 
 _CHUNK = 20_000
 
@@ -73,7 +73,7 @@ def advance(
         if on_chunk is not None and (longest == _CHUNK or done == last or done % _CHUNK == 0):
             try:
                 on_chunk(done - schedule.first, schedule.steps)
-            except ConvergenceError as why:
+            except RacewayError as why:
                 why.state = {**_state(schedule, done, motion, ball), **why.state}
                 raise
     kept = int(counters[ROWS])
