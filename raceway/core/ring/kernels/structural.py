@@ -30,10 +30,12 @@ from raceway.core.ring.kernels import (
     BY_RADIAL,
     BY_RADIAL_SPEED,
     BY_TURN,
+    CONTACT_FORCE,
     COUPLE_BY_CENTRE,
     COUPLE_BY_SHIFT,
     FORCE_BY_CENTRE,
     FORCE_BY_SPEED,
+    GAP,
     MOVED,
     MOVED_RATE,
     RADIAL_BY_SHIFT,
@@ -44,7 +46,8 @@ from raceway.core.ring.kernels import (
 from raceway.core.ring.kernels.between import centrifugal_displacement, forces, reduce_tangents, step
 from raceway.core.ring.kernels.columns import BALL_CROSS, COUPLED, DISTANCE, FIRST, KNOTS, VALUES, slips_end
 from raceway.core.ring.kernels.layout import LEVER, SIDE, TILT_ARM, place
-from raceway.core.ring.kernels.section import add_ball, to_ring
+from raceway.core.ring.kernels.planar import Pair, Tensor
+from raceway.core.ring.kernels.section import add_ball, seat_of, to_ring
 from raceway.core.ring.kernels.structural_rows import (
     BY_Q,
     BY_V,
@@ -191,12 +194,12 @@ def correct(scalars, table, ball, ball_gain, work, f):
     for c in range(2 * z):
         k, side = (c, 0) if c < z else (c - z, 1)
         w = ball[k, first + side]
-        rest = _compliance_times(scalars, work, 2, c) - w
+        rest = _compliance_times(scalars, work, CONTACT_FORCE, c) - w
         work[STEP, c] = rest
         # Second order in what is left: the force times w, less half of what its part C Q would store.
-        work[STORED, c] = 0.5 * work[2, c] * (w - rest)
+        work[STORED, c] = 0.5 * work[CONTACT_FORCE, c] * (w - rest)
         norm = max(norm, abs(rest))
-        deepest = max(deepest, -work[0, c])
+        deepest = max(deepest, -work[GAP, c])
     if coupled:
         forces(scalars, table, work)
         for c in range(2 * z):
@@ -224,7 +227,7 @@ def correct(scalars, table, ball, ball_gain, work, f):
         k, side = (c, 0) if c < z else (c - z, 1)
         ball[k, first + side] += work[STEP, c]
         work[LAST, c] = work[STEP, c]
-        settled = settled and abs(work[STEP, c]) <= max(1e-8 * -work[0, c], 1e-10 * deepest)
+        settled = settled and abs(work[STEP, c]) <= max(1e-8 * -work[GAP, c], 1e-10 * deepest)
         if coupled:
             ball[k, first + 2 + side] += work[MOVED_STEP, c]
             work[MOVED_LAST, c] = work[MOVED_STEP, c]
@@ -233,8 +236,8 @@ def correct(scalars, table, ball, ball_gain, work, f):
         return GOES_ON
     for k in range(z):
         a, b = work[STEP, k], work[STEP, z + k]
-        inner = work[2, k] + work[BY_OWN, k] * a + work[BY_OTHER, k] * b
-        outer = work[2, z + k] + work[BY_OTHER, z + k] * a + work[BY_OWN, z + k] * b
+        inner = work[CONTACT_FORCE, k] + work[BY_OWN, k] * a + work[BY_OTHER, k] * b
+        outer = work[CONTACT_FORCE, z + k] + work[BY_OTHER, z + k] * a + work[BY_OWN, z + k] * b
         axial = work[AXIAL_BY_SHIFT, k] * a + work[AXIAL_BY_SHIFT, z + k] * b
         radial = work[RADIAL_BY_SHIFT, k] * a + work[RADIAL_BY_SHIFT, z + k] * b
         turn = work[COUPLE_BY_SHIFT, k] * a + work[COUPLE_BY_SHIFT, z + k] * b
@@ -249,7 +252,7 @@ def correct(scalars, table, ball, ball_gain, work, f):
             radial += (work[FORCE_BY_CENTRE + 1, k] + ball_gain * work[FORCE_BY_SPEED + 1, k]) * da
             radial += (work[FORCE_BY_CENTRE + 1, z + k] + ball_gain * work[FORCE_BY_SPEED + 1, z + k]) * dr
             turn += work[COUPLE_BY_CENTRE, k] * da + work[COUPLE_BY_CENTRE, z + k] * dr
-        work[2, k], work[2, z + k] = max(inner, 0.0), max(outer, 0.0)
+        work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k] = max(inner, 0.0), max(outer, 0.0)
         axial *= table[k, SIDE]
         couple = scalars[TILT_ARM] * axial - table[k, LEVER] * radial + table[k, SIDE] * turn
         cosine, sine = work[DIRECTION, k], work[DIRECTION, z + k]
@@ -275,59 +278,33 @@ def tangents(scalars, table, ball_gain, work, f, K, C):
         ga, gr = work[TURNING, k], work[TURNING, z + k]
         by_angle, twice = 0.0, 0.0
         for c in (k, z + k):
-            half = -0.5 * work[2, c] * work[2, c]
+            half = -0.5 * work[CONTACT_FORCE, c] * work[CONTACT_FORCE, c]
             by_angle += half * work[SLOPE, c]
             twice += half * work[CURVE, c]
         if by_angle == 0.0 and twice == 0.0:
             continue
         haa, har = 2.0 * ga * gr, gr * gr - ga * ga
-        add_ball(
-            work[DIRECTION, k], work[DIRECTION, z + k], arm, table[k, SIDE], table[k, LEVER], by_angle * ga, by_angle * gr,
-            twice * ga * ga + by_angle * haa, twice * ga * gr + by_angle * har,
-            twice * ga * gr + by_angle * har, twice * gr * gr - by_angle * haa, 0.0, 0.0, 0.0, 0.0, f, K, C,
-        )  # fmt: skip
+        cross = twice * ga * gr + by_angle * har
+        stiffness = Tensor(twice * ga * ga + by_angle * haa, cross, cross, twice * gr * gr - by_angle * haa)
+        seat = seat_of(k, arm, table, work, DIRECTION)
+        add_ball(seat, Pair(by_angle * ga, by_angle * gr), stiffness, Tensor(0.0, 0.0, 0.0, 0.0), f, K, C)
     if empty:
         return
     rates = 0.0
     for k in range(z):
         ga, gr = work[TURNING, k], work[TURNING, z + k]
+        seat = seat_of(k, arm, table, work, DIRECTION)
         for c in (k, z + k):
             other = z + k if c == k else k
-            to_ring(
-                work[DIRECTION, k],
-                work[DIRECTION, z + k],
-                table,
-                work,
-                k,
-                arm,
-                work[BY_AXIAL, c],
-                work[BY_RADIAL, c],
-                work[BY_TURN, c],
-                BY_Q,
-                c,
-            )
-            to_ring(
-                work[DIRECTION, k],
-                work[DIRECTION, z + k],
-                table,
-                work,
-                k,
-                arm,
-                work[BY_AXIAL_SPEED, c],
-                work[BY_RADIAL_SPEED, c],
-                0.0,
-                BY_V,
-                c,
-            )
+            to_ring(seat, Pair(work[BY_AXIAL, c], work[BY_RADIAL, c]), work[BY_TURN, c], work, BY_Q, c)
+            to_ring(seat, Pair(work[BY_AXIAL_SPEED, c], work[BY_RADIAL_SPEED, c]), 0.0, work, BY_V, c)
             rates += abs(work[BY_AXIAL_SPEED, c]) + abs(work[BY_RADIAL_SPEED, c])
-            d = -work[2, c] * work[SLOPE, c]
-            to_ring(work[DIRECTION, k], work[DIRECTION, z + k], table, work, k, arm, d * ga, d * gr, 0.0, TURN, c)
+            d = -work[CONTACT_FORCE, c] * work[SLOPE, c]
+            to_ring(seat, Pair(d * ga, d * gr), 0.0, work, TURN, c)
             # B + D^T S: a shift changes the forces that turn the ring, too.
-            d = d * work[BY_OWN, c] - work[2, other] * work[SLOPE, other] * work[BY_OTHER, other]
-            to_ring(
-                work[DIRECTION, k], work[DIRECTION, z + k], table, work, k, arm, work[AXIAL_BY_SHIFT, c] + d * ga, work[RADIAL_BY_SHIFT, c] + d * gr,
-                work[COUPLE_BY_SHIFT, c], RING, c,
-            )  # fmt: skip
+            d = d * work[BY_OWN, c] - work[CONTACT_FORCE, other] * work[SLOPE, other] * work[BY_OTHER, other]
+            by_shift = Pair(work[AXIAL_BY_SHIFT, c] + d * ga, work[RADIAL_BY_SHIFT, c] + d * gr)
+            to_ring(seat, by_shift, work[COUPLE_BY_SHIFT, c], work, RING, c)
     for i in range(5):
         _solve_transposed(work, RING + i)
         for c in range(2 * z):
