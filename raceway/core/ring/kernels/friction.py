@@ -47,23 +47,33 @@ def _grip(contact, reach, stretch, mu, stick):
     return Grip(sign * limit, 0.0, -by_shift, by_shift, sign * limit / (stick * lever))
 
 
+@jit(void(int64, MATRIX), inline=True)
+def roll(k, work):
+    """No tangential forces of ball k and no couple."""
+    z = work.shape[1] // 2
+    work[row.TANGENTIAL, k], work[row.BY_ANGLE, k], work[row.BY_LENGTH, k], work[row.BY_SHIFT, k] = 0.0, 0.0, 0.0, 0.0
+    o = z + k
+    work[row.TANGENTIAL, o], work[row.BY_ANGLE, o], work[row.BY_LENGTH, o], work[row.BY_SHIFT, o] = 0.0, 0.0, 0.0, 0.0
+    work[row.COUPLE, k], work[row.COUPLE_BY_ANGLE, k], work[row.COUPLE_BY_TURN, k] = 0.0, 0.0, 0.0
+    work[row.BY_TURN, o], work[row.COUPLE_BY_LENGTH, o], work[row.COUPLE_BY_SHIFT, k] = 0.0, 0.0, 0.0
+
+
 @jit(void(int64, CONTACTS, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
 def rub(k, contacts, scalars, ball, ball_known, work):
-    """Tangential forces of ball k by friction, zeros without, its couple on the ring's section, and its slips in ``ball``."""
-    z = work.shape[1] // 2
-    for side in range(2):
-        c, contact = k + side * z, contacts[side]
-        grip = Grip(0.0, 0.0, 0.0, 0.0, 0.0)
-        if scalars[FRICTION] != 0.0:
-            reach = scalars[OFFSET_INNER] if side == 0 else scalars[OFFSET_OUTER]
-            turned = work[row.TURNED, z + k] if side == 0 else 0.0
-            here = reach * np.arctan2(contact.axial, contact.radial) - turned
-            grip = _grip(contact, reach, here - ball_known[k, SLIPS + side], scalars[FRICTION], scalars[STICK])
-            ball[k, SLIPS + side] = here - grip.stretch
-        work[row.TANGENTIAL, c], work[row.BY_ANGLE, c] = grip.force, grip.by_angle
-        work[row.BY_LENGTH, c], work[row.BY_SHIFT, c] = grip.by_length, grip.by_shift
-        if side == 0:
-            _couple(k, contact, grip, scalars, work)
+    """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``."""
+    z, mu, stick = work.shape[1] // 2, scalars[FRICTION], scalars[STICK]
+    li, lo = scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    inner, outer = contacts
+    at_i = li * np.arctan2(inner.axial, inner.radial) - work[row.TURNED, z + k]
+    at_o = lo * np.arctan2(outer.axial, outer.radial)
+    gi = _grip(inner, li, at_i - ball_known[k, SLIPS], mu, stick)
+    go = _grip(outer, lo, at_o - ball_known[k, SLIPS + 1], mu, stick)
+    ball[k, SLIPS], ball[k, SLIPS + 1] = at_i - gi.stretch, at_o - go.stretch
+    work[row.TANGENTIAL, k], work[row.TANGENTIAL, z + k] = gi.force, go.force
+    work[row.BY_ANGLE, k], work[row.BY_ANGLE, z + k] = gi.by_angle, go.by_angle
+    work[row.BY_LENGTH, k], work[row.BY_LENGTH, z + k] = gi.by_length, go.by_length
+    work[row.BY_SHIFT, k], work[row.BY_SHIFT, z + k] = gi.by_shift, go.by_shift
+    _couple(k, inner, gi, scalars, work)
 
 
 @jit(void(int64, CONTACT, _GRIP, VECTOR, MATRIX), inline=True)

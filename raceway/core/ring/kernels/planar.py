@@ -36,9 +36,7 @@ NOTHING = Pair(0.0, 0.0)
 @jit(TENSOR(TENSOR, TENSOR), inline=True)
 def times_adjugate(a, j):
     """A adj J."""
-    return Tensor(
-        a.aa * j.rr - a.ar * j.ra, a.ar * j.aa - a.aa * j.ar, a.ra * j.rr - a.rr * j.ra, a.rr * j.aa - a.ra * j.ar
-    )
+    return Tensor(a.aa * j.rr - a.ar * j.ra, a.ar * j.aa - a.aa * j.ar, a.ra * j.rr - a.rr * j.ra, a.rr * j.aa - a.ra * j.ar)
 
 
 @jit(PAIR(PAIR, TENSOR), inline=True)

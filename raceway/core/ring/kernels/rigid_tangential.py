@@ -20,10 +20,11 @@ from raceway.core.ring.kernels import (
     WORK_ROWS,
 )
 from raceway.core.ring.kernels import tangential_rows as row
-from raceway.core.ring.kernels.friction import rub
+from raceway.core.ring.kernels.friction import roll, rub
 from raceway.core.ring.kernels.gyroscopic import add_gyroscopic
 from raceway.core.ring.kernels.layout import (
     DAMPING,
+    FRICTION,
     GYROSCOPIC,
     LEVER,
     OFFSET_OUTER,
@@ -67,7 +68,10 @@ def rigid_tangential(
         for k in range(z):
             if work[row.STATE, z + k] == row.MOVES:
                 contacts = contacts_of(k, ball_gain, work)
-                rub(k, contacts, scalars, ball, ball_known, work)
+                if scalars[FRICTION] != 0.0:
+                    rub(k, contacts, scalars, ball, ball_known, work)
+                else:
+                    roll(k, work)
                 if scalars[GYROSCOPIC] != 0.0:
                     add_gyroscopic(k, contacts, scalars, work)
                 moving -= settles(k, attempt, contacts, scalars[OFFSET_OUTER], table, ball, work)

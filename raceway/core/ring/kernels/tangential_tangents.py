@@ -95,6 +95,8 @@ def add_settled(k, ball_gain, seat, work, f, K, C):
     z = work.shape[1] // 2
     contacts = contacts_of(k, ball_gain, work)
     inner, outer = contacts
+    h = work[row.TANGENTIAL, k]
+    force = Pair(inner.force * inner.axial + h * inner.radial, inner.force * inner.radial + h * -inner.axial)
     b = _linearised(k, contacts, work)
     det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
     if det == 0.0:
@@ -110,8 +112,6 @@ def add_settled(k, ball_gain, seat, work, f, K, C):
     force_by_turn, couple_by_centre = less_column(b.by_turn, t, b.by_turn), less_row(by_e, u, b.x)
     couple_by_turn = work[row.COUPLE_BY_TURN, k] - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
     add_couple(seat, work[row.COUPLE, k], force_by_turn, couple_by_centre, couple_by_turn, f, K)
-    h = work[row.TANGENTIAL, k]
-    force = Pair(inner.force * inner.axial + h * inner.radial, inner.force * inner.radial + h * -inner.axial)
     by_centre, by_speed = less(b.e, t, b.x), less(b.m, t, b.m)
     if work.shape[0] > WORK_ROWS:
         work[FORCE, k], work[FORCE, z + k] = force
