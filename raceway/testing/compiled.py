@@ -7,6 +7,7 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
+from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
 from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
 
 
@@ -56,7 +57,8 @@ def one_contact(t, q, v, balls, contacts, constants, response):
     law, law_params, law_old, law_new, dt = contacts
     scalars, _ = constants
     f, K, C, work = response
-    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
     for i in range(gap.size):
         gap[i] = _OPEN
         rate[i] = 0.0

@@ -4,7 +4,7 @@ import numpy as np
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import SHIFT
+from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE, SHIFT
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, DAMPING, TILT_ARM, place, ring_force, ring_tangent
 from raceway.core.signatures import LAW, SYSTEM
 
@@ -38,7 +38,8 @@ def rollers(t, q, v, balls, contacts, constants, response):
     scalars, table = constants
     f, K, C, work = response
     z = table.shape[0]
-    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
     place(t, q, v, scalars, table, work, _DIRECTION, _APPROACH, _SPEED)
     for k in range(z):
         approach, push = work[_APPROACH, z + k], table[k, CENTRIFUGAL]

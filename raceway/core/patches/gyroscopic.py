@@ -2,7 +2,7 @@
 
 Notes
 -----
-``raceway.core.ring.kernels.rigid_tangential`` has the equations: T = share M / D at both contacts along the grooves, M a function of
+``raceway.core.ring.kernels.gyroscopic`` has the equations: T = share M / D at both contacts along the grooves, M a function of
 both contact angles; the inner race takes no more than its normal force, the outer one the rest.
 """
 
@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from raceway.core.patches.contact import Pressed
-from raceway.core.ring.kernels.rigid_tangential import gyroscopic_moment
+from raceway.core.ring.kernels.gyroscopic import gyroscopic_moment
 
 #: Step of the difference quotients of the moment [rad], see there.
 _STEP = 1e-5

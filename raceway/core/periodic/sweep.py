@@ -5,8 +5,7 @@ from numba import float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.periodic.arrays import CHANGE, ELIMINATED, INDICES
-from raceway.core.ring.kernels import FORCES as CONTACT_FORCES
-from raceway.core.ring.kernels import GAPS
+from raceway.core.ring.kernels import CONTACT_FORCE, GAP
 from raceway.core.ring.kernels.columns import work_rows
 from raceway.core.ring.orbit import STATES
 from raceway.core.signatures import CUBE, FORCE_POINTER, FORCES, MATRIX, VECTOR, Balls, Contacts, Response
@@ -97,6 +96,6 @@ def contacts(forces, memory, states, gap, force):
         if forces.system(states.times[i], states.q[i], states.v[i], balls, law, constants, response) != 0:
             return i
         for c in range(gap.shape[1]):
-            gap[i, c] = work[GAPS, c]
-            force[i, c] = work[CONTACT_FORCES, c]
+            gap[i, c] = work[GAP, c]
+            force[i, c] = work[CONTACT_FORCE, c]
     return states.times.size

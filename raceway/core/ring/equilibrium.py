@@ -19,7 +19,7 @@ from numba import float64, int64, void
 from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
 from raceway.core.ring.dense import cholesky_solve, copy_matrix
-from raceway.core.ring.kernels import FORCES, GAPS, STORED
+from raceway.core.ring.kernels import CONTACT_FORCE, GAP, STORED
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, stop
 from raceway.core.signatures import (
     CONSTANTS,
@@ -46,7 +46,7 @@ _SCRATCH, _SCRATCH_END = 8, 14
 def contact_energy(contacts, constants, ball, work, energy):
     """Energy [J] stored in all contacts at the gaps in ``work`` and in the bodies, less the work of the centrifugal forces."""
     table = constants.table
-    stored_energy(contacts.law, contacts.params, contacts.old, contacts.new, work[GAPS], work[_SCRATCH:_SCRATCH_END], energy)
+    stored_energy(contacts.law, contacts.params, contacts.old, contacts.new, work[GAP], work[_SCRATCH:_SCRATCH_END], energy)
     total = 0.0
     for i in range(energy.size):
         total += energy[i] + work[STORED, i]
@@ -71,7 +71,7 @@ def force_scale(work, inner):
     """Sum of the inner races' forces and a ten-thousandth of the outer ones' [N]."""
     total = 0.0
     for i in range(work.shape[1]):
-        total += abs(work[FORCES, i]) * (1.0 if i < inner else 1e-4)
+        total += abs(work[CONTACT_FORCE, i]) * (1.0 if i < inner else 1e-4)
     return total
 
 

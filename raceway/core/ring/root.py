@@ -11,7 +11,7 @@ from numba import boolean, float64
 from raceway.core.jit import jit
 from raceway.core.ring.dense import solve
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_CONVERGED, RESIDUAL
-from raceway.core.ring.kernels import FORCES
+from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.columns import keep_slips
 from raceway.core.ring.kernels.layout import CAGE, TILT_ARM, stop
 from raceway.core.signatures import LINEAR, MATRIX, SETTLE, VECTOR, Balls, Constants, Contacts, Response
@@ -41,7 +41,7 @@ def find_root(forces, linear, tolerance, t, rest, response, report):
         norm, scale = np.inf, 0.0
         if status == 0:
             for i in range(work.shape[1]):
-                scale += abs(work[FORCES, i])
+                scale += abs(work[CONTACT_FORCE, i])
             for i in range(5):
                 scale += abs(linear.load[i]) * weight[i]
             norm = imbalance(linear, now.f, q, weight, r)

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, settle
-from raceway.core.ring.kernels import FORCES, GAPS
+from raceway.core.ring.kernels import CONTACT_FORCE, GAP
 from raceway.core.ring.kernels.columns import BLOCK, ROW, are_condensed, elastic_columns, work_rows
 from raceway.core.ring.kernels.layout import (
     CAGE,
@@ -168,7 +168,7 @@ class System(Ring):
         )  # fmt: skip
         if status != 0:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
-        return Evaluation(f, K, C, work[GAPS].copy(), work[FORCES].copy(), ball, new)
+        return Evaluation(f, K, C, work[GAP].copy(), work[CONTACT_FORCE].copy(), ball, new)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE

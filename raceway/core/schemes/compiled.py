@@ -20,7 +20,8 @@ quasi_static             a series of equilibria, around the solver that finds on
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import FORCES, GAPS
+from raceway.core.ring.kernels import CONTACT_FORCE as FORCES
+from raceway.core.ring.kernels import GAP
 from raceway.core.signatures import MATRIX, OUTER, RECORDING, VECTOR
 
 #: evaluations, reason of a failure, residual at the failure, greatest penetration [m], greatest contact force [N].
@@ -46,7 +47,7 @@ def note_step(recording, number, t, motion, outer, work, ball):
     n = work.shape[1]
     lowest, largest = -counters[PENETRATION], counters[CONTACT_FORCE]
     for i in range(n):
-        lowest, largest = min(lowest, work[GAPS, i]), max(largest, work[FORCES, i])
+        lowest, largest = min(lowest, work[GAP, i]), max(largest, work[FORCES, i])
     counters[PENETRATION], counters[CONTACT_FORCE] = -lowest, largest
     if number % stride != 0:
         return
@@ -60,7 +61,7 @@ def note_step(recording, number, t, motion, outer, work, ball):
         rows[row, 6 + i] = motion[1, i]
         rows[row, 11 + i] = outer[i]
     for i in range(n):
-        probes[row, 0, i] = work[GAPS, i]
+        probes[row, 0, i] = work[GAP, i]
         probes[row, 1, i] = work[FORCES, i]
     for pair in range(ball.shape[1] // 2):
         for k in range(ball.shape[0]):

@@ -14,26 +14,29 @@ Every kernel has the signature ``raceway.core.signatures.SYSTEM``, whose records
     constants   of the model, laid out in ``layout``
     response    f, K, C: internal force [N, N m] and its derivatives by q and by v; a caller that needs no tangents gives K and
                 C of shape (0, 0), which are left alone.  work (rows, 2 Z): ``columns.work_rows`` tells how many; on return
-                rows GAPS and FORCES hold gap [m] and force [N] of every contact
+                rows GAP and CONTACT_FORCE hold gap [m] and force [N] of every contact
 
 and returns 0, or 1 when the balls did not find their equilibrium.  Damping and tilt stiffness of the shaft, masses and
 outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the balls of all rows.
 
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
-rigid_tangential   the same with gyroscopic moments or friction: no potential
+rigid_tangential   the same with gyroscopic moments or friction: no potential;  tangential_rows: rows of ``work`` for it
+gyroscopic, friction   tangential forces of a ball
+tangential_newton, tangential_tangents   where the ball finds its balance, and its derivatives by the ring's motion
 condensed   each of these on elastic rings and balls
 structural         contacts and structural compliances in series;  structural_rows: rows of ``work`` for them
 between            balls that act on each other through elastic rings
-section            one ball's contribution to the ring
+section            one ball's contribution to the ring;  planar: vectors and 2x2 matrices of its meridian plane
 layout, columns    constants of a model, columns of ``ball``, rows of ``work``
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """
 
-#: Rows of ``work``: gap, gap rate, force, d_gap, d_rate, then scratch of the ball solvers (5 to 25), then what the bodies'
+#: Rows of ``work`` that the law fills or reads, of every contact: gap [m], its rate [m/s], force [N], its derivatives by both.
+GAP, GAP_RATE, CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE = range(5)
+#: Rows of rigid bodies in all.  Those of the ball solvers (5 to 25) stand with the kernels; then follows what the bodies'
 #: elasticity adds to each gap [m], its rate [m/s] and the energy it stores [J]: zeros for rigid bodies.
 WORK_ROWS = 29
-GAPS, GAP_RATES, FORCES, FORCES_BY_GAP, FORCES_BY_RATE = range(5)
 SHIFT, SHIFT_RATE, STORED = 26, 27, 28
 #: Rows that condensed bodies have beyond these.  Kernels fill them with the derivatives of both contact forces of a ball by
 #: the vector e, its velocity, the shifts (own and the other contact's) and the turn of the section; of its force on the

@@ -30,6 +30,7 @@ from raceway.core.ring.kernels import (
     BY_RADIAL,
     BY_RADIAL_SPEED,
     BY_TURN,
+    CONTACT_FORCE,
     COUPLE_BY_CENTRE,
     COUPLE_BY_SHIFT,
     FORCE,
@@ -42,7 +43,8 @@ from raceway.core.ring.kernels import (
 )
 from raceway.core.ring.kernels.columns import BALL_CROSS, BLOCK, KNOTS, ROW, VALUES
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, TILT_ARM
-from raceway.core.ring.kernels.section import to_ring
+from raceway.core.ring.kernels.planar import Pair
+from raceway.core.ring.kernels.section import seat_of, to_ring
 from raceway.core.ring.kernels.structural_rows import (
     APPROACH_BY_CENTRE,
     BALL_TANGENT,
@@ -105,7 +107,7 @@ def forces(scalars, table, work):
     """Forces of the balls on the ring, what is left of d = d_c - M F, and the energy that the rings store."""
     z = table.shape[0]
     for k in range(z):
-        turn = -0.5 * (work[2, k] ** 2 * work[SLOPE, k] + work[2, z + k] ** 2 * work[SLOPE, z + k])
+        turn = -0.5 * (work[CONTACT_FORCE, k] ** 2 * work[SLOPE, k] + work[CONTACT_FORCE, z + k] ** 2 * work[SLOPE, z + k])
         for c in (k, z + k):
             work[CARRIED, c] = work[FORCE, c] + turn * work[TURNING, c]
     _rings_times(scalars, work, CARRIED, MOVED_REST)
@@ -121,7 +123,7 @@ def _by_shift(work, k):
     """Force of a ball by its structural approaches: axial, radial by the inner one, axial, radial by the outer one [N/m]."""
     z = work.shape[1] // 2
     ga, gr = work[TURNING, k], work[TURNING, z + k]
-    di, do = -work[2, k] * work[SLOPE, k], -work[2, z + k] * work[SLOPE, z + k]
+    di, do = -work[CONTACT_FORCE, k] * work[SLOPE, k], -work[CONTACT_FORCE, z + k] * work[SLOPE, z + k]
     inner = di * work[BY_OWN, k] + do * work[BY_OTHER, z + k]
     outer = do * work[BY_OWN, z + k] + di * work[BY_OTHER, k]
     return (
@@ -152,7 +154,7 @@ def _by_centre(scalars, work, k, place, speed):
     """
     z = work.shape[1] // 2
     ga, gr, cross = work[TURNING, k], work[TURNING, z + k], scalars[BALL_CROSS]
-    di, do = -work[2, k] * work[SLOPE, k], -work[2, z + k] * work[SLOPE, z + k]
+    di, do = -work[CONTACT_FORCE, k] * work[SLOPE, k], -work[CONTACT_FORCE, z + k] * work[SLOPE, z + k]
     qia = place * work[BY_AXIAL, k] + speed * work[BY_AXIAL_SPEED, k]
     qir = place * work[BY_RADIAL, k] + speed * work[BY_RADIAL_SPEED, k]
     qoa = place * work[BY_AXIAL, z + k] + speed * work[BY_AXIAL_SPEED, z + k]
@@ -165,7 +167,7 @@ def _by_centre(scalars, work, k, place, speed):
         scalars, work, k, ci * qir + cross * qor - place * di * gr, cross * qir + co * qor - place * do * gr
     )
     wai, wri, wao, wro = _by_shift(work, k)
-    half_i, half_o = -0.5 * work[2, k] ** 2, -0.5 * work[2, z + k] ** 2
+    half_i, half_o = -0.5 * work[CONTACT_FORCE, k] ** 2, -0.5 * work[CONTACT_FORCE, z + k] ** 2
     slope = place * (half_i * work[SLOPE, k] + half_o * work[SLOPE, z + k])
     curve = place * (half_i * work[CURVE, k] + half_o * work[CURVE, z + k])
     haa, har = 2.0 * ga * gr, gr * gr - ga * ga
@@ -317,27 +319,27 @@ def reduce_tangents(scalars, table, ball_gain, work, K, C):
     z, arm, cross = table.shape[0], scalars[TILT_ARM], scalars[BALL_CROSS]
     rates = 0.0
     for k in range(z):
-        c, s = work[DIRECTION, k], work[DIRECTION, z + k]
+        seat = seat_of(k, arm, table, work, DIRECTION)
         wai, wri, wao, wro = _by_shift(work, k)
         # By the turn of the section, and of the couple by d.
         qi, qo = work[BY_TURN, k], work[BY_TURN, z + k]
         wi, wo = _approaches(scalars, work, k, work[OWN, k] * qi + cross * qo, cross * qi + work[OWN, z + k] * qo)
-        turned = -work[2, k] * work[SLOPE, k] * qi - work[2, z + k] * work[SLOPE, z + k] * qo
+        turned = -work[CONTACT_FORCE, k] * work[SLOPE, k] * qi - work[CONTACT_FORCE, z + k] * work[SLOPE, z + k] * qo
         axial = work[FORCE_BY_TURN, k] + turned * work[TURNING, k] + wai * wi + wao * wo
         radial = work[FORCE_BY_TURN, z + k] + turned * work[TURNING, z + k] + wri * wi + wro * wo
         aa, ar, ra, rr, _, _, _, _ = _by_centre(scalars, work, k, 1.0, 0.0)
-        to_ring(c, s, table, work, k, arm, aa, ar, axial, BY_Q, k)
-        to_ring(c, s, table, work, k, arm, ra, rr, radial, BY_Q, z + k)
+        to_ring(seat, Pair(aa, ar), axial, work, BY_Q, k)
+        to_ring(seat, Pair(ra, rr), radial, work, BY_Q, z + k)
         aa, ar, ra, rr, _, _, _, _ = _by_centre(scalars, work, k, 0.0, 1.0)
         rates += abs(aa) + abs(rr)
-        to_ring(c, s, table, work, k, arm, aa, ar, 0.0, BY_V, k)
-        to_ring(c, s, table, work, k, arm, ra, rr, 0.0, BY_V, z + k)
+        to_ring(seat, Pair(aa, ar), 0.0, work, BY_V, k)
+        to_ring(seat, Pair(ra, rr), 0.0, work, BY_V, z + k)
         for side in range(2):
             d = k + side * z
             turn = work[COUPLE_BY_CENTRE, d]
             turn += work[COUPLE_BY_SHIFT, k] * work[APPROACH_BY_CENTRE, d]
             turn += work[COUPLE_BY_SHIFT, z + k] * work[APPROACH_BY_CENTRE + 1, d]
-            to_ring(c, s, table, work, k, arm, work[BALL_TANGENT, d], work[BALL_TANGENT + 1, d], turn, RING, d)
+            to_ring(seat, Pair(work[BALL_TANGENT, d], work[BALL_TANGENT + 1, d]), turn, work, RING, d)
     for i in range(5):
         _rings_times(scalars, work, RING + i, WEIGHT + i)
         _solve_transposed(scalars, work, WEIGHT + i)

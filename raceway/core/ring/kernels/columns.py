@@ -21,6 +21,8 @@ from raceway.core.signatures import MATRIX, VECTOR
 #: Where balls act on each other, ``BLOCK`` numbers follow for each distance of two balls, 0 to Z - 1, see ``between``.
 BALL_CROSS, COUPLED, ROW, FIRST, DISTANCE, KNOTS, VALUES = range(SCALARS, SCALARS + 7)
 BLOCK = 5
+#: Column of ``ball`` that the slips of friction begin at, inner and outer contact [m].
+SLIPS = 2
 
 
 @jit(boolean(VECTOR))
@@ -47,7 +49,7 @@ def work_rows(scalars, table):
 
 @jit(int64(VECTOR, MATRIX))
 def slips_end(scalars, ball):
-    """The column after the slips, which begin at 2."""
+    """The column after the slips, which begin at ``SLIPS``."""
     return ball.shape[1] - elastic_columns(scalars)
 
 
@@ -72,7 +74,7 @@ def next_balls(scalars, dt, ball, before, known, trial):
     for k in range(ball.shape[0]):
         for c in range(ball.shape[1]):
             now, last = ball[k, c], before[k, c]
-            committed = 2 <= c < end
+            committed = SLIPS <= c < end
             known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
             trial[k, c] = now if committed else 2.0 * now - last
 
@@ -84,7 +86,7 @@ def accept_balls(scalars, dt, ball, before, known, trial):
     for k in range(ball.shape[0]):
         for c in range(ball.shape[1]):
             now, last = trial[k, c], ball[k, c]
-            committed = 2 <= c < end
+            committed = SLIPS <= c < end
             before[k, c], ball[k, c] = last, now
             known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
             trial[k, c] = now if committed else 2.0 * now - last

@@ -16,6 +16,7 @@ import numpy as np
 from raceway.core.contact.damping import add_damping
 from raceway.core.excitations.harmonic import no_force
 from raceway.core.jit import jit
+from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
 from raceway.core.ring.kernels.layout import COLUMNS, DAMPING, OFFSET_INNER, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.ring.system import System
 from raceway.core.signatures import SYSTEM
@@ -32,7 +33,8 @@ def impact(t, q, v, balls, contacts, constants, response):
     law, law_params, law_old, law_new, dt = contacts
     scalars, _ = constants
     f, K, C, work = response
-    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
     for i in range(gap.size):
         gap[i] = _OPEN
         rate[i] = 0.0

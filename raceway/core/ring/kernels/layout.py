@@ -29,10 +29,6 @@ COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT = range
 COLUMNS = 8
 
 
-# Kernels below take rows of ``work`` by their number: a view of an array costs two atomic operations, and a kernel's
-# views together cost as much as its arithmetic.
-
-
 @jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64, int64, int64))
 def place(t, q, v, scalars, table, work, direction, centre, velocity):
     """Of every ball: the azimuth's cos and sin, e (axial, radial) and its velocity, into three rows of ``work``.
@@ -42,7 +38,7 @@ def place(t, q, v, scalars, table, work, direction, centre, velocity):
     A ball that orbits meets the ring at another place every moment: de/dt has a part of the cage speed.
     """
     n = table.shape[0]
-    rest_a, rest_r, arm, cage = scalars[0], scalars[1], scalars[4], scalars[6]
+    rest_a, rest_r, arm, cage = scalars[REST_AXIAL], scalars[REST_RADIAL], scalars[TILT_ARM], scalars[CAGE]
     turn_c, turn_s = 1.0, 0.0
     if cage != 0.0:
         turn_c, turn_s = np.cos(cage * t), np.sin(cage * t)
@@ -50,7 +46,8 @@ def place(t, q, v, scalars, table, work, direction, centre, velocity):
     x, y, z, tilt_y, tilt_z = q[0], q[1], q[2], q[3], q[4]
     vx, vy, vz, turn_y, turn_z = v[0], v[1] + cage * z, v[2] - cage * y, v[3] + cage * tilt_z, v[4] - cage * tilt_y
     for k in range(n):
-        cosine, sine, side, lever, shift = table[k, 0], table[k, 1], table[k, 5], table[k, 6], table[k, 7]
+        cosine, sine = table[k, COSINE], table[k, SINE]
+        side, lever, shift = table[k, SIDE], table[k, LEVER], table[k, SHIFT]
         c, s = cosine * turn_c - sine * turn_s, sine * turn_c + cosine * turn_s
         u, u_rate = tilt_y * s - tilt_z * c, turn_y * s - turn_z * c
         work[direction, k], work[direction, n + k] = c, s
@@ -70,10 +67,11 @@ def move_centres(work, centre, velocity):
 @jit(void(float64, VECTOR, MATRIX))
 def stop(t, scalars, table):
     """Let orbiting balls stand still where they are at a time: a static state has no rates."""
-    c, s = np.cos(scalars[6] * t), np.sin(scalars[6] * t)
+    c, s = np.cos(scalars[CAGE] * t), np.sin(scalars[CAGE] * t)
     for k in range(table.shape[0]):
-        table[k, 0], table[k, 1] = table[k, 0] * c - table[k, 1] * s, table[k, 1] * c + table[k, 0] * s
-    scalars[6] = 0.0
+        cosine, sine = table[k, COSINE], table[k, SINE]
+        table[k, COSINE], table[k, SINE] = cosine * c - sine * s, sine * c + cosine * s
+    scalars[CAGE] = 0.0
 
 
 @jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR), inline=True)
@@ -86,8 +84,8 @@ def ring_force(table, arm, work, direction, row, f):
     x, y, z, tilt_y, tilt_z = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(n):
         c, s = work[direction, k], work[direction, n + k]
-        axial, radial = table[k, 5] * work[row, k], work[row, n + k]
-        couple = arm * axial - table[k, 6] * radial
+        axial, radial = table[k, SIDE] * work[row, k], work[row, n + k]
+        couple = arm * axial - table[k, LEVER] * radial
         x += axial
         y += radial * c
         z += radial * s
@@ -116,8 +114,9 @@ def ring_tangent(table, arm, work, direction, row, K):
     uu_cc, uu_cs, uu_ss = 0.0, 0.0, 0.0
     z = table.shape[0]
     for k in range(z):
-        c, s, lever = work[direction, k], work[direction, z + k], table[k, 6]
-        aa, ar, ra, rr = work[row, k], table[k, 5] * work[row, z + k], table[k, 5] * work[row + 1, k], work[row + 1, z + k]
+        c, s, lever = work[direction, k], work[direction, z + k], table[k, LEVER]
+        aa, ar = work[row, k], table[k, SIDE] * work[row, z + k]
+        ra, rr = table[k, SIDE] * work[row + 1, k], work[row + 1, z + k]
         cc, cs, ss = c * c, c * s, s * s
         xu, ux = arm * aa - lever * ar, arm * aa - lever * ra
         ru, ur = arm * ra - lever * rr, arm * ar - lever * rr

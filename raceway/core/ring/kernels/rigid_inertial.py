@@ -9,6 +9,7 @@ acceleration in its meridian plane is left out: its slowest mode, along the groo
 """
 
 import numpy as np
+from numba import boolean, float64, int64, void
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
@@ -20,9 +21,14 @@ from raceway.core.ring.kernels import (
     BY_OWN,
     BY_RADIAL,
     BY_RADIAL_SPEED,
+    CONTACT_FORCE,
     FORCE,
     FORCE_BY_CENTRE,
+    FORCE_BY_GAP,
+    FORCE_BY_RATE,
     FORCE_BY_SPEED,
+    GAP,
+    GAP_RATE,
     KERNEL_ROWS,
     RADIAL_BY_SHIFT,
     SHIFT,
@@ -42,18 +48,172 @@ from raceway.core.ring.kernels.layout import (
     ring_force,
     ring_tangent,
 )
-from raceway.core.signatures import SYSTEM
+from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
 _ITERATIONS = 200
-#: Rows of ``work`` beyond the law's, two quantities each, a half row long (index k, then z + k): inner groove centre and its
-#: velocity, last step and slope along it with a flag for settled balls, directions and lengths of the two contacts' lines.
-#: Rows 12 to 15 keep what belongs to settled balls.
+#: Rows of ``work`` beyond the law's, two quantities each, a half row long (index k, then z + k): inner groove centre [m] and its
+#: velocity [m/s], last step [m] and slope along it [N m] with a flag for settled balls, directions of the two contacts' lines
+#: and their lengths [m].
 CENTRE, VELOCITY, STEP, SEARCH, INNER, OUTER, LENGTH = 5, 6, 7, 8, 9, 10, 11
 DONE = SEARCH
-#: Row of the azimuths.
+#: Of settled balls, since the law is called again for others: force [N] and its derivatives of both contacts, direction of the
+#: inner one.
+KEPT_FORCE, KEPT_BY_GAP, KEPT_BY_RATE, KEPT_NORMAL = 12, 13, 14, 15
+#: cos and sin of the azimuth.
 DIRECTION = 16
-#: Rows that the iteration has done with, used again for what goes to the ring.
+#: Rows that the iteration has done with, used again for what goes to the ring: force [N], tangents [N/m, N s/m] (two rows each).
 CARRIED, STIFF, VISCOUS = 9, 5, 7
+
+
+@jit(void(int64, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
+def _first_guess(k, scalars, table, ball, work):
+    """Begin with ball k where it is, or on its seat."""
+    z, li, lo = table.shape[0], scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    work[SEARCH, k] = 0.0
+    work[DONE, z + k] = 0.0
+    if ball[k, 0] * ball[k, 0] + ball[k, 1] * ball[k, 1] > lo * lo:
+        return
+    # A guess off the outer race: on its seat there, or, where nothing is known, on the line of the groove centres.
+    length = np.sqrt(work[CENTRE, k] * work[CENTRE, k] + work[CENTRE, z + k] * work[CENTRE, z + k])
+    if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 and length > li + lo:
+        scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
+        ball[k, 0], ball[k, 1] = scale * work[CENTRE, k], scale * work[CENTRE, z + k]
+    else:
+        ball[k, 0], ball[k, 1] = 0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
+
+
+@jit(void(int64, VECTOR, MATRIX, float64, MATRIX, MATRIX), inline=True)
+def _approach(k, scalars, ball, ball_gain, ball_known, work):
+    """Directions, lengths, gaps and gap rates of both contacts of ball k."""
+    z, li, lo = ball.shape[0], scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    pa, pr = ball[k, 0], ball[k, 1]
+    xa, xr = work[CENTRE, k] - pa, work[CENTRE, z + k] - pr
+    so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
+    by_so = 1.0 / so
+    oa, orr = pa * by_so, pr * by_so
+    ia, ir = oa, orr
+    if si > 0.0:
+        by_si = 1.0 / si
+        ia, ir = xa * by_si, xr * by_si
+    own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
+    rate_i = work[SHIFT_RATE, k] - (ia * (work[VELOCITY, k] - own_a) + ir * (work[VELOCITY, z + k] - own_r))
+    rate_o = work[SHIFT_RATE, z + k] - (oa * own_a + orr * own_r)
+    gap_i, gap_o = li - si + work[SHIFT, k], lo - so + work[SHIFT, z + k]
+    work[LENGTH, k], work[LENGTH, z + k] = si, so
+    work[OUTER, k], work[OUTER, z + k] = oa, orr
+    work[INNER, k], work[INNER, z + k] = ia, ir
+    work[GAP, k], work[GAP, z + k], work[GAP_RATE, k], work[GAP_RATE, z + k] = gap_i, gap_o, rate_i, rate_o
+
+
+@jit(boolean(int64, float64, MATRIX, MATRIX, float64, MATRIX), inline=True)
+def _settles(k, lo, table, ball, ball_gain, work):
+    """Move ball k by one step of Newton's method on its potential; whether that was the last one."""
+    z = table.shape[0]
+    fi, fo, gap_i, gap_o = work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k], work[GAP, k], work[GAP, z + k]
+    ia, ir, oa, orr = work[INNER, k], work[INNER, z + k], work[OUTER, k], work[OUTER, z + k]
+    ga = fo * oa - fi * ia
+    gr = fo * orr - fi * ir - table[k, CENTRIFUGAL]
+    if work[SEARCH, k] < 0.0:
+        # Beyond the minimum along the last step by more than it began with: go half-way back.
+        along = ga * work[STEP, k] + gr * work[STEP, z + k]
+        if along > -0.9 * work[SEARCH, k]:
+            work[STEP, k] *= 0.5
+            work[STEP, z + k] *= 0.5
+            work[SEARCH, k] *= 0.5
+            ball[k, 0] -= work[STEP, k]
+            ball[k, 1] -= work[STEP, z + k]
+            return False
+    ki = -work[FORCE_BY_GAP, k] - ball_gain * work[FORCE_BY_RATE, k]
+    ko = -work[FORCE_BY_GAP, z + k] - ball_gain * work[FORCE_BY_RATE, z + k]
+    by_si = 1.0 / work[LENGTH, k] if work[LENGTH, k] > 0.0 else 0.0
+    wi, wo = fi * by_si, fo / work[LENGTH, z + k]
+    haa = (ki - wi) * ia * ia + wi + (ko - wo) * oa * oa + wo
+    har = (ki - wi) * ia * ir + (ko - wo) * oa * orr
+    hrr = (ki - wi) * ir * ir + wi + (ko - wo) * orr * orr + wo
+    det = haa * hrr - har * har
+    if not det > 1e-14 * (haa + hrr) * (haa + hrr):
+        shift = 1e-7 * (haa + hrr) + 1.0
+        haa += shift
+        hrr += shift
+        det = haa * hrr - har * har
+    inverse = 1.0 / det
+    sa, sr = (har * gr - hrr * ga) * inverse, (har * ga - haa * gr) * inverse
+    size = np.sqrt(sa * sa + sr * sr)
+    reach = 0.2 * lo
+    if size > reach:
+        sa *= reach / size
+        sr *= reach / size
+    # The shallower of the closed contacts sets the scale: under a light ring load the centrifugal force presses
+    # the ball far deeper into the outer race than the inner race is.  Below rounding nothing can be asked.
+    shallow = -gap_o if gap_i >= 0.0 else (-gap_i if gap_o >= 0.0 else min(-gap_i, -gap_o))
+    if size <= max(1e-8 * shallow, 1e-14 * lo):
+        # One linear correction ends the iteration: what it leaves is of second order.
+        inner, outer = ia * sa + ir * sr, oa * sa + orr * sr
+        work[GAP, k], work[GAP, z + k] = gap_i + inner, gap_o - outer
+        ball[k, 0] += sa
+        ball[k, 1] += sr
+        # Kept for the tangent below, since the law is called again for the balls that still move.
+        work[KEPT_FORCE, k], work[KEPT_FORCE, z + k] = max(fi - ki * inner, 0.0), max(fo + ko * outer, 0.0)
+        work[KEPT_BY_GAP, k], work[KEPT_BY_GAP, z + k] = work[FORCE_BY_GAP, k], work[FORCE_BY_GAP, z + k]
+        work[KEPT_BY_RATE, k], work[KEPT_BY_RATE, z + k] = work[FORCE_BY_RATE, k], work[FORCE_BY_RATE, z + k]
+        work[KEPT_NORMAL, k], work[KEPT_NORMAL, z + k] = ia - (sa - ia * inner) * by_si, ir - (sr - ir * inner) * by_si
+        work[DONE, z + k] = 1.0
+        return True
+    work[STEP, k], work[STEP, z + k] = sa, sr
+    work[SEARCH, k] = ga * sa + gr * sr
+    ball[k, 0] += sa
+    ball[k, 1] += sr
+    return False
+
+
+@jit(boolean(int64, float64, MATRIX), inline=True)
+def _condense(k, ball_gain, work):
+    """Tangents of ball k to the ring, and what elastic bodies ask for; False where there is none."""
+    z = work.shape[1] // 2
+    fi, fo = work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k]
+    na, nr = work[KEPT_NORMAL, k], work[KEPT_NORMAL, z + k]
+    elastic, viscous = -work[KEPT_BY_GAP, k], -work[KEPT_BY_RATE, k]
+    ki = elastic + ball_gain * viscous
+    ko = -work[KEPT_BY_GAP, z + k] - ball_gain * work[KEPT_BY_RATE, z + k]
+    wi, wo = fi / work[LENGTH, k], fo / work[LENGTH, z + k]
+    # A by the ring's motion (elastic part), P by the ball's motion, H = P + the outer contact's.
+    eaa, ear, err = (elastic - wi) * na * na + wi, (elastic - wi) * na * nr, (elastic - wi) * nr * nr + wi
+    paa, par, prr = (ki - wi) * na * na + wi, (ki - wi) * na * nr, (ki - wi) * nr * nr + wi
+    haa = paa + (ko - wo) * work[OUTER, k] * work[OUTER, k] + wo
+    har = par + (ko - wo) * work[OUTER, k] * work[OUTER, z + k]
+    hrr = prr + (ko - wo) * work[OUTER, z + k] * work[OUTER, z + k] + wo
+    det = haa * hrr - har * har
+    if not det > 0.0:
+        return False
+    inverse = 1.0 / det
+    taa, tar = (paa * hrr - par * har) * inverse, (par * haa - paa * har) * inverse
+    tra, trr = (par * hrr - prr * har) * inverse, (prr * haa - par * har) * inverse
+    maa, mar, mrr = viscous * na * na, viscous * na * nr, viscous * nr * nr
+    work[STIFF, k], work[STIFF, z + k] = eaa - taa * eaa - tar * ear, ear - taa * ear - tar * err
+    work[STIFF + 1, k], work[STIFF + 1, z + k] = ear - tra * eaa - trr * ear, err - tra * ear - trr * err
+    work[VISCOUS, k], work[VISCOUS, z + k] = maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr
+    work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr
+    if work.shape[0] == WORK_ROWS:
+        return True
+    for row in range(2):
+        work[FORCE_BY_CENTRE + row, k], work[FORCE_BY_CENTRE + row, z + k] = work[STIFF + row, k], work[STIFF + row, z + k]
+        work[FORCE_BY_SPEED + row, k], work[FORCE_BY_SPEED + row, z + k] = work[VISCOUS + row, k], work[VISCOUS + row, z + k]
+    # dp = -H^-1 (ki ni dw_i - ko no dw_o) + H^-1 E de;  rows g of dQ = g (...): ki ni^T H^-1 and -ko no^T H^-1.
+    oa, orr = work[OUTER, k], work[OUTER, z + k]
+    gia, gir = ki * (na * hrr - nr * har) * inverse, ki * (nr * haa - na * har) * inverse
+    goa, gor = -ko * (oa * hrr - orr * har) * inverse, -ko * (orr * haa - oa * har) * inverse
+    work[BY_AXIAL, k] = elastic * na - gia * eaa - gir * ear
+    work[BY_RADIAL, k] = elastic * nr - gia * ear - gir * err
+    work[BY_AXIAL, z + k], work[BY_RADIAL, z + k] = -goa * eaa - gor * ear, -goa * ear - gor * err
+    work[BY_AXIAL_SPEED, k] = viscous * na - gia * maa - gir * mar
+    work[BY_RADIAL_SPEED, k] = viscous * nr - gia * mar - gir * mrr
+    work[BY_AXIAL_SPEED, z + k], work[BY_RADIAL_SPEED, z + k] = -goa * maa - gor * mar, -goa * mar - gor * mrr
+    wia, wir, woa, wor = -ki * na, -ki * nr, ko * oa, ko * orr
+    work[BY_OWN, k], work[BY_OTHER, k] = -ki - gia * wia - gir * wir, -gia * woa - gir * wor
+    work[BY_OTHER, z + k], work[BY_OWN, z + k] = -goa * wia - gor * wir, -ko - goa * woa - gor * wor
+    work[AXIAL_BY_SHIFT, k], work[RADIAL_BY_SHIFT, k] = wia - taa * wia - tar * wir, wir - tra * wia - trr * wir
+    work[AXIAL_BY_SHIFT, z + k], work[RADIAL_BY_SHIFT, z + k] = -taa * woa - tar * wor, -tra * woa - trr * wor
+    return True
 
 
 @jit(SYSTEM)
@@ -63,114 +223,32 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     law, law_params, law_old, law_new, dt = contacts
     scalars, table = constants
     f, K, C, work = response
-    z = table.shape[0]
-    arm, li, lo, damping = scalars[TILT_ARM], scalars[OFFSET_INNER], scalars[OFFSET_OUTER], scalars[DAMPING]
-    gap, rate, force, d_gap, d_rate = work[0], work[1], work[2], work[3], work[4]
+    z, elastic_bodies = table.shape[0], work.shape[0] > WORK_ROWS
+    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
     place(t, q, v, scalars, table, work, DIRECTION, CENTRE, VELOCITY)
-    if work.shape[0] > WORK_ROWS:
+    if elastic_bodies:
         move_centres(work, CENTRE, VELOCITY)
     for k in range(z):
-        work[SEARCH, k] = 0.0
-        work[DONE, z + k] = 0.0
-        if ball[k, 0] * ball[k, 0] + ball[k, 1] * ball[k, 1] > lo * lo:
-            continue
-        # A guess off the outer race: on its seat there, or, where nothing is known, on the line of the groove centres.
-        length = np.sqrt(work[CENTRE, k] * work[CENTRE, k] + work[CENTRE, z + k] * work[CENTRE, z + k])
-        if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 and length > li + lo:
-            scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
-            ball[k, 0], ball[k, 1] = scale * work[CENTRE, k], scale * work[CENTRE, z + k]
-        else:
-            ball[k, 0], ball[k, 1] = 0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
-    remaining = z
+        _first_guess(k, scalars, table, ball, work)
+    moving = z
     for _ in range(_ITERATIONS):
         for k in range(z):
-            pa, pr = ball[k, 0], ball[k, 1]
-            xa, xr = work[CENTRE, k] - pa, work[CENTRE, z + k] - pr
-            so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
-            by_so = 1.0 / so
-            oa, orr = pa * by_so, pr * by_so
-            ia, ir = oa, orr
-            if si > 0.0:
-                by_si = 1.0 / si
-                ia, ir = xa * by_si, xr * by_si
-            own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
-            rate_i = work[SHIFT_RATE, k] - (ia * (work[VELOCITY, k] - own_a) + ir * (work[VELOCITY, z + k] - own_r))
-            rate_o = work[SHIFT_RATE, z + k] - (oa * own_a + orr * own_r)
-            gap_i, gap_o = li - si + work[SHIFT, k], lo - so + work[SHIFT, z + k]
-            work[LENGTH, k], work[LENGTH, z + k] = si, so
-            work[OUTER, k], work[OUTER, z + k] = oa, orr
-            work[INNER, k], work[INNER, z + k] = ia, ir
-            gap[k], gap[z + k], rate[k], rate[z + k] = gap_i, gap_o, rate_i, rate_o
-        law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
-        add_damping(damping, gap, rate, force, d_gap, d_rate)
+            _approach(k, scalars, ball, ball_gain, ball_known, work)
+        law(gap, rate, law_params, law_old, law_new, dt, force, by_gap, by_rate)
+        add_damping(scalars[DAMPING], gap, rate, force, by_gap, by_rate)
         for k in range(z):
-            if work[DONE, z + k] != 0.0:
-                continue
-            fi, fo, gap_i, gap_o = force[k], force[z + k], gap[k], gap[z + k]
-            ia, ir, oa, orr = work[INNER, k], work[INNER, z + k], work[OUTER, k], work[OUTER, z + k]
-            ga = fo * oa - fi * ia
-            gr = fo * orr - fi * ir - table[k, CENTRIFUGAL]
-            if work[SEARCH, k] < 0.0:
-                # Beyond the minimum along the last step by more than it began with: go half-way back.
-                along = ga * work[STEP, k] + gr * work[STEP, z + k]
-                if along > -0.9 * work[SEARCH, k]:
-                    work[STEP, k] *= 0.5
-                    work[STEP, z + k] *= 0.5
-                    work[SEARCH, k] *= 0.5
-                    ball[k, 0] -= work[STEP, k]
-                    ball[k, 1] -= work[STEP, z + k]
-                    continue
-            ki = -d_gap[k] - ball_gain * d_rate[k]
-            ko = -d_gap[z + k] - ball_gain * d_rate[z + k]
-            by_si = 1.0 / work[LENGTH, k] if work[LENGTH, k] > 0.0 else 0.0
-            wi, wo = fi * by_si, fo / work[LENGTH, z + k]
-            haa = (ki - wi) * ia * ia + wi + (ko - wo) * oa * oa + wo
-            har = (ki - wi) * ia * ir + (ko - wo) * oa * orr
-            hrr = (ki - wi) * ir * ir + wi + (ko - wo) * orr * orr + wo
-            det = haa * hrr - har * har
-            if not det > 1e-14 * (haa + hrr) * (haa + hrr):
-                shift = 1e-7 * (haa + hrr) + 1.0
-                haa += shift
-                hrr += shift
-                det = haa * hrr - har * har
-            inverse = 1.0 / det
-            sa, sr = (har * gr - hrr * ga) * inverse, (har * ga - haa * gr) * inverse
-            size = np.sqrt(sa * sa + sr * sr)
-            reach = 0.2 * lo
-            if size > reach:
-                sa *= reach / size
-                sr *= reach / size
-            # The shallower of the closed contacts sets the scale: under a light ring load the centrifugal force presses
-            # the ball far deeper into the outer race than the inner race is.  Below rounding nothing can be asked.
-            shallow = -gap_o if gap_i >= 0.0 else (-gap_i if gap_o >= 0.0 else min(-gap_i, -gap_o))
-            if size <= max(1e-8 * shallow, 1e-14 * lo):
-                # One linear correction ends the iteration: what it leaves is of second order.
-                inner, outer = ia * sa + ir * sr, oa * sa + orr * sr
-                gap[k], gap[z + k] = gap_i + inner, gap_o - outer
-                ball[k, 0] += sa
-                ball[k, 1] += sr
-                # Kept for the tangent below, since the law is called again for the balls that still move.
-                work[12, k], work[12, z + k] = max(fi - ki * inner, 0.0), max(fo + ko * outer, 0.0)
-                work[13, k], work[13, z + k] = d_gap[k], d_gap[z + k]
-                work[14, k], work[14, z + k] = d_rate[k], d_rate[z + k]
-                work[15, k], work[15, z + k] = ia - (sa - ia * inner) * by_si, ir - (sr - ir * inner) * by_si
-                work[DONE, z + k] = 1.0
-                remaining -= 1
-                continue
-            work[STEP, k], work[STEP, z + k] = sa, sr
-            work[SEARCH, k] = ga * sa + gr * sr
-            ball[k, 0] += sa
-            ball[k, 1] += sr
-        if remaining == 0:
+            if work[DONE, z + k] == 0.0:
+                moving -= _settles(k, scalars[OFFSET_OUTER], table, ball, ball_gain, work)
+        if moving == 0:
             break
-    if remaining > 0:
+    if moving > 0:
         return 1
     for k in range(z):
-        fi, fo = work[12, k], work[12, z + k]
+        fi, fo = work[KEPT_FORCE, k], work[KEPT_FORCE, z + k]
         force[k], force[z + k] = fi, fo
-        work[CARRIED, k], work[CARRIED, z + k] = fi * work[15, k], fi * work[15, z + k]
-    ring_force(table, arm, work, DIRECTION, CARRIED, f)
-    elastic_bodies = work.shape[0] > WORK_ROWS
+        work[CARRIED, k], work[CARRIED, z + k] = fi * work[KEPT_NORMAL, k], fi * work[KEPT_NORMAL, z + k]
+    ring_force(table, scalars[TILT_ARM], work, DIRECTION, CARRIED, f)
     if K.size == 0 and not elastic_bodies:
         return 0
     for k in range(z):
@@ -178,59 +256,12 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
             for row in range(WORK_ROWS, WORK_ROWS + KERNEL_ROWS):
                 work[row, k], work[row, z + k] = 0.0, 0.0
             work[FORCE, k], work[FORCE, z + k] = work[CARRIED, k], work[CARRIED, z + k]
-        if force[k] == 0.0 and work[13, k] == 0.0:
-            work[STIFF, k], work[STIFF, z + k], work[STIFF + 1, k], work[STIFF + 1, z + k] = 0.0, 0.0, 0.0, 0.0
-            work[VISCOUS, k], work[VISCOUS, z + k], work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = 0.0, 0.0, 0.0, 0.0
-            continue
-        fi, fo = force[k], force[z + k]
-        na, nr = work[15, k], work[15, z + k]
-        elastic, viscous = -work[13, k], -work[14, k]
-        ki = elastic + ball_gain * viscous
-        ko = -work[13, z + k] - ball_gain * work[14, z + k]
-        wi, wo = fi / work[LENGTH, k], fo / work[LENGTH, z + k]
-        # A by the ring's motion (elastic part), P by the ball's motion, H = P + the outer contact's.
-        eaa, ear, err = (elastic - wi) * na * na + wi, (elastic - wi) * na * nr, (elastic - wi) * nr * nr + wi
-        paa, par, prr = (ki - wi) * na * na + wi, (ki - wi) * na * nr, (ki - wi) * nr * nr + wi
-        haa = paa + (ko - wo) * work[OUTER, k] * work[OUTER, k] + wo
-        har = par + (ko - wo) * work[OUTER, k] * work[OUTER, z + k]
-        hrr = prr + (ko - wo) * work[OUTER, z + k] * work[OUTER, z + k] + wo
-        det = haa * hrr - har * har
-        if not det > 0.0:
+        if force[k] == 0.0 and work[KEPT_BY_GAP, k] == 0.0:
+            for row in (STIFF, STIFF + 1, VISCOUS, VISCOUS + 1):
+                work[row, k], work[row, z + k] = 0.0, 0.0
+        elif not _condense(k, ball_gain, work):
             return 1
-        inverse = 1.0 / det
-        taa, tar = (paa * hrr - par * har) * inverse, (par * haa - paa * har) * inverse
-        tra, trr = (par * hrr - prr * har) * inverse, (prr * haa - par * har) * inverse
-        maa, mar, mrr = viscous * na * na, viscous * na * nr, viscous * nr * nr
-        work[STIFF, k], work[STIFF, z + k] = eaa - taa * eaa - tar * ear, ear - taa * ear - tar * err
-        work[STIFF + 1, k], work[STIFF + 1, z + k] = ear - tra * eaa - trr * ear, err - tra * ear - trr * err
-        work[VISCOUS, k], work[VISCOUS, z + k] = maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr
-        work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr
-        if not elastic_bodies:
-            continue
-        for row in range(2):
-            work[FORCE_BY_CENTRE + row, k], work[FORCE_BY_CENTRE + row, z + k] = (
-                work[STIFF + row, k],
-                work[STIFF + row, z + k],
-            )
-            work[FORCE_BY_SPEED + row, k] = work[VISCOUS + row, k]
-            work[FORCE_BY_SPEED + row, z + k] = work[VISCOUS + row, z + k]
-        # dp = -H^-1 (ki ni dw_i - ko no dw_o) + H^-1 E de;  rows g of dQ = g (...): ki ni^T H^-1 and -ko no^T H^-1.
-        oa, orr = work[OUTER, k], work[OUTER, z + k]
-        gia, gir = ki * (na * hrr - nr * har) * inverse, ki * (nr * haa - na * har) * inverse
-        goa, gor = -ko * (oa * hrr - orr * har) * inverse, -ko * (orr * haa - oa * har) * inverse
-        work[BY_AXIAL, k] = elastic * na - gia * eaa - gir * ear
-        work[BY_RADIAL, k] = elastic * nr - gia * ear - gir * err
-        work[BY_AXIAL, z + k], work[BY_RADIAL, z + k] = -goa * eaa - gor * ear, -goa * ear - gor * err
-        work[BY_AXIAL_SPEED, k] = viscous * na - gia * maa - gir * mar
-        work[BY_RADIAL_SPEED, k] = viscous * nr - gia * mar - gir * mrr
-        work[BY_AXIAL_SPEED, z + k], work[BY_RADIAL_SPEED, z + k] = -goa * maa - gor * mar, -goa * mar - gor * mrr
-        wia, wir, woa, wor = -ki * na, -ki * nr, ko * oa, ko * orr
-        work[BY_OWN, k], work[BY_OTHER, k] = -ki - gia * wia - gir * wir, -gia * woa - gir * wor
-        work[BY_OTHER, z + k], work[BY_OWN, z + k] = -goa * wia - gor * wir, -ko - goa * woa - gor * wor
-        work[AXIAL_BY_SHIFT, k], work[RADIAL_BY_SHIFT, k] = wia - taa * wia - tar * wir, wir - tra * wia - trr * wir
-        work[AXIAL_BY_SHIFT, z + k], work[RADIAL_BY_SHIFT, z + k] = -taa * woa - tar * wor, -tra * woa - trr * wor
-    if K.size == 0:
-        return 0
-    ring_tangent(table, arm, work, DIRECTION, STIFF, K)
-    ring_tangent(table, arm, work, DIRECTION, VISCOUS, C)
+    if K.size > 0:
+        ring_tangent(table, scalars[TILT_ARM], work, DIRECTION, STIFF, K)
+        ring_tangent(table, scalars[TILT_ARM], work, DIRECTION, VISCOUS, C)
     return 0

@@ -18,7 +18,7 @@ The separation into near and far field: docs/physics.md, condensed bodies.
 """
 
 import numpy as np
-from numba import boolean, float64, int64, void
+from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import (
@@ -30,10 +30,12 @@ from raceway.core.ring.kernels import (
     BY_RADIAL,
     BY_RADIAL_SPEED,
     BY_TURN,
+    CONTACT_FORCE,
     COUPLE_BY_CENTRE,
     COUPLE_BY_SHIFT,
     FORCE_BY_CENTRE,
     FORCE_BY_SPEED,
+    GAP,
     MOVED,
     MOVED_RATE,
     RADIAL_BY_SHIFT,
@@ -44,7 +46,8 @@ from raceway.core.ring.kernels import (
 from raceway.core.ring.kernels.between import centrifugal_displacement, forces, reduce_tangents, step
 from raceway.core.ring.kernels.columns import BALL_CROSS, COUPLED, DISTANCE, FIRST, KNOTS, VALUES, slips_end
 from raceway.core.ring.kernels.layout import LEVER, SIDE, TILT_ARM, place
-from raceway.core.ring.kernels.section import add_ball, to_ring
+from raceway.core.ring.kernels.planar import Pair, Tensor
+from raceway.core.ring.kernels.section import add_ball, seat_of, to_ring
 from raceway.core.ring.kernels.structural_rows import (
     BY_Q,
     BY_V,
@@ -176,6 +179,84 @@ def _solve_transposed(work, row):
         work[row, z + k] = a * work[INVERSE, z + k] + b * work[INVERSE_2, z + k]
 
 
+@jit(types.UniTuple(float64, 2)(int64, VECTOR, MATRIX, MATRIX), inline=True)
+def _rests(first, scalars, ball, work):
+    """What is left of the structural approaches, into STEP, and the energy that bodies store: largest rest, deepest approach [m]."""
+    z = ball.shape[0]
+    norm, deepest = 0.0, 0.0
+    for c in range(2 * z):
+        k, side = (c, 0) if c < z else (c - z, 1)
+        w = ball[k, first + side]
+        rest = _compliance_times(scalars, work, CONTACT_FORCE, c) - w
+        work[STEP, c] = rest
+        # Second order in what is left: the force times w, less half of what its part C Q would store.
+        work[STORED, c] = 0.5 * work[CONTACT_FORCE, c] * (w - rest)
+        norm = max(norm, abs(rest))
+        deepest = max(deepest, -work[GAP, c])
+    return norm, deepest
+
+
+@jit(void(int64, boolean, MATRIX, MATRIX), inline=True)
+def _half_way_back(first, coupled, ball, work):
+    """Take half of the last step off ``ball`` again."""
+    z = ball.shape[0]
+    for c in range(2 * z):
+        k, side = (c, 0) if c < z else (c - z, 1)
+        work[LAST, c] *= 0.5
+        ball[k, first + side] -= work[LAST, c]
+        if coupled:
+            work[MOVED_LAST, c] *= 0.5
+            ball[k, first + 2 + side] -= work[MOVED_LAST, c]
+
+
+@jit(boolean(int64, boolean, float64, MATRIX, MATRIX), inline=True)
+def _go(first, coupled, deepest, ball, work):
+    """Take a step; whether it was so small that what it leaves is of second order."""
+    z, settled = ball.shape[0], True
+    for c in range(2 * z):
+        k, side = (c, 0) if c < z else (c - z, 1)
+        ball[k, first + side] += work[STEP, c]
+        work[LAST, c] = work[STEP, c]
+        settled = settled and abs(work[STEP, c]) <= max(1e-8 * -work[GAP, c], 1e-10 * deepest)
+        if coupled:
+            ball[k, first + 2 + side] += work[MOVED_STEP, c]
+            work[MOVED_LAST, c] = work[MOVED_STEP, c]
+            settled = settled and abs(work[MOVED_STEP, c]) <= 1e-8 * deepest
+    return settled
+
+
+@jit(void(int64, VECTOR, MATRIX, float64, MATRIX, VECTOR), inline=True)
+def _follow_linearly(k, scalars, table, ball_gain, work, f):
+    """Forces of ball k and f (5,) after the last step."""
+    z = table.shape[0]
+    a, b = work[STEP, k], work[STEP, z + k]
+    inner = work[CONTACT_FORCE, k] + work[BY_OWN, k] * a + work[BY_OTHER, k] * b
+    outer = work[CONTACT_FORCE, z + k] + work[BY_OTHER, z + k] * a + work[BY_OWN, z + k] * b
+    axial = work[AXIAL_BY_SHIFT, k] * a + work[AXIAL_BY_SHIFT, z + k] * b
+    radial = work[RADIAL_BY_SHIFT, k] * a + work[RADIAL_BY_SHIFT, z + k] * b
+    turn = work[COUPLE_BY_SHIFT, k] * a + work[COUPLE_BY_SHIFT, z + k] * b
+    if scalars[COUPLED] != 0.0:
+        da, dr = work[MOVED_STEP, k], work[MOVED_STEP, z + k]
+        inner += (work[BY_AXIAL, k] + ball_gain * work[BY_AXIAL_SPEED, k]) * da
+        inner += (work[BY_RADIAL, k] + ball_gain * work[BY_RADIAL_SPEED, k]) * dr
+        outer += (work[BY_AXIAL, z + k] + ball_gain * work[BY_AXIAL_SPEED, z + k]) * da
+        outer += (work[BY_RADIAL, z + k] + ball_gain * work[BY_RADIAL_SPEED, z + k]) * dr
+        axial += (work[FORCE_BY_CENTRE, k] + ball_gain * work[FORCE_BY_SPEED, k]) * da
+        axial += (work[FORCE_BY_CENTRE, z + k] + ball_gain * work[FORCE_BY_SPEED, z + k]) * dr
+        radial += (work[FORCE_BY_CENTRE + 1, k] + ball_gain * work[FORCE_BY_SPEED + 1, k]) * da
+        radial += (work[FORCE_BY_CENTRE + 1, z + k] + ball_gain * work[FORCE_BY_SPEED + 1, z + k]) * dr
+        turn += work[COUPLE_BY_CENTRE, k] * da + work[COUPLE_BY_CENTRE, z + k] * dr
+    work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k] = max(inner, 0.0), max(outer, 0.0)
+    axial *= table[k, SIDE]
+    couple = scalars[TILT_ARM] * axial - table[k, LEVER] * radial + table[k, SIDE] * turn
+    cosine, sine = work[DIRECTION, k], work[DIRECTION, z + k]
+    f[0] += axial
+    f[1] += radial * cosine
+    f[2] += radial * sine
+    f[3] += couple * sine
+    f[4] -= couple * cosine
+
+
 @jit(int64(VECTOR, MATRIX, MATRIX, float64, MATRIX, VECTOR))
 def correct(scalars, table, ball, ball_gain, work, f):
     """One Newton step on structural approaches and displacements after a rigid kernel; the last one is a linear correction.
@@ -187,16 +268,7 @@ def correct(scalars, table, ball, ball_gain, work, f):
     """
     z, first = table.shape[0], slips_end(scalars, ball)
     coupled = scalars[COUPLED] != 0.0
-    norm, deepest = 0.0, 0.0
-    for c in range(2 * z):
-        k, side = (c, 0) if c < z else (c - z, 1)
-        w = ball[k, first + side]
-        rest = _compliance_times(scalars, work, 2, c) - w
-        work[STEP, c] = rest
-        # Second order in what is left: the force times w, less half of what its part C Q would store.
-        work[STORED, c] = 0.5 * work[2, c] * (w - rest)
-        norm = max(norm, abs(rest))
-        deepest = max(deepest, -work[0, c])
+    norm, deepest = _rests(first, scalars, ball, work)
     if coupled:
         forces(scalars, table, work)
         for c in range(2 * z):
@@ -204,14 +276,8 @@ def correct(scalars, table, ball, ball_gain, work, f):
     if not np.isfinite(norm):
         return FAILED
     if norm > work[NORM, 0] and norm > 1e-9 * deepest:
-        # Worse than before the last step: go half-way back.
-        for c in range(2 * z):
-            k, side = (c, 0) if c < z else (c - z, 1)
-            work[LAST, c] *= 0.5
-            ball[k, first + side] -= work[LAST, c]
-            if coupled:
-                work[MOVED_LAST, c] *= 0.5
-                ball[k, first + 2 + side] -= work[MOVED_LAST, c]
+        # Worse than before the last step.
+        _half_way_back(first, coupled, ball, work)
         return GOES_ON
     work[NORM, 0] = norm
     if not _factorise(scalars, work):
@@ -219,46 +285,50 @@ def correct(scalars, table, ball, ball_gain, work, f):
     _solve(work, STEP)
     if coupled and not step(scalars, table, ball_gain, work):
         return FAILED
-    settled = True
-    for c in range(2 * z):
-        k, side = (c, 0) if c < z else (c - z, 1)
-        ball[k, first + side] += work[STEP, c]
-        work[LAST, c] = work[STEP, c]
-        settled = settled and abs(work[STEP, c]) <= max(1e-8 * -work[0, c], 1e-10 * deepest)
-        if coupled:
-            ball[k, first + 2 + side] += work[MOVED_STEP, c]
-            work[MOVED_LAST, c] = work[MOVED_STEP, c]
-            settled = settled and abs(work[MOVED_STEP, c]) <= 1e-8 * deepest
-    if not settled:
+    if not _go(first, coupled, deepest, ball, work):
         return GOES_ON
     for k in range(z):
-        a, b = work[STEP, k], work[STEP, z + k]
-        inner = work[2, k] + work[BY_OWN, k] * a + work[BY_OTHER, k] * b
-        outer = work[2, z + k] + work[BY_OTHER, z + k] * a + work[BY_OWN, z + k] * b
-        axial = work[AXIAL_BY_SHIFT, k] * a + work[AXIAL_BY_SHIFT, z + k] * b
-        radial = work[RADIAL_BY_SHIFT, k] * a + work[RADIAL_BY_SHIFT, z + k] * b
-        turn = work[COUPLE_BY_SHIFT, k] * a + work[COUPLE_BY_SHIFT, z + k] * b
-        if coupled:
-            da, dr = work[MOVED_STEP, k], work[MOVED_STEP, z + k]
-            inner += (work[BY_AXIAL, k] + ball_gain * work[BY_AXIAL_SPEED, k]) * da
-            inner += (work[BY_RADIAL, k] + ball_gain * work[BY_RADIAL_SPEED, k]) * dr
-            outer += (work[BY_AXIAL, z + k] + ball_gain * work[BY_AXIAL_SPEED, z + k]) * da
-            outer += (work[BY_RADIAL, z + k] + ball_gain * work[BY_RADIAL_SPEED, z + k]) * dr
-            axial += (work[FORCE_BY_CENTRE, k] + ball_gain * work[FORCE_BY_SPEED, k]) * da
-            axial += (work[FORCE_BY_CENTRE, z + k] + ball_gain * work[FORCE_BY_SPEED, z + k]) * dr
-            radial += (work[FORCE_BY_CENTRE + 1, k] + ball_gain * work[FORCE_BY_SPEED + 1, k]) * da
-            radial += (work[FORCE_BY_CENTRE + 1, z + k] + ball_gain * work[FORCE_BY_SPEED + 1, z + k]) * dr
-            turn += work[COUPLE_BY_CENTRE, k] * da + work[COUPLE_BY_CENTRE, z + k] * dr
-        work[2, k], work[2, z + k] = max(inner, 0.0), max(outer, 0.0)
-        axial *= table[k, SIDE]
-        couple = scalars[TILT_ARM] * axial - table[k, LEVER] * radial + table[k, SIDE] * turn
-        cosine, sine = work[DIRECTION, k], work[DIRECTION, z + k]
-        f[0] += axial
-        f[1] += radial * cosine
-        f[2] += radial * sine
-        f[3] += couple * sine
-        f[4] -= couple * cosine
+        _follow_linearly(k, scalars, table, ball_gain, work, f)
     return SETTLED
+
+
+@jit(void(int64, float64, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX))
+def _add_turning(k, arm, table, work, f, K, C):
+    """Add what ball k's compliances, which change with the angle, do to the ring: force and tangent."""
+    z = table.shape[0]
+    ga, gr = work[TURNING, k], work[TURNING, z + k]
+    by_angle, twice = 0.0, 0.0
+    for c in (k, z + k):
+        half = -0.5 * work[CONTACT_FORCE, c] * work[CONTACT_FORCE, c]
+        by_angle += half * work[SLOPE, c]
+        twice += half * work[CURVE, c]
+    if by_angle == 0.0 and twice == 0.0:
+        return
+    haa, har = 2.0 * ga * gr, gr * gr - ga * ga
+    cross = twice * ga * gr + by_angle * har
+    stiffness = Tensor(twice * ga * ga + by_angle * haa, cross, cross, twice * gr * gr - by_angle * haa)
+    seat = seat_of(k, arm, table, work, DIRECTION)
+    add_ball(seat, Pair(by_angle * ga, by_angle * gr), stiffness, Tensor(0.0, 0.0, 0.0, 0.0), f, K, C)
+
+
+@jit(float64(int64, float64, MATRIX, MATRIX))
+def _rows_of_ball(k, arm, table, work):
+    """Fill the columns of both contacts of ball k in BY_Q, BY_V, TURN and RING; the size of their derivatives by velocity."""
+    z, rates = table.shape[0], 0.0
+    ga, gr = work[TURNING, k], work[TURNING, z + k]
+    seat = seat_of(k, arm, table, work, DIRECTION)
+    for c in (k, z + k):
+        other = z + k if c == k else k
+        to_ring(seat, Pair(work[BY_AXIAL, c], work[BY_RADIAL, c]), work[BY_TURN, c], work, BY_Q, c)
+        to_ring(seat, Pair(work[BY_AXIAL_SPEED, c], work[BY_RADIAL_SPEED, c]), 0.0, work, BY_V, c)
+        rates += abs(work[BY_AXIAL_SPEED, c]) + abs(work[BY_RADIAL_SPEED, c])
+        d = -work[CONTACT_FORCE, c] * work[SLOPE, c]
+        to_ring(seat, Pair(d * ga, d * gr), 0.0, work, TURN, c)
+        # B + D^T S: a shift changes the forces that turn the ring, too.
+        d = d * work[BY_OWN, c] - work[CONTACT_FORCE, other] * work[SLOPE, other] * work[BY_OTHER, other]
+        by_shift = Pair(work[AXIAL_BY_SHIFT, c] + d * ga, work[RADIAL_BY_SHIFT, c] + d * gr)
+        to_ring(seat, by_shift, work[COUPLE_BY_SHIFT, c], work, RING, c)
+    return rates
 
 
 @jit(void(VECTOR, MATRIX, float64, MATRIX, VECTOR, MATRIX, MATRIX))
@@ -269,65 +339,13 @@ def tangents(scalars, table, ball_gain, work, f, K, C):
     -----
     df = K dq + B dw + D^T dQ and dQ = A dq + S dw, w = C Q: dw = (I - C S)^-1 (C A - D) dq, where D holds -Q c' dbeta/dq.
     """
-    z, arm = table.shape[0], scalars[TILT_ARM]
-    empty = K.size == 0
+    z, arm, rates = table.shape[0], scalars[TILT_ARM], 0.0
     for k in range(z):
-        ga, gr = work[TURNING, k], work[TURNING, z + k]
-        by_angle, twice = 0.0, 0.0
-        for c in (k, z + k):
-            half = -0.5 * work[2, c] * work[2, c]
-            by_angle += half * work[SLOPE, c]
-            twice += half * work[CURVE, c]
-        if by_angle == 0.0 and twice == 0.0:
-            continue
-        haa, har = 2.0 * ga * gr, gr * gr - ga * ga
-        add_ball(
-            work[DIRECTION, k], work[DIRECTION, z + k], arm, table[k, SIDE], table[k, LEVER], by_angle * ga, by_angle * gr,
-            twice * ga * ga + by_angle * haa, twice * ga * gr + by_angle * har,
-            twice * ga * gr + by_angle * har, twice * gr * gr - by_angle * haa, 0.0, 0.0, 0.0, 0.0, f, K, C,
-        )  # fmt: skip
-    if empty:
+        _add_turning(k, arm, table, work, f, K, C)
+    if K.size == 0:
         return
-    rates = 0.0
     for k in range(z):
-        ga, gr = work[TURNING, k], work[TURNING, z + k]
-        for c in (k, z + k):
-            other = z + k if c == k else k
-            to_ring(
-                work[DIRECTION, k],
-                work[DIRECTION, z + k],
-                table,
-                work,
-                k,
-                arm,
-                work[BY_AXIAL, c],
-                work[BY_RADIAL, c],
-                work[BY_TURN, c],
-                BY_Q,
-                c,
-            )
-            to_ring(
-                work[DIRECTION, k],
-                work[DIRECTION, z + k],
-                table,
-                work,
-                k,
-                arm,
-                work[BY_AXIAL_SPEED, c],
-                work[BY_RADIAL_SPEED, c],
-                0.0,
-                BY_V,
-                c,
-            )
-            rates += abs(work[BY_AXIAL_SPEED, c]) + abs(work[BY_RADIAL_SPEED, c])
-            d = -work[2, c] * work[SLOPE, c]
-            to_ring(work[DIRECTION, k], work[DIRECTION, z + k], table, work, k, arm, d * ga, d * gr, 0.0, TURN, c)
-            # B + D^T S: a shift changes the forces that turn the ring, too.
-            d = d * work[BY_OWN, c] - work[2, other] * work[SLOPE, other] * work[BY_OTHER, other]
-            to_ring(
-                work[DIRECTION, k], work[DIRECTION, z + k], table, work, k, arm, work[AXIAL_BY_SHIFT, c] + d * ga, work[RADIAL_BY_SHIFT, c] + d * gr,
-                work[COUPLE_BY_SHIFT, c], RING, c,
-            )  # fmt: skip
+        rates += _rows_of_ball(k, arm, table, work)
     for i in range(5):
         _solve_transposed(work, RING + i)
         for c in range(2 * z):

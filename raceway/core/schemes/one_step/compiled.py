@@ -7,7 +7,7 @@ from numba import boolean, float64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.ring.dense import copy_matrix, solve
-from raceway.core.ring.kernels import FORCES
+from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.columns import accept_balls, next_balls, work_rows
 from raceway.core.ring.kernels.layout import TILT_ARM
 from raceway.core.schemes.compiled import BALLS, EVALUATIONS, NEWTON, REASON, RESIDUAL, UNBOUNDED, note_step, outer_force
@@ -62,7 +62,7 @@ def imbalance(formula, linear, motion, trial, response, push, arm):
     q, v, a, rests, residual = trial
     norm, scale = 0.0, 0.0
     for i in range(response.work.shape[1]):
-        scale += abs(response.work[FORCES, i])
+        scale += abs(response.work[CONTACT_FORCE, i])
     for i in range(5):
         weight = 1.0 if i < 3 else 1.0 / arm
         rest, inertia, held = response.f[i] - load[i] - push[i], 0.0, 0.0
