@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from multiprocessing.connection import Connection, wait
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
@@ -35,7 +35,7 @@ class Processes:
     patience: float = option(1e7, unit="s", help="a batch that takes longer hangs: it is given up", rule=between(0.1, 1e9))
 
     def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
-        left, again, tried = iter(batches), list[Batch](), set[int]()
+        left, again, tried = iter(batches), list[Any](), set[int]()
         crew: list[_Worker] = []
 
         def following() -> Batch | None:
