@@ -12,7 +12,7 @@ from raceway.bodies.basis import make_basis
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.patches.compliances import RingBody, Solid, make_ball, make_patch
-from raceway.core.patches.contact import Contact, Pressed
+from raceway.core.patches.contact import Contact, ContactState
 from raceway.core.patches.patch import Patch, Spacing
 
 
@@ -34,10 +34,10 @@ class Single:
         angle = self.angle if angle is None else angle
         return self.patch.race.sense * (self.rest + approach) * np.array([np.sin(angle), np.cos(angle)])
 
-    def press(self, contact: Contact, approach: float, angle: float | None = None) -> Pressed:
+    def press(self, contact: Contact, approach: float, angle: float | None = None) -> ContactState:
         return contact.press(self.place(approach, angle), np.zeros(2))
 
-    def at_load(self, load: float, law: Any = None) -> tuple[float, Pressed]:
+    def at_load(self, load: float, law: Any = None) -> tuple[float, ContactState]:
         """Approach [m] and answer under a load [N], by Newton from Hertz's approach."""
         contact = Contact(self.patch, law)
         approach = float(self.ellipse.approach(load))
@@ -50,7 +50,7 @@ class Single:
                 break
         return approach, self.press(contact, approach)
 
-    def peak(self, pressed: Pressed) -> float:
+    def peak(self, pressed: ContactState) -> float:
         """Largest pressure at a point [Pa]."""
         return float(pressed.load.max() / self.patch.area)
 

@@ -213,7 +213,7 @@ print(json.dumps({"first": found[0], "second": found[1], "parts": parts, "memory
 def set_up(nodes: int) -> dict[str, Any]:
     """Compliances of a whole bearing's bodies, ball and two rings, all three components."""
     from raceway.core.revolution.ball import free_ball
-    from raceway.core.revolution.kept import kept_compliance
+    from raceway.core.revolution.cached import cached_compliance
 
     radius, sectors, step, across, _, wide = _sizes(nodes)
     ball = free_ball(
@@ -223,7 +223,7 @@ def set_up(nodes: int) -> dict[str, Any]:
     for inner in (True, False):
         profile, divisions, offsets = _ring(nodes, inner)
         at = dofs(profile.race, ALL)
-        found = kept_compliance("ring", profile, divisions, STEEL[0], STEEL[1], at, at, offsets)
+        found = cached_compliance("ring", profile, divisions, STEEL[0], STEEL[1], at, at, offsets)
         elements, size = elements + divisions * len(profile.quads), size + found.nbytes
     return {"elements": elements, "bytes": size}
 

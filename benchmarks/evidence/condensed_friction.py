@@ -166,7 +166,7 @@ def _inertia() -> list[Row]:
         system.evaluate(rest.displacement, ball=rest.ball)
         row = system.pool.row(system.table)
         _, jacobian, _ = system._groove(rest.displacement, np.zeros(5), 0.0)
-        still = row.balls.without_ripple(row.last, row.centre, row.where)
+        still = row.balls.smoothed_stiffness(row.last, row.centre, row.where)
         speed = 2.0 * np.pi * rpm / 60.0
         moving = attrs.evolve(still, held=still.held - system.ball_mass * speed**2 * np.eye(len(still.held)))
         both = [float((jacobian.T @ row.balls.tangent(one) @ jacobian)[1, 1]) for one in (still, moving)]

@@ -55,7 +55,7 @@ def make_basis(scene: Scene) -> Basis:
     return Basis(geometry, modulus, inner, outer, np.tile(single, len(b.rows)), axial, max(ball_load, 1.0))
 
 
-def made_by(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
+def call_plugin(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
     """An array from a plug-in's own code, whose failures are put to its name."""
     try:
         return np.ascontiguousarray(make(), dtype=float)
@@ -80,7 +80,7 @@ def law_params(scene: Scene, basis: Basis) -> np.ndarray:
         hertz_factor=both(inner.factor, outer.factor),
         reference_load=both(basis.ball_load, basis.ball_load),
     )
-    params = made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
+    params = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
     if params.ndim != 2 or len(params) != 2 * z:
         raise PluginError(
             f"contact law '{scene.contact.kind}': build() returned parameters of shape {params.shape}; "
@@ -111,7 +111,7 @@ def excitation(scene: Scene) -> Tables:
         from raceway.core.excitations.harmonic import no_force
 
         return {"force": no_force, "force_params": np.zeros(1)}
-    parameters = made_by(f"excitation '{scene.excitation.name}'", "parameters()", scene.excitation.parameters)
+    parameters = call_plugin(f"excitation '{scene.excitation.name}'", "parameters()", scene.excitation.parameters)
     if parameters.ndim != 1:
         raise PluginError(
             f"excitation '{scene.excitation.name}': parameters() returned shape {parameters.shape}; it must be (k,)"

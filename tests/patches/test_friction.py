@@ -10,9 +10,9 @@ import pytest
 
 from raceway import build_model, make_plan
 from raceway.bodies.patches.plan import patch_cost
-from raceway.core.patches.balls import Given
-from raceway.core.patches.contact import Contact, Held
-from raceway.core.patches.friction import Friction, Gripped
+from raceway.core.patches.balls import AppliedLoads
+from raceway.core.patches.contact import Contact, SlipState
+from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.core.patches.history import History
 from raceway.core.ring.ring import Increment
@@ -35,12 +35,12 @@ def pressed():
     return case, approach, answer, Mindlin(a, b, 212e9, 0.29, MU * float(answer.load.sum()))
 
 
-def pulled(friction: Friction, to: float, slip: np.ndarray) -> Gripped:
+def pulled(friction: Friction, to: float, slip: np.ndarray) -> Traction:
     _, _, answer, _ = pressed()
     return friction.pull(answer.nodes, answer.load, to, slip)
 
 
-def at_force(pull: float) -> tuple[float, Gripped]:
+def at_force(pull: float) -> tuple[float, Traction]:
     """Displacement from rest at which the tractions add up to a force."""
     case, _, _, mindlin = pressed()
     friction = Friction(case.patch, MU)
@@ -99,12 +99,12 @@ def test_the_tangent_is_the_derivative_while_some_points_slide():
     turn, step = 1e-6, 1e-12
 
     def answer(moved: np.ndarray, turned: float) -> np.ndarray:
-        found = contact.press(place + moved, np.zeros(2), Held(turned, slip))
+        found = contact.press(place + moved, np.zeros(2), SlipState(turned, slip))
         return np.append(found.force, found.couple)
 
-    now = contact.press(place, np.zeros(2), Held(turn, slip))
-    assert now.gripped is not None
-    assert 0 < (now.gripped.sliding == 0).sum() < len(now.nodes)
+    now = contact.press(place, np.zeros(2), SlipState(turn, slip))
+    assert now.traction_state is not None
+    assert 0 < (now.traction_state.sliding == 0).sum() < len(now.nodes)
     for k, way in enumerate(np.eye(2)):
         found = (answer(step * way, turn) - answer(-step * way, turn)) / (2.0 * step)
         assert found[:2] == pytest.approx(-now.stiffness[:, k], abs=1e-4 * np.abs(now.stiffness).max())
@@ -128,10 +128,10 @@ def test_a_bearing_with_friction_has_exact_tangents_and_a_history():
     system = case.system
     rest = system.evaluate(found.displacement, ball=found.ball)
     # Balls have rolled into place: no traction.  Places are known to some 1e-12 m, a contact that sticks has 70 N/um.
-    assert max(abs(one.gripped.force) for one in system.pressures()) < 1e-3
+    assert max(abs(one.traction_state.force) for one in system.pressures()) < 1e-3
     moved = found.displacement + np.array([2e-7, 3e-7, 1e-7, 5e-5, -3e-5])
     now = system.evaluate(moved, ball=found.ball)
-    sliding = [(one.gripped.sliding != 0).mean() for one in system.pressures()]
+    sliding = [(one.traction_state.sliding != 0).mean() for one in system.pressures()]
     assert 0.0 < np.mean(sliding) < 1.0
     for j, size in enumerate([1e-11, 1e-11, 1e-11, 1e-9, 1e-9]):
         step = size * np.eye(5)[j]
@@ -222,7 +222,7 @@ def test_the_moment_of_a_ball_has_exact_derivatives(load):
 
     def of(moved):
         force = load * np.array([np.sin(0.3), np.cos(0.3)]) - contact @ (moved - places)[:2]
-        pressed = SimpleNamespace(force=force, gripped=None, stiffness=contact, along=np.zeros((2, 2)))
+        pressed = SimpleNamespace(force=force, traction_state=None, stiffness=contact, along=np.zeros((2, 2)))
         return turned.of(moved[:2], moved[2:], pressed)
 
     now, step = of(places), 1e-9 * np.eye(4)
@@ -256,5 +256,5 @@ def test_balls_are_accelerated_by_their_contacts():
 
 def test_a_series_of_equilibria_knows_no_inertia():
     history = History.of(np.zeros((24, 0)), 12)
-    assert history.with_inertia(Given(np.zeros(12)), 1.0, 1e-5, 1e5, np.zeros((12, 2))).spring == 0.0
+    assert history.with_inertia(AppliedLoads(np.zeros(12)), 1.0, 1e-5, 1e5, np.zeros((12, 2))).spring == 0.0
     assert History.of(history.after(None, [None] * 24, np.zeros(24)), 12).known == 0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts, made_by, make_basis
+from raceway.bodies.basis import Basis, call_plugin, changing_speed, excitation, linear_parts, make_basis
 from raceway.bodies.model import Bearing, Told
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
@@ -141,7 +141,7 @@ def _law_params(scene: Scene, basis: Basis, length: float, radii: tuple[float, f
         reference_load=np.full(2 * z, load),
         length=np.full(2 * z, length),
     )
-    return made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
+    return call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
 
 
 def _scalars(scene: Scene, basis: Basis, clearance: float) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, made_by, make_basis
+from raceway.bodies.basis import Basis, call_plugin, make_basis
 from raceway.bodies.elastic.points import ElasticPoints
 from raceway.bodies.elastic.report import ElasticBodies
 from raceway.bodies.elastic.resultants import ElasticResultants
@@ -17,8 +17,8 @@ from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid.build import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
 from raceway.core.elastic.bearing import ElasticBearing
+from raceway.core.elastic.bearing_data import BearingData
 from raceway.core.elastic.ring import ElasticRing
-from raceway.core.elastic.setup import Setup
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, FRICTION
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System
@@ -103,13 +103,13 @@ def _refuse_stiff_law(scene: Scene, basis: Basis, bodies: ElasticBearing) -> Non
         )
 
 
-def _setup(scene: Scene, basis: Basis, rigid: System) -> Setup:
+def _setup(scene: Scene, basis: Basis, rigid: System) -> BearingData:
     b, rotor, contact = scene.bearing, scene.rotor, scene.contact
     inertia = [rotor.mass] * 3 + [rotor.transverse_inertia] * 2  # the ring's own is in its mesh
     outer = 0.0 if scene.excitation is None else scene.excitation.amplitude_n
     # A radial load is carried by a few balls: 5 F / Z (Stribeck).
     most = basis.ball_load + 5.0 * (float(np.hypot(*scene.load.radial)) + outer) / b.ball_count
-    return Setup(
+    return BearingData(
         geometry=basis.geometry,
         azimuth=basis.azimuth,
         rings=(b.rings.young, b.rings.poisson, b.rings.density),
@@ -163,7 +163,7 @@ def _params(scene: Scene, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np
             reference_load=either(basis.ball_load, basis.ball_load),
             area=area,
         )
-        found = made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
+        found = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
         if found.ndim != 2 or len(found) != len(pair):
             raise PluginError(
                 f"contact law '{scene.contact.kind}': build() returned parameters of shape {found.shape}; "

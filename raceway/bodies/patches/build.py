@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, made_by, make_basis
+from raceway.bodies.basis import Basis, call_plugin, make_basis
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.patches.plan import nodes_of
 from raceway.bodies.patches.report import NodalBearing
@@ -187,7 +187,7 @@ def _point_laws(scene: Scene, basis: Basis, spacing: Spacing) -> tuple[PointLaw 
         reference_load=np.full(2, basis.ball_load),
         area=np.full(2, spacing.area),
     )
-    params = made_by(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
+    params = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
     kernel = plugin_kernel(law, "contact law", LAW, "LAW")
     first, second = (PointLaw(kernel, row, spacing.area) for row in params)
     return first, second

@@ -12,7 +12,7 @@ from raceway.bodies.condensed.inertia import inertia_table
 from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.locking import locking
 from raceway.bodies.model import Bearing, Told
-from raceway.core.patches.contact import Pressed
+from raceway.core.patches.contact import ContactState
 from raceway.core.patches.field import PressureField, pressure_field
 from raceway.core.patches.patch import Spacing
 from raceway.core.patches.pool import Pool
@@ -77,7 +77,7 @@ class NodalBearing(Bearing):
         """The overlap that a law leaves."""
         return overlap(self.ball_columns(model, equilibrium), equilibrium)
 
-    def pressed(self, model: Model, equilibrium: Equilibrium) -> tuple[Evaluation, list[Pressed]]:
+    def pressed(self, model: Model, equilibrium: Equilibrium) -> tuple[Evaluation, list[ContactState]]:
         """The state and the contacts' answers at the equilibrium, inner races first."""
         system: Any = model.system.without(CAGE)
         now = system.evaluate(equilibrium.displacement, ball=equilibrium.ball)

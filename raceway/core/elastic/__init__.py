@@ -6,12 +6,12 @@ cage        an ideal cage: mean azimuth and mean rotation of each ball
 contacts    forces between two bodies
 touching    the contacts of a ball bearing, of either kind
 solver      conjugate gradients with multigrid and the rigid frames' own coordinates
-whole_contacts  contact resultants and the cage as low-rank changes of the preconditioner
+low_rank        contact resultants and the cage as low-rank changes of the preconditioner
 factorised  sparse factors instead of multigrid, for small systems
 statics     Newton's method with a line search; the last good state is kept
 system      all of it as one system, settled or stepped in time
 stepped     time steps of bodies in nodal contact
-setup       data of an elastic bearing beyond its meshes
+bearing_data       data of an elastic bearing beyond its meshes
 bearing     the bodies of a ball bearing, made into a system
 ring        the bearing seen from its inner ring: the interface of all systems
 start       initial state of a time integration

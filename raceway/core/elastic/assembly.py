@@ -53,7 +53,7 @@ class Assembly:
             begin = part.stop
             rows = slice(3 * int(self.starts[index]), 3 * int(self.starts[index + 1]))
             self.carried[rows, part] = frame.basis(bodies[index].points)
-            if bodies[index].bed is None:
+            if bodies[index].foundation is None:
                 tied[(3 * (frame.nodes + self.starts[index])[:, None] + np.arange(3)).ravel()] = True
             self.frame_mass[part, part], self.frame_damping[part, part] = frame.mass, frame.damping
             self.frame_stiffness[part, part], self.frame_free[part] = frame.stiffness, frame.free
@@ -67,7 +67,7 @@ class Assembly:
         mass = np.repeat(self.node_mass, 3)
         self.free_mass = mass[self.free]
         self.frame_mass = self.frame_mass + self._tie.T @ (mass[self.tied, None] * self._tie)
-        self.beds = self._beds()
+        self.foundations = self._beds()
         self._stiffness: csr_matrix = None
 
     def carried_tied(self) -> np.ndarray:
@@ -101,8 +101,8 @@ class Assembly:
         if self.cage is not None:
             force += self.cage.internal(u)
         frame = self.frame_stiffness @ y[: self.frame_size]
-        for bed, ride in self.beds:
-            pull = bed @ (u - ride @ y[: self.frame_size])
+        for foundation, ride in self.foundations:
+            pull = foundation @ (u - ride @ y[: self.frame_size])
             force += pull
             frame -= ride.T @ pull
         out = self.reduced(force)
@@ -115,8 +115,8 @@ class Assembly:
             from scipy.sparse import block_diag, csr_array
 
             whole = csr_array(block_diag([body.operator.stiffness() for body in self.bodies], format="csr"))
-            for bed, _ in self.beds:
-                whole = whole + bed
+            for foundation, _ in self.foundations:
+                whole = whole + foundation
             self._stiffness = whole.tocsr()
         return self._stiffness
 
@@ -130,9 +130,9 @@ class Assembly:
         for index, body in enumerate(self.bodies):
             if body.held.any():
                 out += (body.operator.internal_force(u[self.part(index)]) * body.held).sum(axis=0)
-        for bed, ride in self.beds:
+        for foundation, ride in self.foundations:
             if not ride.any():
-                out -= (bed @ u).reshape(-1, 3).sum(axis=0)
+                out -= (foundation @ u).reshape(-1, 3).sum(axis=0)
         return out
 
     def hourglass_energy(self, u: np.ndarray) -> float:
@@ -151,7 +151,7 @@ class Assembly:
         touching = {i for pair in contacts for i in pair}
         caged = set() if self.cage is None else {int(i) for i in np.unique(self._owners(self.cage.rows))}
         for index, body in enumerate(self.bodies):
-            if body.held.any() or body.bed is not None or body.frame is not None or index in caged:
+            if body.held.any() or body.foundation is not None or body.frame is not None or index in caged:
                 continue
             why = "it touches nothing" if index not in touching else "contact without friction does not hold them"
             free = ", ".join(MOTIONS if index not in touching else MOTIONS[3:])
@@ -174,9 +174,9 @@ class Assembly:
 
         out = []
         for index, body in enumerate(self.bodies):
-            if body.bed is None:
+            if body.foundation is None:
                 continue
-            quads, stiffness = body.bed
+            quads, stiffness = body.foundation
             p = surface_points(body.points, quads)
             w = stiffness * p.area[:, None, None] * p.weights[:, :, None] * p.weights[:, None, :]
             nodes = p.nodes + self.starts[index]
@@ -184,7 +184,7 @@ class Assembly:
             j = np.broadcast_to(nodes[:, None, :], w.shape).ravel()
             rows, columns = ((3 * k[:, None] + np.arange(3)).ravel() for k in (i, j))
             size = 3 * self.nodes
-            bed = coo_array((np.repeat(w.ravel(), 3), (rows, columns)), shape=(size, size)).tocsr()
+            foundation = coo_array((np.repeat(w.ravel(), 3), (rows, columns)), shape=(size, size)).tocsr()
             ride = self.carried if body.frame is not None else np.zeros_like(self.carried)
-            out.append((bed, ride))
+            out.append((foundation, ride))
         return out

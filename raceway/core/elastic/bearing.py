@@ -8,10 +8,10 @@ from contextlib import contextmanager
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
+from raceway.core.elastic.bearing_data import BearingData
 from raceway.core.elastic.body import Body, Frame
 from raceway.core.elastic.cage import Cage, cage_rows
 from raceway.core.elastic.contacts.gap import CIRCLE
-from raceway.core.elastic.setup import Setup
 from raceway.core.elastic.stepped import Seen
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.elastic.touching import nodal_contact, resultant_contact
@@ -36,7 +36,7 @@ class ElasticBearing:
     system : ElasticSystem
     """
 
-    def __init__(self, meshes: Mapping[str, HexMesh], setup: Setup) -> None:
+    def __init__(self, meshes: Mapping[str, HexMesh], setup: BearingData) -> None:
         self.setup = setup
         names = [name for name in meshes if name not in ("inner_ring", "outer_ring")]
         if len(names) != len(setup.azimuth) or len(names) + 2 != len(meshes):
@@ -126,15 +126,15 @@ class ElasticBearing:
         operator = HexOperator(mesh.points, mesh.cells, *s.rings, *self._formulation)
         held = np.zeros((len(mesh.points), 3), dtype=bool)
         seat = s.seat_inner if inner else s.seat_outer
-        bed = None if isinstance(seat, str) else (mesh.facet_nodes("seat"), float(seat))
+        foundation = None if isinstance(seat, str) else (mesh.facet_nodes("seat"), float(seat))
         if not inner:
-            if bed is None:
+            if foundation is None:
                 held[mesh.nodes("seat")] = True
-            return Body("outer_ring", operator, held, None, bed)
+            return Body("outer_ring", operator, held, None, foundation)
         reference = np.array([s.offsets[0][0], 0.0, 0.0])
         free = np.asarray(s.free, dtype=float) > 0.0
         frame = Frame(mesh.nodes("seat"), reference, (0, 1, 2, 4, 5), s.mass, s.damping, s.stiffness, free)
-        return Body("inner_ring", operator, held, frame, bed)
+        return Body("inner_ring", operator, held, frame, foundation)
 
     def _cage(self, assembly: Assembly) -> Cage:
         from scipy.sparse import coo_array

@@ -67,7 +67,7 @@ class Body:
     operator: HexOperator
     held: np.ndarray
     frame: Frame | None = None
-    bed: tuple[np.ndarray, float] | None = None
+    foundation: tuple[np.ndarray, float] | None = None
 
     @property
     def points(self) -> np.ndarray:

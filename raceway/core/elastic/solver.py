@@ -9,7 +9,7 @@ import numpy as np
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.factorised import MOST_OF_A_BODY, MOST_UNKNOWNS, Factorised
-from raceway.core.elastic.whole_contacts import WholeContacts
+from raceway.core.elastic.low_rank import LowRankContacts
 from raceway.core.linear.blocks import BlockMatrix
 from raceway.core.linear.statics import Preconditioner
 
@@ -41,7 +41,7 @@ class LinearSolver:
     def __init__(self, assembly: Assembly, contact: Contact | None, modulus: float) -> None:
         self.assembly, self.contact, self.modulus = assembly, contact, modulus
         self._multigrid: Preconditioner | Factorised | None = None
-        self._whole: WholeContacts | None = None
+        self._whole: LowRankContacts | None = None
         self._built = 0.0
         self._fresh = False
         self._extra = 0
@@ -102,7 +102,7 @@ class LinearSolver:
         held[a.free] = False
         sprung = (matrix + diags_array(extra)).tocsr()
         self._multigrid = Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, FEWEST_NODES)
-        self._whole = WholeContacts(contact, cage, self._multigrid, a.free) if contact is not None and whole else None
+        self._whole = LowRankContacts(contact, cage, self._multigrid, a.free) if contact is not None and whole else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)
@@ -144,10 +144,10 @@ class LinearSolver:
             if a.cage is not None:
                 force += a.cage.internal(u)
             pulled = np.zeros(m)
-            for bed, ride in a.beds:
-                pull = bed @ (ride @ q)
+            for foundation, ride in a.foundations:
+                pull = foundation @ (ride @ q)
                 force -= pull
-                pulled += ride.T @ (pull - bed @ u)
+                pulled += ride.T @ (pull - foundation @ u)
             force *= c_k
             if blocks is not None and len(blocks):
                 force += transposed @ np.einsum("iab,ib->ia", blocks, (move @ u).reshape(-1, 3)).ravel()

@@ -6,6 +6,7 @@ import numpy as np
 
 from raceway.core.contact.sphere import ball_compliance
 from raceway.core.elastic.assembly import Assembly
+from raceway.core.elastic.bearing_data import BearingData
 from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.footprint import Footprint, footprint
 from raceway.core.elastic.contacts.friction import CoulombFriction
@@ -15,7 +16,6 @@ from raceway.core.elastic.contacts.penalty import penalty_stiffness
 from raceway.core.elastic.contacts.resultant import ResultantContact, Touch
 from raceway.core.elastic.contacts.separation import LoadedBody
 from raceway.core.elastic.contacts.surface import SurfacePoints, surface_points
-from raceway.core.elastic.setup import Setup
 from raceway.core.mesh.hex_mesh import HexMesh
 
 #: Points of a ball count as contact points where the undeformed gap is below this many Hertz approaches at four times the
@@ -30,7 +30,7 @@ _OVERLAP = 0.01
 _SAME = 1e-9
 
 
-def nodal_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> NodalContact:
+def nodal_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly) -> NodalContact:
     """Pressures at points; ``meshes``: inner ring, outer ring, balls."""
     s, g, pairs = setup, setup.geometry, []
     for race, word in enumerate(("inner", "outer")):
@@ -55,7 +55,7 @@ def nodal_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> No
     return NodalContact(pairs, assembly.nodes, s.law, s.params(which, area), s.state_size, damping, friction)
 
 
-def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> ResultantContact:
+def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly) -> ResultantContact:
     """A force for each ball and race, at the contact angles of ``setup``; ``meshes``: inner ring, outer ring, balls."""
     s, g = setup, setup.geometry
     assert s.angles is not None
@@ -105,7 +105,7 @@ def resultant_contact(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -
     return ResultantContact(touches, assembly.nodes, s.law, params, s.state_size, s.contact_damping)
 
 
-def _loaded_balls(setup: Setup, meshes: list[HexMesh], assembly: Assembly) -> list[tuple[int, LoadedBody]]:
+def _loaded_balls(setup: BearingData, meshes: list[HexMesh], assembly: Assembly) -> list[tuple[int, LoadedBody]]:
     """For each ball the first one with the same mesh, turned about the bearing's axis, and that one's answers."""
     out: list[tuple[int, LoadedBody]] = []
     for k, ball in enumerate(meshes[2:]):
@@ -134,13 +134,13 @@ def _moved(contact: Footprint, first: int) -> Footprint:
     return Footprint(contact.nodes + first, contact.weights, contact.share)
 
 
-def _groove(setup: Setup, race: int) -> np.ndarray:
+def _groove(setup: BearingData, race: int) -> np.ndarray:
     g, centre = setup.geometry, setup.offsets[race]
     radius = (g.conformity_outer if race else g.conformity_inner) * g.ball_diameter
     return groove(np.array([centre[0], 0.0, 0.0]), centre[1] + (0.0 if race else setup.growth), radius)
 
 
-def sticking(setup: Setup, area: np.ndarray) -> np.ndarray:
+def sticking(setup: BearingData, area: np.ndarray) -> np.ndarray:
     """(n,) stiffness of sticking points [N/m3]; by default 2 (1 - nu) / (2 - nu) of a penalty's (Mindlin 1949)."""
     if setup.stick is not None:
         return np.full(len(area), setup.stick)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from raceway.core.hexahedron.crew import Crew, Job
 from raceway.core.hexahedron.mass import element_masses, nodal_volumes
 from raceway.core.hexahedron.one_point import WORK, range_force
 from raceway.core.hexahedron.point_force import range_point_force
@@ -18,6 +17,7 @@ from raceway.core.hexahedron.sparse import assemble
 from raceway.core.hexahedron.stable import stable_step
 from raceway.core.hexahedron.stiffness import stiffnesses
 from raceway.core.hexahedron.strain import KINDS
+from raceway.core.hexahedron.threads import Job, ThreadPool
 from raceway.errors import MeshError
 
 if TYPE_CHECKING:
@@ -111,9 +111,9 @@ class HexOperator:
         """(n, 3) Internal forces K u [N] of displacements u (n, 3) [m]; ``out`` is overwritten and returned if given."""
         flat = self._flat(u)
         f = np.empty_like(self.points) if out is None else out
-        with Crew(threads) as crew:
-            crew.do(len(self._ranges), self._force_job(flat))
-            crew.do_shares(len(self.points), lambda a, b: add_parts(a, b, self._ranges, self._parts, f.reshape(-1)))
+        with ThreadPool(threads) as pool:
+            pool.do(len(self._ranges), self._force_job(flat))
+            pool.do_shares(len(self.points), lambda a, b: add_parts(a, b, self._ranges, self._parts, f.reshape(-1)))
         return f
 
     def advance(
@@ -143,10 +143,10 @@ class HexOperator:
         def move(first: int, last: int) -> None:
             add_parts_and_move(first, last, self._ranges, self._parts, outer, inverse_mass, f, dt, flat_u, flat_v)
 
-        with Crew(threads) as crew:
+        with ThreadPool(threads) as pool:
             for _ in range(steps):
-                crew.do(len(self._ranges), job)
-                crew.do_shares(len(self.points), move)
+                pool.do(len(self._ranges), job)
+                pool.do_shares(len(self.points), move)
         return f.reshape(-1, 3)
 
     def stiffness(self) -> csr_matrix:

@@ -14,7 +14,7 @@ in p alone.
 
 Friction also feels the turn of the inner ring's section at every ball: B = (1 + K W)^-1 b, b the contacts' derivatives, and
 a couple acts on that section; so do gyroscopic moments, which tie both contacts of a ball together in K.  The balls' inertia is
-a force that falls with their place, ``Given``.
+a force that falls with their place, ``AppliedLoads``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.patches.contact import Contact, Held, Pressed
+from raceway.core.patches.contact import Contact, ContactState, SlipState
 from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.errors import ConvergenceError
 
@@ -32,7 +32,7 @@ _IDLE = 1e-12
 
 
 @attrs.frozen(eq=False)
-class Given:
+class AppliedLoads:
     """Loads on balls and contacts beside those of their places.
 
     Attributes
@@ -54,38 +54,38 @@ class Given:
         """Whether couples act on the ring's section."""
         return bool(self.slip) or self.gyroscopic is not None
 
-    def of(self, contact: int) -> Held | None:
+    def of(self, contact: int) -> SlipState | None:
         """The part of one contact."""
         if not self.slip:
             return None
-        return Held(float(self.turn[contact % len(self.turn)]), self.slip[contact])
+        return SlipState(float(self.turn[contact % len(self.turn)]), self.slip[contact])
 
 
 @attrs.frozen(eq=False)
-class Linear:
+class LinearisedBalls:
     """The balls linearised at one state.
 
     Attributes
     ----------
-    pressed : (2 Z) answers of the contacts
+    contact_states : (2 Z) answers of the contacts
     force : (2 Z, 2) forces on the balls that are carried on [N];  rest : (2 Z, 2) what the contacts give beyond them
-    shown : (4 Z, 4 Z) S [N/m];  held : (2 Z, 2 Z) the balls' own stiffness H = P^T S P
+    contact_stiffness : (4 Z, 4 Z) S [N/m];  ball_stiffness : (2 Z, 2 Z) the balls' own stiffness H = P^T S P
     balance : (2 Z,) forces on the balls, contact forces at W F included to first order [N]
-    turned : (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
+    by_section_turn : (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
     couple : (Z,) on that section [N m]
     couple_by_place : (Z, 4 Z) its derivative by D [N]; None where there are no couples
     crossed : (4 Z, 4 Z) what gyroscopic moments add to K [N/m]; 0 without
     seen : (2 Z, 2) D, the balls seen from the grooves [m]
     """
 
-    pressed: list[Pressed]
+    contact_states: list[ContactState]
     force: np.ndarray
     rest: np.ndarray
     carried: np.ndarray
-    shown: np.ndarray
-    held: np.ndarray
+    contact_stiffness: np.ndarray
+    ball_stiffness: np.ndarray
     balance: np.ndarray
-    turned: np.ndarray
+    by_section_turn: np.ndarray
     couple: np.ndarray
     couple_by_place: np.ndarray | None
     crossed: np.ndarray | float
@@ -113,106 +113,129 @@ class Balls:
         self.evaluations = 0
 
     def linear(
-        self, centre: np.ndarray, place: np.ndarray, force: np.ndarray, rate: np.ndarray, given: Given | None = None
-    ) -> Linear:
+        self, centre: np.ndarray, place: np.ndarray, force: np.ndarray, rate: np.ndarray, applied: AppliedLoads | None = None
+    ) -> LinearisedBalls:
         """Press all contacts.
 
         Parameters
         ----------
         centre, place : (Z, 2) e and p [m];  force : (2 Z, 2) F [N];  rate : (2 Z, 2) velocities of D [m/s]
         """
-        given = given or Given(np.zeros(self.count))
+        applied = applied or AppliedLoads(np.zeros(self.count))
         moved = (self.coupling @ force.reshape(-1)).reshape(-1, 2)
         seen = np.concatenate([place - centre, place]) + moved
-        pressed = [
-            contact.press(d, r, given.of(k)) for k, (contact, d, r) in enumerate(zip(self.contacts, seen, rate, strict=True))
+        contact_states = [
+            contact.press(d, r, applied.of(k))
+            for k, (contact, d, r) in enumerate(zip(self.contacts, seen, rate, strict=True))
         ]
         self.evaluations += 1
-        answer = np.array([one.force for one in pressed])
+        answer = np.array([one.force for one in contact_states])
         z = self.count
-        couple, by_place = np.array([one.couple for one in pressed[:z]]), None
+        couple, by_place = np.array([one.couple for one in contact_states[:z]]), None
         crossed: np.ndarray | float = 0.0
-        if given.with_couples:
+        if applied.with_couples:
             by_place = np.zeros((z, 4 * z))
-            for k, one in enumerate(pressed[:z]):
+            for k, one in enumerate(contact_states[:z]):
                 by_place[k, 2 * k : 2 * k + 2] = one.couple_by_place
-        if given.gyroscopic is not None and by_place is not None:
+        if applied.gyroscopic is not None and by_place is not None:
             crossed = np.zeros_like(self.coupling)
-            for k, one in enumerate(pressed[:z]):
-                more = given.gyroscopic.of(seen[k], seen[z + k], one)
+            for k, one in enumerate(contact_states[:z]):
+                more = applied.gyroscopic.of(seen[k], seen[z + k], one)
                 at = np.r_[2 * k : 2 * k + 2, 2 * (z + k) : 2 * (z + k) + 2]
                 answer[[k, z + k]] += more.force.reshape(2, 2)
                 crossed[np.ix_(at, at)] = more.stiffness
                 couple[k] += more.couple
                 by_place[k, at] += more.couple_by_place
         rest = (answer - force).reshape(-1)
-        stiffness = [one.stiffness for one in pressed]
-        shown, held, carried, turned = self._together(stiffness, rest, pressed, crossed, given.spring)
-        acting = self.loads + given.push - given.spring * place
+        stiffness = [one.stiffness for one in contact_states]
+        contact_stiffness, ball_stiffness, carried, by_section_turn = self._together(
+            stiffness, rest, contact_states, crossed, applied.spring
+        )
+        acting = self.loads + applied.push - applied.spring * place
         balance = self._both.T @ (force.reshape(-1) + carried) + acting.reshape(-1)
-        return Linear(
-            pressed, force, rest.reshape(-1, 2), carried, shown, held, balance, turned, couple, by_place, crossed, seen
+        return LinearisedBalls(
+            contact_states,
+            force,
+            rest.reshape(-1, 2),
+            carried,
+            contact_stiffness,
+            ball_stiffness,
+            balance,
+            by_section_turn,
+            couple,
+            by_place,
+            crossed,
+            seen,
         )
 
-    def without_ripple(self, now: Linear, centre: np.ndarray, place: np.ndarray) -> Linear:
+    def smoothed_stiffness(self, now: LinearisedBalls, centre: np.ndarray, place: np.ndarray) -> LinearisedBalls:
         """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""
         moved = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
         seen = np.concatenate([place - centre, place]) + moved
         stiffness = [
-            contact.mean_stiffness(d) + one.along for contact, d, one in zip(self.contacts, seen, now.pressed, strict=True)
+            contact.mean_stiffness(d) + one.along
+            for contact, d, one in zip(self.contacts, seen, now.contact_states, strict=True)
         ]
-        shown, held, carried, turned = self._together(stiffness, now.rest.reshape(-1), now.pressed, now.crossed)
-        return attrs.evolve(now, shown=shown, held=held, carried=carried, turned=turned)
+        contact_stiffness, ball_stiffness, carried, by_section_turn = self._together(
+            stiffness, now.rest.reshape(-1), now.contact_states, now.crossed
+        )
+        return attrs.evolve(
+            now,
+            contact_stiffness=contact_stiffness,
+            ball_stiffness=ball_stiffness,
+            carried=carried,
+            by_section_turn=by_section_turn,
+        )
 
     def _together(
         self,
         stiffness: list[np.ndarray],
         rest: np.ndarray,
-        pressed: list[Pressed],
+        contact_states: list[ContactState],
         crossed: np.ndarray | float,
         spring: float = 0.0,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """S, H, (1 + K W)^-1 rest and B, for the stiffness (2, 2) of every contact."""
-        stiff, turned = np.zeros_like(self.coupling), np.zeros((len(rest), self.count))
+        stiff, by_section_turn = np.zeros_like(self.coupling), np.zeros((len(rest), self.count))
         for k, one in enumerate(stiffness):
             stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one
         stiff += crossed
-        for k, other in enumerate(pressed[: self.count]):
-            turned[2 * k : 2 * k + 2, k] = other.by_turn
-        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, turned, rest]))
-        shown = both[:, : len(rest)]
-        if isinstance(crossed, float) and all(one.gripped is None for one in pressed):
-            shown = 0.5 * (shown + shown.T)
-        held = self._both.T @ shown @ self._both
-        held += (spring + _IDLE * max(np.abs(held).max(), 1.0)) * np.eye(len(held))
-        return shown, held, both[:, -1], both[:, len(rest) : -1]
+        for k, other in enumerate(contact_states[: self.count]):
+            by_section_turn[2 * k : 2 * k + 2, k] = other.by_turn
+        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, by_section_turn, rest]))
+        contact_stiffness = both[:, : len(rest)]
+        if isinstance(crossed, float) and all(one.traction_state is None for one in contact_states):
+            contact_stiffness = 0.5 * (contact_stiffness + contact_stiffness.T)
+        ball_stiffness = self._both.T @ contact_stiffness @ self._both
+        ball_stiffness += (spring + _IDLE * max(np.abs(ball_stiffness).max(), 1.0)) * np.eye(len(ball_stiffness))
+        return contact_stiffness, ball_stiffness, both[:, -1], both[:, len(rest) : -1]
 
-    def follow(self, now: Linear) -> np.ndarray:
+    def follow(self, now: LinearisedBalls) -> np.ndarray:
         """(2 Z, 2 Z) motion of the balls that follows a motion of the inner groove centres."""
-        return np.linalg.solve(now.held, self._both.T @ now.shown @ self._inner)
+        return np.linalg.solve(now.ball_stiffness, self._both.T @ now.contact_stiffness @ self._inner)
 
-    def tangent(self, now: Linear) -> np.ndarray:
+    def tangent(self, now: LinearisedBalls) -> np.ndarray:
         """(2 Z, 2 Z) stiffness against motions of the inner groove centres."""
-        carried = self._both.T @ now.shown @ self._inner
-        lost = self._inner.T @ now.shown @ self._both @ np.linalg.solve(now.held, carried)
-        return np.asarray(self._inner.T @ now.shown @ self._inner - lost)
+        carried = self._both.T @ now.contact_stiffness @ self._inner
+        lost = self._inner.T @ now.contact_stiffness @ self._both @ np.linalg.solve(now.ball_stiffness, carried)
+        return np.asarray(self._inner.T @ now.contact_stiffness @ self._inner - lost)
 
-    def tangent_with_turns(self, now: Linear) -> np.ndarray:
+    def tangent_with_turns(self, now: LinearisedBalls) -> np.ndarray:
         """(3 Z, 3 Z) the same against those motions and, behind them, turns of the inner ring's section."""
         n, by_place = 2 * self.count, now.couple_by_place
         assert by_place is not None
-        by_turn = np.array([one.couple_by_turn for one in now.pressed[: self.count]])
+        by_turn = np.array([one.couple_by_turn for one in now.contact_states[: self.count]])
         # D moves by P p' - E e' + W F';  F' = -S (P p' - E e') - B t'.
-        seen = by_place @ (self._ones - self.coupling @ now.shown)
-        given = np.concatenate([now.shown @ self._inner, -now.turned], axis=1)
-        balls = np.linalg.solve(now.held, self._both.T @ given)
-        force = given - now.shown @ self._both @ balls
+        seen = by_place @ (self._ones - self.coupling @ now.contact_stiffness)
+        applied = np.concatenate([now.contact_stiffness @ self._inner, -now.by_section_turn], axis=1)
+        balls = np.linalg.solve(now.ball_stiffness, self._both.T @ applied)
+        force = applied - now.contact_stiffness @ self._both @ balls
         couple = seen @ self._both @ balls
         couple[:, :n] -= seen @ self._inner
-        couple[:, n:] += np.diag(by_turn) - by_place @ self.coupling @ now.turned
+        couple[:, n:] += np.diag(by_turn) - by_place @ self.coupling @ now.by_section_turn
         return np.concatenate([self._inner.T @ force, couple])
 
-    def couple(self, now: Linear) -> np.ndarray:
+    def couple(self, now: LinearisedBalls) -> np.ndarray:
         """(Z,) couples on the ring's section that equilibrium of the balls will bring, to first order."""
         if now.couple_by_place is None:
             return now.couple
@@ -220,23 +243,23 @@ class Balls:
         moved = self._both @ step.reshape(-1) + self.coupling @ change.reshape(-1)
         return now.couple + now.couple_by_place @ moved
 
-    def slip(self, now: Linear) -> np.ndarray:
+    def slip(self, now: LinearisedBalls) -> np.ndarray:
         """(4 Z, 2 Z) change of D that a motion of the inner groove centres brings, the balls following."""
         return self._both @ self.follow(now) - self._inner
 
-    def carried(self, now: Linear) -> np.ndarray:
+    def carried(self, now: LinearisedBalls) -> np.ndarray:
         """(2 Z,) forces of the inner races on the balls that equilibrium of the balls will bring, to first order."""
-        lost = self._inner.T @ now.shown @ self._both @ np.linalg.solve(now.held, now.balance)
+        lost = self._inner.T @ now.contact_stiffness @ self._both @ np.linalg.solve(now.ball_stiffness, now.balance)
         return (now.force.reshape(-1) + now.carried)[: 2 * self.count] - lost
 
-    def move(self, now: Linear, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def move(self, now: LinearisedBalls, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Steps of places (Z, 2) and forces (2 Z, 2) when the inner groove centres move by (2 Z,), by Newton."""
-        driven = self._both.T @ now.shown @ self._inner @ moved
-        step = np.linalg.solve(now.held, now.balance + driven)
-        force = now.carried - now.shown @ (self._both @ step - self._inner @ moved)
+        driven = self._both.T @ now.contact_stiffness @ self._inner @ moved
+        step = np.linalg.solve(now.ball_stiffness, now.balance + driven)
+        force = now.carried - now.contact_stiffness @ (self._both @ step - self._inner @ moved)
         return step.reshape(-1, 2), force.reshape(-1, 2)
 
-    def residual(self, now: Linear) -> float:
+    def residual(self, now: LinearisedBalls) -> float:
         """Largest force out of balance of any ball or contact [N]."""
         return float(max(np.abs(now.balance).max(), np.abs(now.rest).max()))
 
@@ -247,8 +270,8 @@ class Balls:
         force: np.ndarray,
         rate: np.ndarray,
         tolerance: float,
-        given: Given | None = None,
-    ) -> tuple[np.ndarray, np.ndarray, Linear]:
+        applied: AppliedLoads | None = None,
+    ) -> tuple[np.ndarray, np.ndarray, LinearisedBalls]:
         """Equilibrium of the balls while the ring stands: places, forces and the state there.
 
         Raises
@@ -256,7 +279,7 @@ class Balls:
         ConvergenceError
         """
         still = np.zeros(2 * self.count)
-        now = self.linear(centre, place, force, rate, given)
+        now = self.linear(centre, place, force, rate, applied)
         for _ in range(_LIMIT):
             size = self.residual(now)
             scale = max(np.abs(now.force).max(), np.abs(self.loads).max(), 1.0)
@@ -265,7 +288,7 @@ class Balls:
             step, change = self.move(now, still)
             part = min(1.0, self.step / max(np.abs(step).max(), 1e-300))
             for _ in range(8):
-                other = self.linear(centre, place + part * step, force + part * change, rate, given)
+                other = self.linear(centre, place + part * step, force + part * change, rate, applied)
                 if self.residual(other) < (1.0 - 0.1 * part) * size or part < 0.02:
                     break
                 part *= 0.4

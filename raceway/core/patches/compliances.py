@@ -8,8 +8,8 @@ import numpy as np
 from raceway.core.mesh.ring_mesh import RingShape
 from raceway.core.patches.patch import Ball, Patch, Race, Spacing, race_divisions
 from raceway.core.revolution.ball import FreeBall, free_ball
+from raceway.core.revolution.cached import cached_compliance
 from raceway.core.revolution.grooves import groove_compliance
-from raceway.core.revolution.kept import kept_compliance
 from raceway.core.revolution.profile import dofs
 from raceway.core.revolution.ring_profile import graded_profile
 
@@ -66,7 +66,7 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     steps = np.concatenate([np.arange(columns), neighbours])
     load = dofs(section.race)
     what = f"{'inner' if sense < 0.0 else 'outer'} ring, {count} x {len(section.quads)} elements, {rows} rows of points"
-    full = kept_compliance(
+    full = cached_compliance(
         what, section, count, ring.solid.young, ring.solid.poisson, load, load, steps, ring.solid.formulation, ring.seat
     )
     normal = np.array([np.cos(section.angles), np.sin(section.angles)])  # radial, axial

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from raceway.core.patches.factor import Factor
-from raceway.core.patches.friction import Friction, Gripped
+from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.gap import derivatives, sphere_in_torus
 from raceway.core.patches.nodal_law import LawState, PointLaw, by_law
 from raceway.core.patches.patch import Patch
@@ -33,7 +33,7 @@ class BeyondPatch(RacewayError):
 
 
 @attrs.frozen(eq=False)
-class Pressed:
+class ContactState:
     """A contact's answer.
 
     Attributes
@@ -62,12 +62,12 @@ class Pressed:
     by_turn: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
     couple_by_place: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
     couple_by_turn: float = 0.0
-    gripped: Gripped | None = None
+    traction_state: Traction | None = None
     normal: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
 
 
 @attrs.frozen(eq=False)
-class Held:
+class SlipState:
     """State of friction at a contact: the turn of the ring's section [rad], slips (rows * columns,) [m]."""
 
     turn: float
@@ -98,10 +98,10 @@ class Contact:
         self._gap = np.empty((patch.rows, patch.columns))
         self.iterations = 0
 
-    def press(self, place: np.ndarray, rate: np.ndarray, held: Held | None = None) -> Pressed:
+    def press(self, place: np.ndarray, rate: np.ndarray, slipping: SlipState | None = None) -> ContactState:
         """Solve for a place (2,) and a velocity (2,) of the ball's centre, seen from the groove's centre.
 
-        Friction acts where ``held`` is given.
+        Friction acts where ``slipping`` is given.
 
         Raises
         ------
@@ -113,7 +113,7 @@ class Contact:
         sphere_in_torus(axial, radial, patch.geometry, patch.meridian, patch.parallel, self._gap)
         gap = self._gap.reshape(-1)
         if not (gap < 0.0).any():
-            return self._open(place, held)
+            return self._open(place, slipping)
         if self.law is None:
             nodes, load, count = active_set(gap, self._nodes, self._factor)
             solve = lambda right: self._factor.solve(nodes, right)  # noqa: E731
@@ -127,15 +127,15 @@ class Contact:
         self.iterations += count
         self._nodes = nodes
         if not len(nodes):
-            return self._open(place, held)
+            return self._open(place, slipping)
         slope, curved = self._derivatives(nodes, load, axial, radial)
         force = slope.T @ load
         carried = solve(slope)
         stiffness = slope.T @ carried - curved
         viscous = self._viscous(state, slope, carried)
         truncated = self._ends(nodes, force)
-        normal = Pressed(force, stiffness, viscous, nodes, load, penetration, truncated)
-        return normal if held is None else self._rubbed(normal, place, held, -carried)
+        normal = ContactState(force, stiffness, viscous, nodes, load, penetration, truncated)
+        return normal if slipping is None else self._rubbed(normal, place, slipping, -carried)
 
     def mean_stiffness(self, place: np.ndarray) -> np.ndarray:
         """(2, 2) stiffness as ``press`` gives it, the mean over all places of the points under the ellipse [N/m].
@@ -156,11 +156,11 @@ class Contact:
         self._nodes, self._depth = kept
         return total / _PLACES
 
-    def _open(self, place: np.ndarray, held: Held | None) -> Pressed:
+    def _open(self, place: np.ndarray, slipping: SlipState | None) -> ContactState:
         self._nodes = _NONE
         zero = np.zeros((2, 2))
-        open_ = Pressed(np.zeros(2), zero, zero, _NONE, np.zeros(0))
-        return open_ if held is None else self._rubbed(open_, place, held, np.zeros((0, 2)))
+        open_ = ContactState(np.zeros(2), zero, zero, _NONE, np.zeros(0))
+        return open_ if slipping is None else self._rubbed(open_, place, slipping, np.zeros((0, 2)))
 
     def along(self, place: np.ndarray, turn: float = 0.0) -> float:
         """Place of the contact along the groove [m]: all points of the ball move so far over the race."""
@@ -168,24 +168,26 @@ class Contact:
         angle = np.arctan2(race.sense * place[0], race.sense * place[1])
         return float((race.groove - self.patch.ball.radius) * angle - (race.groove * turn if race.sense < 0.0 else 0.0))
 
-    def _rubbed(self, normal: Pressed, place: np.ndarray, held: Held, load_by_place: np.ndarray) -> Pressed:
+    def _rubbed(
+        self, normal: ContactState, place: np.ndarray, slipping: SlipState, load_by_place: np.ndarray
+    ) -> ContactState:
         """With friction; load_by_place (n, 2): derivatives of the points' forces by the ball's place [N/m]."""
         assert self.friction is not None
         race = self.patch.race
-        gripped = self.friction.pull(normal.nodes, normal.load, self.along(place, held.turn), held.slip)
+        traction_state = self.friction.pull(normal.nodes, normal.load, self.along(place, slipping.turn), slipping.slip)
         length = float(np.hypot(*place))
         n = race.sense * place / length
         t = np.array([n[1], -n[0]])
         lever = (race.groove - self.patch.ball.radius) / length
         ahead = race.sense * lever * t  # derivative of the place along the groove by the ball's
-        tau = gripped.force
-        by_place = gripped.by_place * ahead + gripped.by_load @ load_by_place
+        tau = traction_state.force
+        by_place = traction_state.by_place * ahead + traction_state.by_load @ load_by_place
         along = np.outer(ahead, by_place) - tau * lever / length * (np.outer(t, n) + np.outer(n, t))
         arm = race.groove if race.sense < 0.0 else 0.0
         return attrs.evolve(
-            normal, force=normal.force - tau * ahead, stiffness=normal.stiffness + along, along=along, gripped=gripped, normal=normal.force,
-            couple=-arm * tau, by_turn=-arm * gripped.by_place * ahead, couple_by_place=-arm * by_place,
-            couple_by_turn=arm * arm * gripped.by_place,
+            normal, force=normal.force - tau * ahead, stiffness=normal.stiffness + along, along=along, traction_state=traction_state, normal=normal.force,
+            couple=-arm * tau, by_turn=-arm * traction_state.by_place * ahead, couple_by_place=-arm * by_place,
+            couple_by_turn=arm * arm * traction_state.by_place,
         )  # fmt: skip
 
     def _derivatives(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.patches.contact import Pressed
+from raceway.core.patches.contact import ContactState
 from raceway.core.patches.patch import Patch
 
 
@@ -26,7 +26,7 @@ class PressureField:
     pressure: np.ndarray
 
 
-def pressure_field(patch: Patch, pressed: Pressed) -> PressureField:
+def pressure_field(patch: Patch, pressed: ContactState) -> PressureField:
     """Pressures of a contact at all points of its patch."""
     pressure = np.zeros(patch.rows * patch.columns)
     pressure[pressed.nodes] = pressed.load / patch.area

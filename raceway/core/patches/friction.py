@@ -33,7 +33,7 @@ _NONE = np.zeros(0, dtype=np.int64)
 
 
 @attrs.frozen(eq=False)
-class Gripped:
+class Traction:
     """A contact's answer along the groove.
 
     Attributes
@@ -70,7 +70,7 @@ class Friction:
         self._sliding = np.zeros(patch.rows * patch.columns, dtype=np.int64)
         self._stuck, self._lower = _NONE, np.zeros((0, 0))
 
-    def pull(self, nodes: np.ndarray, load: np.ndarray, place: float, slip: np.ndarray) -> Gripped:
+    def pull(self, nodes: np.ndarray, load: np.ndarray, place: float, slip: np.ndarray) -> Traction:
         """Tractions at a place [m] of the contact along the groove.
 
         Parameters
@@ -84,7 +84,7 @@ class Friction:
         """
         after = np.full(len(slip), place)
         if not len(nodes):
-            return Gripped(0.0, 0.0, np.zeros(0), after, 0.0, np.zeros(0, dtype=np.int64))
+            return Traction(0.0, 0.0, np.zeros(0), after, 0.0, np.zeros(0, dtype=np.int64))
         self._gather(nodes)
         bound, free = self.coefficient * load, place - slip[nodes]
         sliding = self._sliding[nodes]
@@ -115,7 +115,7 @@ class Friction:
             by_load *= 1.0 - ones @ self._block[stuck]
         moved = np.where(sliding == 0, 0.0, rest)
         after[nodes] = slip[nodes] + moved
-        return Gripped(float(traction.sum()), by_place, by_load, after, float(traction @ moved), sliding)
+        return Traction(float(traction.sum()), by_place, by_load, after, float(traction @ moved), sliding)
 
     def _gather(self, nodes: np.ndarray) -> None:
         if np.array_equal(nodes, self._nodes):

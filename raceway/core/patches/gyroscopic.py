@@ -11,7 +11,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.patches.contact import Pressed
+from raceway.core.patches.contact import ContactState
 from raceway.core.ring.kernels.gyroscopic import gyroscopic_moment
 
 #: Step of the difference quotients of the moment [rad], see there.
@@ -51,7 +51,7 @@ class Gyroscopic:
     diameter: float
     groove: float
 
-    def of(self, inner: np.ndarray, outer: np.ndarray, pressed: Pressed) -> Turned:
+    def of(self, inner: np.ndarray, outer: np.ndarray, pressed: ContactState) -> Turned:
         """At places D (2,) of the ball in both grooves; pressed : the inner contact."""
         si, so = float(np.hypot(*inner)), float(np.hypot(*outer))
         ni, no = -inner / si, outer / so
@@ -69,7 +69,7 @@ class Gyroscopic:
         grows = slope @ angle
         pull = [share * moment / self.diameter for share in self.shares]
         by_place = [share / self.diameter * grows for share in self.shares]
-        normal = pressed.force if pressed.gripped is None else pressed.normal
+        normal = pressed.force if pressed.traction_state is None else pressed.normal
         size = float(np.hypot(*normal))
         if abs(pull[0]) > size:
             sign = float(np.sign(moment))

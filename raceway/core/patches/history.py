@@ -5,8 +5,8 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.patches.balls import Given
-from raceway.core.patches.friction import Gripped
+from raceway.core.patches.balls import AppliedLoads
+from raceway.core.patches.friction import Traction
 from raceway.core.patches.patch import Patch
 
 #: Columns before the slips: energy lost, number of velocities known, the last velocity, the one before, number of the patches.
@@ -55,7 +55,7 @@ class History:
                 out.append(whole + _resampled(self.slip[k, : before.rows * before.columns], before, patch))
         return out
 
-    def with_inertia(self, given: Given, mass: float, dt: float, gain: float, rate: np.ndarray) -> Given:
+    def with_inertia(self, given: AppliedLoads, mass: float, dt: float, gain: float, rate: np.ndarray) -> AppliedLoads:
         """With the force -m a of balls that move at gain * place + rate, a from the velocities before (BDF 2, at first BDF 1)."""
         if not self.known:
             return given
@@ -66,12 +66,12 @@ class History:
         return attrs.evolve(given, push=-mass * (to_v * rate + rest), spring=mass * to_v * gain)
 
     def after(
-        self, velocity: np.ndarray | None, gripped: list[Gripped | None], reference: np.ndarray, grid: int = 0
+        self, velocity: np.ndarray | None, traction_state: list[Traction | None], reference: np.ndarray, grid: int = 0
     ) -> np.ndarray:
         """(2 Z, 5 + points) the memory when the step is accepted; velocity (Z, 2) of the balls, None in a series of equilibria."""
-        rubbed = [one for one in gripped if one is not None]
+        rubbed = [one for one in traction_state if one is not None]
         points = max((len(one.slip) for one in rubbed), default=0)
-        out = np.zeros((len(gripped), _SLIP + points))
+        out = np.zeros((len(traction_state), _SLIP + points))
         out[:, _LOST], out[:, _GRID] = self.lost, grid
         if velocity is not None:
             out[:, _KNOWN] = min(self.known + 1, 2)

@@ -8,7 +8,7 @@ from typing import TypeVar
 import attrs
 import numpy as np
 
-from raceway.core.patches.balls import Balls, Given, Linear
+from raceway.core.patches.balls import AppliedLoads, Balls, LinearisedBalls
 from raceway.core.patches.contact import BeyondPatch, Contact
 from raceway.core.patches.nodal_law import PointLaw
 from raceway.core.patches.patch import Patch
@@ -35,13 +35,13 @@ class Row:
 
     balls: Balls
     force: np.ndarray
-    last: Linear | None = None
+    last: LinearisedBalls | None = None
     centre: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
     where: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
 
     def settle(
-        self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float, given: Given | None = None
-    ) -> tuple[np.ndarray, Linear]:
+        self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float, given: AppliedLoads | None = None
+    ) -> tuple[np.ndarray, LinearisedBalls]:
         """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
 
         Notes
@@ -58,7 +58,9 @@ class Row:
                 pass  # from the guess, then
         return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance, given))
 
-    def _keep(self, centre: np.ndarray, found: tuple[np.ndarray, np.ndarray, Linear]) -> tuple[np.ndarray, Linear]:
+    def _keep(
+        self, centre: np.ndarray, found: tuple[np.ndarray, np.ndarray, LinearisedBalls]
+    ) -> tuple[np.ndarray, LinearisedBalls]:
         self.centre, (self.where, self.force, self.last) = centre, found
         return self.where, self.last
 
@@ -94,12 +96,12 @@ class Pool:
         """Of the balls [m]."""
         return 2.0 * self.patches[0].ball.radius
 
-    def row(self, table: np.ndarray, rubbing: bool = False) -> Row:
-        """The solver for the balls of a system's ``table``; ``rubbing``: with friction."""
-        key = rubbing, tuple(table[:, CENTRIFUGAL].tolist())
+    def row(self, table: np.ndarray, with_friction: bool = False) -> Row:
+        """The solver for the balls of a system's ``table``; ``with_friction``: with friction."""
+        key = with_friction, tuple(table[:, CENTRIFUGAL].tolist())
         if key not in self._rows:
             z = len(table)
-            both, friction = zip(self.patches, self.laws, strict=True), self.friction if rubbing else 0.0
+            both, friction = zip(self.patches, self.laws, strict=True), self.friction if with_friction else 0.0
             contacts = [Contact(patch, law, friction) for patch, law in both for _ in range(z)]
             loads = np.zeros((z, 2))
             loads[:, 1] = table[:, CENTRIFUGAL]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.core.patches.balls import Balls, Given, Linear
+from raceway.core.patches.balls import AppliedLoads, Balls, LinearisedBalls
 from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.core.patches.history import History
 from raceway.core.patches.pool import STEP, Pool, Row
@@ -35,7 +35,7 @@ from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
-    from raceway.core.patches.contact import Pressed
+    from raceway.core.patches.contact import ContactState
 
 _LIMIT = 60
 #: Balls' residual over the largest contact force at which they are in equilibrium.
@@ -86,7 +86,7 @@ class PatchSystem(SteppedRing):
         return 2 if self.conservative else 4
 
     @property
-    def rubbing(self) -> bool:
+    def with_friction(self) -> bool:
         """Whether friction acts where its history is known."""
         return self.pool.friction > 0.0 and bool(self.scalars[FRICTION] > 0.0)
 
@@ -108,15 +108,15 @@ class PatchSystem(SteppedRing):
     ) -> Evaluation:
         history = History.of(self.law_state if step.memory is None else step.memory, self.ball_count)
         dt, gain = step.dt, step.gain
-        rubbing = self.rubbing and ball is not None  # without a history nothing sticks
-        row = self.pool.row(self.table, rubbing)
+        with_friction = self.with_friction and ball is not None  # without a history nothing sticks
+        row = self.pool.row(self.table, with_friction)
         centre, jacobian, velocity = self._groove(q, v, t)
         where = self._places(centre, ball)
         moving = bool(v.any()) or ball_rate is not None
         rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
         turning = self._turning(t)
-        given = Given(turning @ q, gyroscopic=self.gyroscopic)
-        if rubbing and ball is not None:
+        given = AppliedLoads(turning @ q, gyroscopic=self.gyroscopic)
+        if with_friction and ball is not None:
             given = attrs.evolve(given, slip=history.slips(ball[:, 2:4].T.reshape(-1), self.pool.generations))
         if self.ball_mass > 0.0 and dt > 0.0 and ball_rate is not None:
             given = history.with_inertia(given, self.ball_mass, dt, gain, ball_rate[:, :2])
@@ -125,7 +125,10 @@ class PatchSystem(SteppedRing):
         known = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
         reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
         after = history.after(
-            known, [one.gripped for one in now.pressed], reference.T.reshape(-1), len(self.pool.generations) - 1
+            known,
+            [one.traction_state for one in now.contact_states],
+            reference.T.reshape(-1),
+            len(self.pool.generations) - 1,
         )
         columns = where if self.conservative else np.concatenate([where, reference], axis=1)
         return attrs.evolve(answer, ball=columns, memory=after)
@@ -135,11 +138,11 @@ class PatchSystem(SteppedRing):
 
         def found() -> np.ndarray:
             self._evaluate(np.asarray(q, dtype=float), np.zeros(5), now.ball, None, 0.0, AT_ONCE)
-            row = self.pool.row(self.table, self.rubbing)
+            row = self.pool.row(self.table, self.with_friction)
             _, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
             assert row.last is not None
             return self._stiffness(
-                row.balls, row.balls.without_ripple(row.last, row.centre, row.where), jacobian, self._turning(0.0)
+                row.balls, row.balls.smoothed_stiffness(row.last, row.centre, row.where), jacobian, self._turning(0.0)
             )
 
         return self.pool.widened(found)
@@ -171,10 +174,10 @@ class PatchSystem(SteppedRing):
 
     def _rolled(self, q: np.ndarray, ball: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, int]:
         if not self.conservative:
-            ball = np.concatenate([ball, self.rolled_in(q, ball)], axis=1)
+            ball = np.concatenate([ball, self.stress_free_slip(q, ball)], axis=1)
         return q, ball, count
 
-    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def stress_free_slip(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
         still = self.without(FRICTION)
         still.evaluate(q, ball=ball, t=t)
         row = self.pool.row(self.table)
@@ -215,7 +218,7 @@ class PatchSystem(SteppedRing):
         centre, jacobian, _ = self._groove(q, none, 0.0)
         where, force = self._places(centre, ball), np.zeros((2 * self.ball_count, 2))
         turning, gyroscopic = self._turning(0.0), self.gyroscopic
-        now = balls.linear(centre, where, force, still, Given(turning @ q, gyroscopic=gyroscopic))
+        now = balls.linear(centre, where, force, still, AppliedLoads(turning @ q, gyroscopic=gyroscopic))
         weight = np.array([1.0, 1.0, 1.0, 1.0 / self.arm, 1.0 / self.arm]) * self.free
         limit = STEP * self.pool.diameter
         chosen = self.free > 0.0
@@ -244,7 +247,7 @@ class PatchSystem(SteppedRing):
             for _ in range(6):
                 other_q = q + part * dq
                 centre, _, _ = self._groove(other_q, none, 0.0)
-                given = Given(turning @ other_q, gyroscopic=gyroscopic)
+                given = AppliedLoads(turning @ other_q, gyroscopic=gyroscopic)
                 other = balls.linear(centre, where + part * step, force + part * change, still, given)
                 out = jacobian.T @ other.force[: self.ball_count].reshape(-1) + turning.T @ other.couple
                 out += self.stiffness @ other_q - load
@@ -257,20 +260,20 @@ class PatchSystem(SteppedRing):
             {"q": q, "ball": where},
         )
 
-    def pressures(self) -> list[Pressed]:
+    def pressures(self) -> list[ContactState]:
         """Answers of all contacts (``raceway.core.patches.contact.Pressed``), inner races first, at the last state."""
-        last = self.pool.row(self.table, self.rubbing).last
-        return [] if last is None else last.pressed
+        last = self.pool.row(self.table, self.with_friction).last
+        return [] if last is None else last.contact_states
 
     def _answer(
         self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, turning: np.ndarray, where: np.ndarray, rate: np.ndarray,
-        now: Linear,
+        now: LinearisedBalls,
     ) -> Evaluation:  # fmt: skip
         force = now.force + now.rest  # of pressures, friction and gyroscopic moments
-        pressures = np.array([one.force if one.gripped is None else one.normal for one in now.pressed])
+        pressures = np.array([one.force if one.traction_state is None else one.normal for one in now.contact_states])
         size = np.hypot(pressures[:, 0], pressures[:, 1])
         viscous = np.zeros((4 * self.ball_count, 4 * self.ball_count))
-        for k, one in enumerate(now.pressed):
+        for k, one in enumerate(now.contact_states):
             block = one.viscous
             if self.scalars[DAMPING] > 0.0 and size[k] > 0.0:
                 normal = pressures[k] / size[k]
@@ -296,7 +299,7 @@ class PatchSystem(SteppedRing):
         )
 
     @staticmethod
-    def _stiffness(balls: Balls, now: Linear, jacobian: np.ndarray, turning: np.ndarray) -> np.ndarray:
+    def _stiffness(balls: Balls, now: LinearisedBalls, jacobian: np.ndarray, turning: np.ndarray) -> np.ndarray:
         """(5, 5) against motions of the ring."""
         if now.couple_by_place is None:
             return np.asarray(jacobian.T @ balls.tangent(now) @ jacobian)

@@ -8,7 +8,7 @@ factor         sparse factorisation, and condensation by it
 harmonics      which harmonics are solved, and the weights with which their compliances add up at an offset
 grooves        compliances between groove centres
 body           Revolution: compliances between nodes, natural frequencies
-kept           compliances through the cache on disk
+cached         compliances through the cache on disk
 ball           the floating ball: one dimensionless compliance for all balls
 
 References

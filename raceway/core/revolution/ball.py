@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from raceway.core.revolution.ball_profile import ball_profile
-from raceway.core.revolution.kept import kept_compliance
+from raceway.core.revolution.cached import cached_compliance
 from raceway.core.revolution.profile import Profile, dofs
 
 #: Digits kept of the mesh's dimensionless sizes, so that equal balls of unequal size find the same entry.
@@ -78,7 +78,7 @@ def free_ball(
     degrees = dofs(profile.race, components)
     steps = np.asarray(offsets, dtype=np.int64)
     elements = len(profile.quads) * divisions
-    found = kept_compliance(
+    found = cached_compliance(
         f"ball, {divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}",
         profile,
         divisions,

@@ -244,7 +244,7 @@ class Ring(ABC):
         moved = 0.0 if ball is None else self.groove_displacement(ball)
         return parts[..., 1, :, :] + moved, parts[..., 0, :, :].copy()
 
-    def rolled_in(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def stress_free_slip(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
         """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
         e, direction = self.centre_vectors(q, t, ball)
         inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])

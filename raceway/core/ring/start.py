@@ -15,7 +15,7 @@ def from_orbit(system: Ring, orbit: Orbit, dt: float) -> Motion:
     before = at_time(orbit.ball, orbit.period, -dt)
     ball = orbit.ball[0].copy()
     if not system.conservative:
-        ball[:, 2:4] = before[:, 2:4] = system.rolled_in(orbit.displacement[0], ball)
+        ball[:, 2:4] = before[:, 2:4] = system.stress_free_slip(orbit.displacement[0], ball)
     now = system.evaluate(orbit.displacement[0], orbit.velocity[0], ball=ball)
     a = system.acceleration(orbit.displacement[0], orbit.velocity[0], orbit.force[0], now)
     return Motion(orbit.displacement[0], orbit.velocity[0], a, now.ball, before)

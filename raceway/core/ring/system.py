@@ -202,7 +202,7 @@ class System(Ring):
             q_now, guess, more = whole._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
             total += more
         guess = whole.evaluate(q_now, ball=guess).ball
-        guess[:, 2:4] = self.rolled_in(q_now, guess)
+        guess[:, 2:4] = self.stress_free_slip(q_now, guess)
         return q_now, guess, total
 
     def _by_parts(

@@ -11,14 +11,14 @@ from raceway.core.hexahedron.ranges import share
 Job = Callable[[int], None]
 
 
-class Crew:
+class ThreadPool:
     """Threads that share numbered jobs; one thread is the caller itself."""
 
     def __init__(self, threads: int) -> None:
         self._threads = threads
         self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
 
-    def __enter__(self) -> Crew:
+    def __enter__(self) -> ThreadPool:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.core.revolution.body import Revolution
-from raceway.core.revolution.kept import kept_compliance
+from raceway.core.revolution.cached import cached_compliance
 from raceway.core.revolution.profile import dofs
 from tests.revolution.sections import ring
 
@@ -34,7 +34,7 @@ def test_every_input_is_part_of_the_key():
     load = dofs(section.race)[:2]
     for change in [{}, *CHANGES, {}]:
         given = {**BASE, **change}
-        found = kept_compliance("test", section, DIVISIONS, load_dofs=load, observed_dofs=load, **given)
+        found = cached_compliance("test", section, DIVISIONS, load_dofs=load, observed_dofs=load, **given)
         body = Revolution(
             section,
             DIVISIONS,
@@ -51,8 +51,8 @@ def test_every_input_is_part_of_the_key():
 def test_other_divisions_harmonics_and_loads_are_other_answers():
     section = ring(True, 1e-3, 3e-3)
     load = dofs(section.race)[:2]
-    first = kept_compliance("test", section, DIVISIONS, 212e9, 0.29, load, load)
-    finer = kept_compliance("test", section, 2 * DIVISIONS, 212e9, 0.29, load, load)
-    other = kept_compliance("test", section, DIVISIONS, 212e9, 0.29, load[1:], load)
+    first = cached_compliance("test", section, DIVISIONS, 212e9, 0.29, load, load)
+    finer = cached_compliance("test", section, 2 * DIVISIONS, 212e9, 0.29, load, load)
+    other = cached_compliance("test", section, DIVISIONS, 212e9, 0.29, load[1:], load)
     assert finer.shape != first.shape or not np.array_equal(first, finer)
     np.testing.assert_array_equal(other, first[..., 1:])

@@ -10,7 +10,7 @@ import pytest
 from scipy.sparse import csr_array
 
 from raceway.core.elastic.cage import Cage
-from raceway.core.elastic.whole_contacts import WholeContacts
+from raceway.core.elastic.low_rank import LowRankContacts
 
 #: Nodes, of which the last one is held, and contacts.
 NODES, CONTACTS = 9, 4
@@ -70,7 +70,7 @@ def test_the_cage_s_force_is_the_gradient_of_its_energy():
 @pytest.mark.parametrize("held", [None, cage()], ids=["loose", "caged"])
 def test_it_is_the_inverse_of_bodies_contacts_and_cage(bodies, contact, held, rates):
     matrix, inverse = bodies
-    whole = WholeContacts(contact, held, inverse, FREE)
+    whole = LowRankContacts(contact, held, inverse, FREE)
     residual = np.random.default_rng(4).standard_normal(len(FREE))
     wanted = np.linalg.solve(dense(matrix, contact, held, rates), residual)
     # Both lose the condition number of A, some 1e3, and of the contacts' matrix beside it, to rounding.
@@ -88,7 +88,7 @@ def test_new_tangents_need_no_new_answers_of_the_bodies(bodies, contact):
         return inverse(columns)
 
     held = cage()
-    whole = WholeContacts(contact, held, counted, FREE)
+    whole = LowRankContacts(contact, held, counted, FREE)
     assert asked == [(len(FREE), 3 * CONTACTS + len(SPRINGS))]
     contact.stiffness = 3.0 * contact.stiffness[::-1]
     residual = np.random.default_rng(5).standard_normal(len(FREE))
@@ -100,7 +100,7 @@ def test_new_tangents_need_no_new_answers_of_the_bodies(bodies, contact):
 
 def test_symmetric_as_conjugate_gradients_need_it(bodies, contact):
     _, inverse = bodies
-    apply = WholeContacts(contact, cage(), inverse, FREE).inverse(inverse, 1e4)
+    apply = LowRankContacts(contact, cage(), inverse, FREE).inverse(inverse, 1e4)
     whole = np.column_stack([apply(column) for column in np.eye(len(FREE))])
     assert np.abs(whole - whole.T).max() < 1e-9 * np.abs(whole).max()  # rounding, as above
     assert np.linalg.eigvalsh(whole + whole.T).min() > 0.0

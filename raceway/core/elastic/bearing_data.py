@@ -18,7 +18,7 @@ Material = tuple[float, float, float]
 
 
 @attrs.frozen(eq=False)
-class Setup:
+class BearingData:
     """Data of a bearing beyond its meshes.
 
     Attributes

@@ -10,7 +10,7 @@ from raceway.core.elastic.cage import Cage
 from raceway.core.elastic.contacts.contact import Contact
 
 
-class WholeContacts:
+class LowRankContacts:
     """Low-rank change of an inverse by a few contact resultants and a cage.
 
     Parameters

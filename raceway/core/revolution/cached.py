@@ -12,7 +12,7 @@ from raceway.storage.array_cache import kept
 SOURCES = ("core/revolution", "core/hexahedron")
 
 
-def kept_compliance(
+def cached_compliance(
     what: str,
     profile: Profile,
     divisions: int,
