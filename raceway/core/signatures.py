@@ -6,6 +6,7 @@ plug-in of its kind.  A record is a named tuple: its fields are read by name, an
 
 from typing import Any, NamedTuple
 
+import numpy as np
 from numba import float64, int64, types, void
 
 VECTOR = float64[::1]
@@ -29,35 +30,35 @@ def record(kind: type[tuple[Any, ...]], *fields: types.Type) -> types.BaseTuple:
 class Balls(NamedTuple):
     """``place`` (Z, 2 to 8), and its rate = ``gain`` [1/s] * place + ``known`` (like place) [m/s]: an integrator's formula."""
 
-    place: Any
-    gain: Any
-    known: Any
+    place: np.ndarray
+    gain: float
+    known: np.ndarray
 
 
 class Contacts(NamedTuple):
     """Contact law with its parameters (2 Z, k), its memory (2 Z, m) before and after, and the step between the two [s]."""
 
     law: Any
-    params: Any
-    old: Any
-    new: Any
-    dt: Any
+    params: np.ndarray
+    old: np.ndarray
+    new: np.ndarray
+    dt: float
 
 
 class Constants(NamedTuple):
     """Numbers of the bearing (n,) and of each ball (Z, k): ``raceway.core.ring.kernels.layout``."""
 
-    scalars: Any
-    table: Any
+    scalars: np.ndarray
+    table: np.ndarray
 
 
 class Response(NamedTuple):
     """Internal force (5,), its derivatives by displacement and by velocity, each (5, 5) or (0, 0), and rows of work (r, 2 Z)."""
 
-    f: Any
-    K: Any
-    C: Any
-    work: Any
+    f: np.ndarray
+    K: np.ndarray
+    C: np.ndarray
+    work: np.ndarray
 
 
 BALLS = record(Balls, MATRIX, float64, MATRIX)
@@ -75,60 +76,60 @@ class Forces(NamedTuple):
 
     system: Any
     law: Any
-    law_params: Any
-    constants: Any
+    law_params: np.ndarray
+    constants: Constants
 
 
 class Linear(NamedTuple):
     """Linear parts (5, 5), 1 for unknowns and 0 for coordinates that are held (5,), and the constant load (5,) [N, N m]."""
 
-    mass: Any
-    damping: Any
-    stiffness: Any
-    free: Any
-    load: Any
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    free: np.ndarray
+    load: np.ndarray
 
 
 class Outer(NamedTuple):
     """Excitation with its parameters (k,), and the time over which it grows smoothly from zero [s]; 0 for none."""
 
     force: Any
-    params: Any
-    ramp: Any
+    params: np.ndarray
+    ramp: float
 
 
 class Steps(NamedTuple):
     """Step [s], number of the step that the motion stands at, and steps to take."""
 
-    dt: Any
-    first: Any
-    count: Any
+    dt: float
+    first: int
+    total: int
 
 
 class State(NamedTuple):
     """Motion (4, 5): q, v, a, rest force; places of the balls (Z, c) now and a step before; the law's memory (2 Z, m)."""
 
-    motion: Any
-    ball: Any
-    ball_before: Any
-    memory: Any
+    motion: np.ndarray
+    ball: np.ndarray
+    ball_before: np.ndarray
+    memory: np.ndarray
 
 
 class Recording(NamedTuple):
     """Every ``stride``-th step is noted in rows (n, 16) and probes (n, 3, 4 or 5, 2 Z); counters (8,)."""
 
-    stride: Any
-    rows: Any
-    probes: Any
-    counters: Any
+    stride: int
+    rows: np.ndarray
+    probes: np.ndarray
+    counters: np.ndarray
 
 
 class Rest(NamedTuple):
     """A state at rest: displacement (5,), places of the balls (Z, c), the law's memory (2 Z, m)."""
 
-    q: Any
-    ball: Any
-    memory: Any
+    q: np.ndarray
+    ball: np.ndarray
+    memory: np.ndarray
 
 
 FORCES = record(Forces, SYSTEM_POINTER, LAW_POINTER, MATRIX, CONSTANTS)

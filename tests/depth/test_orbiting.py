@@ -8,6 +8,7 @@ import pytest
 
 from raceway.core.ring.kernels.layout import CAGE, place
 from raceway.core.signals.lines import phasors, sharpest
+from raceway.core.signatures import Constants
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
@@ -119,7 +120,7 @@ def test_rates_of_the_groove_centres(built):
 
     def centres(t):
         out = np.zeros((3, 2 * system.ball_count))
-        place(t, q + v * t, v, system.scalars, system.table, out, 0, 1, 2)
+        place(t, q + v * t, v, Constants(system.scalars, system.table), out, (0, 1, 2))
         return out
 
     t, h = 1.3e-3, 1e-6

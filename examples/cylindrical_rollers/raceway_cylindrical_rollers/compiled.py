@@ -40,7 +40,7 @@ def rollers(t, q, v, balls, contacts, constants, response):
     z = table.shape[0]
     gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
     d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
-    place(t, q, v, scalars, table, work, _DIRECTION, _APPROACH, _SPEED)
+    place(t, q, v, constants, work, (_DIRECTION, _APPROACH, _SPEED))
     for k in range(z):
         approach, push = work[_APPROACH, z + k], table[k, CENTRIFUGAL]
         # Without any load a roller lies in the middle; a pushed one as deep as its outer contact asks for.

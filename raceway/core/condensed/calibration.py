@@ -84,7 +84,7 @@ def calibrated(
         found = []
         for place in (angle, angle + _FURTHER):
             try:
-                found.append([_compliances(body, ball, ellipses, load, radius, balls, place, n) for n in POINTS])
+                found.append([_compliances(body, ball, ellipses, n, Loaded(load, radius, balls, place)) for n in POINTS])
             except (BeyondPatch, ConvergenceError, MeshError):
                 break
         return {"compliance": np.array(found)}
@@ -110,11 +110,19 @@ def _limit(values: np.ndarray, angle: float, load: float) -> Calibration:
     return Calibration(angles, secant + trend, float(left.max()), abs(trend), load)
 
 
-def _compliances(
-    body: RingBody, solid: Solid, ellipses: tuple[Ellipse, Ellipse], load: float, radius: float, balls: int, angle: float,
-    nodes: int,
-) -> np.ndarray:  # fmt: skip
+@attrs.frozen
+class Loaded:
+    """A largest load of a ball [N], the ball's radius [m], the count of balls, and the contact angle [rad]."""
+
+    load: float
+    radius: float
+    balls: int
+    angle: float
+
+
+def _compliances(body: RingBody, solid: Solid, ellipses: tuple[Ellipse, Ellipse], nodes: int, at: Loaded) -> np.ndarray:
     """(loads,) with so many points along a semi-axis of the inner contact [m/N]."""
+    load, radius, balls, angle = at.load, at.radius, at.balls, at.angle
     axes = np.array([ellipse.semi_axes(load) for ellipse in ellipses], dtype=float)
     widest = _ROOM * axes.max(axis=0)
     spacing = Spacing.of((float(axes[0, 0]), float(axes[0, 1])), nodes, radius, float(widest[1]))

@@ -200,7 +200,7 @@ def ring_mesh(
     x = np.broadcast_to(top[:, 0], (divisions, nj, ni))
     points = np.stack([x, np.cos(psi)[:, None, None] * radius, np.sin(psi)[:, None, None] * radius], axis=-1)
     cells = _swept_cells(ni, nj, divisions)
-    facets = _facets(shape.inner, ni, nj, divisions, len(left) - 1, len(right) - 1, arc, band)
+    facets = _facets(shape.inner, (ni, nj, divisions), (len(left) - 1, len(right) - 1), arc, band)
     return HexMesh(points.reshape(-1, 3), cells, {name: nodes_of(cells, f) for name, f in facets.items()}, facets)
 
 
@@ -211,9 +211,16 @@ def _swept_cells(ni: int, nj: int, nk: int) -> np.ndarray:
 
 
 def _facets(
-    inner: bool, ni: int, nj: int, nk: int, left: int, right: int, arc: np.ndarray, band: tuple[float, float] | None
+    inner: bool, nodes: tuple[int, int, int], ends: tuple[int, int], arc: np.ndarray, band: tuple[float, float] | None
 ) -> dict[str, np.ndarray]:
-    """Facets of the named surfaces; local faces: 2 towards the axis, 4 away from it, 5 at -x, 3 at +x."""
+    """Facets of the named surfaces; local faces: 2 towards the axis, 4 away from it, 5 at -x, 3 at +x.
+
+    Parameters
+    ----------
+    nodes : along the axis, across the wall and around;  ends : cells of the two lands beside the groove
+    arc : (i,) places along the groove;  band : part of them that may touch
+    """
+    (ni, nj, nk), (left, right) = nodes, ends
     number = np.arange(nk * (nj - 1) * (ni - 1)).reshape(nk, nj - 1, ni - 1)
     raceway, seat = (number[:, -1], number[:, 0]) if inner else (number[:, 0], number[:, -1])
     up, down = (4, 2) if inner else (2, 4)

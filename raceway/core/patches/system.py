@@ -31,6 +31,7 @@ from raceway.core.ring.kernels.layout import (
 )
 from raceway.core.ring.ring import AT_ONCE, TOLERANCE, Evaluation, Increment
 from raceway.core.ring.surrogate import SteppedRing
+from raceway.core.signatures import Constants
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
 
@@ -309,7 +310,7 @@ class PatchSystem(SteppedRing):
     def _turning(self, t: float) -> np.ndarray:
         """(Z, 5) turn of the ring's section at every ball by the ring's motion."""
         work = np.zeros((3, 2 * self.ball_count))
-        place(float(t), np.zeros(5), np.zeros(5), self.scalars, self.table, work, 0, 1, 2)
+        place(float(t), np.zeros(5), np.zeros(5), Constants(self.scalars, self.table), work, (0, 1, 2))
         out = np.zeros((self.ball_count, 5))
         out[:, 3], out[:, 4] = (
             self.table[:, SIDE] * work[0, self.ball_count :],
@@ -320,7 +321,7 @@ class PatchSystem(SteppedRing):
     def _groove(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(Z, 2) inner groove centres, (2 Z, 5) their derivatives by q, (Z, 2) their velocities."""
         work = np.zeros((3, 2 * self.ball_count))
-        place(float(t), np.ascontiguousarray(q, dtype=float), v, self.scalars, self.table, work, 0, 1, 2)
+        place(float(t), np.ascontiguousarray(q, dtype=float), v, Constants(self.scalars, self.table), work, (0, 1, 2))
         (c, s), centre, velocity = work[0].reshape(2, -1), work[1].reshape(2, -1).T.copy(), work[2].reshape(2, -1).T.copy()
         side, lever, arm = self.table[:, SIDE], self.table[:, LEVER], self.scalars[TILT_ARM]
         jacobian = np.zeros((self.ball_count, 2, 5))

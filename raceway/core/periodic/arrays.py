@@ -10,11 +10,12 @@ dA = S_y (dq, dq') + S_r + S_p dp, which leaves the transfer (dq, dq')_next = T_
 n unknown coordinates, m intervals, s points an interval, k the number of an interval.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+import numpy as np
 from numba import float64, int64
 
-from raceway.core.signatures import CUBE, FORCES, LINEAR, MATRIX, VECTOR, record
+from raceway.core.signatures import CUBE, FORCES, LINEAR, MATRIX, VECTOR, Forces, Linear, record
 
 INDICES = int64[::1]
 
@@ -25,19 +26,19 @@ class Equations(NamedTuple):
     The weight makes moments forces.
     """
 
-    forces: Any
-    linear: Any
-    memory: Any
-    free: Any
-    weight: Any
-    speed: Any
+    forces: Forces
+    linear: Linear
+    memory: np.ndarray
+    free: np.ndarray
+    weight: np.ndarray
+    speed: float
 
 
 class Mesh(NamedTuple):
     """Angles of the nodes (m + 1,), and ``Rule.packed`` (2 p + 3, s) or ``Rule.try_packed`` (2 p + 3, s + p) of p points."""
 
-    nodes: Any
-    rule: Any
+    nodes: np.ndarray
+    rule: np.ndarray
 
 
 class Samples(NamedTuple):
@@ -45,29 +46,29 @@ class Samples(NamedTuple):
     the outer forces ``push`` (m s, 5), and the derivative of the balance of forces by the parameter, ``slope`` (m s, 5).
     """
 
-    q: Any
-    v: Any
-    a: Any
-    ball: Any
-    rate: Any
-    push: Any
-    slope: Any
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    ball: np.ndarray
+    rate: np.ndarray
+    push: np.ndarray
+    slope: np.ndarray
 
 
 class Eliminated(NamedTuple):
     """stages (m s n, 2 n + 2): S_y, S_r, S_p; transfer (m 2 n, 2 n + 2): T_y, T_r, T_p; whole (2 n, 2 n + 2): all intervals'."""
 
-    stages: Any
-    transfer: Any
-    whole: Any
+    stages: np.ndarray
+    transfer: np.ndarray
+    whole: np.ndarray
 
 
 class Change(NamedTuple):
     """Corrections of q, v (m + 1, 5) and a (m s, 5)."""
 
-    q: Any
-    v: Any
-    a: Any
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
 
 
 EQUATIONS = record(Equations, FORCES, LINEAR, MATRIX, INDICES, VECTOR, float64)

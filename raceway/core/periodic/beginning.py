@@ -9,7 +9,6 @@ motion.  Where it finds nothing, Fourier collocation (``raceway.core.ring.orbit`
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 import numpy as np
@@ -26,6 +25,7 @@ from raceway.core.ring.address import by_address
 from raceway.core.ring.orbit import Orbit, States, evaluate_many, steady_orbit
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
+from raceway.storage.tables import Tables
 
 #: Samples of an orbit, as many as Fourier collocation has, and error of the search over the motion.
 _SAMPLES, _TOLERANCE = 65, 1e-7
@@ -43,7 +43,7 @@ class Beginning:
     """
 
     orbit: Orbit
-    told: list[dict[str, Any]] = attrs.field(factory=list)
+    told: list[Tables] = attrs.field(factory=list)
     warnings: tuple[str, ...] = ()
 
 

@@ -17,9 +17,9 @@ class Excitation(NamedTuple):
     """Excitation with its parameters (k,), the share of it that acts, and the speed of its own clock [rad/s]."""
 
     force: Any
-    params: Any
-    share: Any
-    clock: Any
+    params: np.ndarray
+    share: float
+    clock: float
 
 
 EXCITATION = record(Excitation, FORCE_POINTER, VECTOR, float64, float64)

@@ -15,8 +15,6 @@ Nayfeh, Balachandran, Applied Nonlinear Dynamics (1995), chapter 3; Seydel, Prac
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 import numpy as np
 
@@ -24,6 +22,7 @@ from raceway.core.periodic.collocation import Solved
 from raceway.core.periodic.intervals import condense
 from raceway.core.periodic.refinement import divided, resampled
 from raceway.errors import ConvergenceError
+from raceway.storage.tables import Tables
 
 #: Distance from the unit circle that counts as on it: what a mesh fit for 1e-8 of the motion leaves of error.
 NEUTRAL = 1e-6
@@ -65,7 +64,7 @@ class Floquet:
             return "pair"
         return "+1" if first.real > 0.0 else "-1"
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Tables:
         """For result.json."""
         return {
             "multipliers": [{"real": float(m.real), "imag": float(m.imag), "abs": float(abs(m))} for m in self.multipliers],

@@ -1,6 +1,6 @@
 """Interval by interval: the state at a Gauss point, the balance of forces there, and the elimination of its unknowns."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import boolean, float64, int64, void
@@ -19,10 +19,10 @@ IMBALANCE, JUMP, FORCE = range(3)
 class Local(NamedTuple):
     """Of one interval: state q, v (5,) at a point, its linear system (s n, s n + 2 n + 2), and its transfer (2 n, 2 n + 2)."""
 
-    q: Any
-    v: Any
-    block: Any
-    transfer: Any
+    q: np.ndarray
+    v: np.ndarray
+    block: np.ndarray
+    transfer: np.ndarray
 
 
 LOCAL = record(Local, VECTOR, VECTOR, MATRIX, MATRIX)

@@ -1,6 +1,6 @@
 """Newton's iteration for a periodic motion on one mesh, compiled as a whole."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import boolean, float64, int64, types, void
@@ -35,17 +35,17 @@ _FINE = 5
 class Closure(NamedTuple):
     """How a span ends: rotation of a state (2 n, 2 n), order of the balls (Z,), columns of the balls that have rates (r,)."""
 
-    rotation: Any
-    order: Any
-    rated: Any
+    rotation: np.ndarray
+    order: np.ndarray
+    rated: np.ndarray
 
 
 class Limits(NamedTuple):
     """Last correction over the motion's size, sweeps, and halvings of a step that may follow each other."""
 
-    tolerance: Any
-    sweeps: Any
-    patience: Any
+    tolerance: float
+    sweeps: int
+    patience: int
 
 
 CLOSURE = record(Closure, MATRIX, INDICES, INDICES)

@@ -14,6 +14,7 @@ from raceway.core.periodic.symmetry import rotations
 from raceway.core.ring.orbit import States
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import ConvergenceError
+from raceway.storage.tables import Tables
 
 
 def motion_at(problem: Problem, path: Path, angles: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -51,7 +52,7 @@ def _spans(span: float, angles: np.ndarray) -> np.ndarray:
     return np.maximum(np.ceil(angles / span - 1e-12).astype(int) - 1, 0)
 
 
-def record(solved: Solved, schedule: Schedule, counts: dict[str, Any]) -> Record:
+def record(solved: Solved, schedule: Schedule, counts: Tables) -> Record:
     """Samples at every ``stride``-th step of a schedule, which begins at angle zero.
 
     Parameters

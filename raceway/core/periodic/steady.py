@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 import numpy as np
@@ -19,6 +18,7 @@ from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import SceneError
+from raceway.storage.tables import Tables
 
 #: Imbalance of an equilibrium over the contact forces that the settled state is known by.
 _SETTLED = 1e-8
@@ -105,7 +105,7 @@ def refuse(system: Ring, schedule: Schedule) -> None:
         raise SceneError.at("integrator.kind", "periodic", "the force does not repeat itself every turn. Use 'newmark'")
 
 
-def warnings(found: Found, told: list[dict[str, Any]], tolerance: float) -> tuple[str, ...]:
+def warnings(found: Found, told: list[Tables], tolerance: float) -> tuple[str, ...]:
     """What a user should know of a motion that was hard to find, is not stable or not alone, or not as exact as asked for."""
     out = list(several(told))
     if found.fold is not None:

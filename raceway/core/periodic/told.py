@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from raceway.core.periodic.sampling import displacements
 from raceway.core.periodic.search import Found
 from raceway.core.periodic.sweep import forces
 from raceway.core.signals.identification import stiffness
+from raceway.storage.tables import Tables
 
 #: Samples of a turn for its 1x line: a path has no more intervals as a rule, and harmonics up to this order alias nothing.
 _SAMPLES = 360
@@ -23,12 +23,12 @@ _WAYS = {
 }
 
 
-def orbits(found: Sequence[Found]) -> list[dict[str, Any]]:
+def orbits(found: Sequence[Found]) -> list[Tables]:
     """``motion.orbits`` of result.json: every motion that was found, the one that is taken first."""
     return [_orbit(one, one is found[0]) for one in found]
 
 
-def _orbit(found: Found, taken: bool) -> dict[str, Any]:
+def _orbit(found: Found, taken: bool) -> Tables:
     """Z [N/m] and amplitude [m] of the 1x line of one motion, and what becomes of disturbances."""
     fate = found.fate
     z, amplitude = first_line(found.refined.solved)
@@ -56,7 +56,7 @@ def first_line(solved: Solved) -> tuple[complex, float]:
     return complex(stiffness(force, line)), float(forward + backward)
 
 
-def several(told: list[dict[str, Any]]) -> tuple[str, ...]:
+def several(told: list[Tables]) -> tuple[str, ...]:
     """What a user should know where more than one motion exists that a ring can stay on."""
     lasting = [one for one in told if one["stable"]]
     if len(lasting) < 2:
@@ -68,11 +68,11 @@ def several(told: list[dict[str, Any]]) -> tuple[str, ...]:
     )
 
 
-def unstable(one: dict[str, Any]) -> str:
+def unstable(one: Tables) -> str:
     """Growth of disturbances of a motion, in words."""
     return f"disturbances grow {one['multiplier']:.4g} times a turn, {_WAYS[one['leaves_by']]}"
 
 
-def _complex(one: dict[str, Any]) -> str:
+def _complex(one: Tables) -> str:
     z = one["dynamic_stiffness"]
     return f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j"

@@ -14,7 +14,7 @@ Trefethen, Spectral Methods in MATLAB (2000), chapter 3; Krack, Gross, Harmonic 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import attrs
 import numpy as np
@@ -35,11 +35,11 @@ _SAMPLES_PYTHON, _TOLERANCE_PYTHON = 17, 1e-7
 class States(NamedTuple):
     """Times (n,), displacements and velocities (n, 5), places of the balls (n, Z, c) and their rates."""
 
-    times: Any
-    q: Any
-    v: Any
-    ball: Any
-    rate: Any
+    times: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    ball: np.ndarray
+    rate: np.ndarray
 
 
 STATES = record(States, VECTOR, MATRIX, MATRIX, CUBE, CUBE)

@@ -23,6 +23,7 @@ from raceway.core.ring.kernels.layout import (
     place,
     stop,
 )
+from raceway.core.signatures import Constants
 
 if TYPE_CHECKING:
     from raceway.core.stepping.protocol import SteppedSystem
@@ -238,8 +239,9 @@ class Ring(ABC):
         states, still = np.ascontiguousarray(q, dtype=float).reshape(-1, 5), np.zeros(5)
         times = np.broadcast_to(np.asarray(t, dtype=float), len(states))
         work = np.zeros((3 * len(states), 2 * self.ball_count))
+        constants = Constants(self.scalars, self.table)
         for k, state in enumerate(states):
-            place(float(times[k]), state, still, self.scalars, self.table, work, 3 * k, 3 * k + 1, 3 * k + 2)
+            place(float(times[k]), state, still, constants, work, (3 * k, 3 * k + 1, 3 * k + 2))
         parts = work.reshape(*np.shape(q)[:-1], 3, 2, -1).swapaxes(-1, -2)
         moved = 0.0 if ball is None else self.groove_displacement(ball)
         return parts[..., 1, :, :] + moved, parts[..., 0, :, :].copy()

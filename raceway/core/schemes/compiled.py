@@ -10,7 +10,7 @@ Every loop has the signature ``raceway.core.signatures.LOOP``, whose records sta
     recording      rows (n, 16): t, q, v, outer force; probes (n, 3, 4 or 5, 2 Z): gaps, contact forces, ball positions, slips,
                    structural approaches; counters (8,): see ``COUNTERS``
 
-A loop that returns less than ``steps.count`` failed at the next step; ``state`` is then the last good one.
+A loop that returns less than ``steps.total`` failed at the next step; ``state`` is then the last good one.
 
 implicit                 Newmark's method and generalised-alpha
 central_difference       explicit in the contacts

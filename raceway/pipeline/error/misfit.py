@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Any
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.signals.identification import Identification
 from raceway.pipeline.simulate import simulate
 from raceway.plugins.identifiers.fft_1x import Fft1x
+from raceway.storage.tables import Tables
 
 #: Relative difference of two speeds that are one.
 _SAME = 1e-9
@@ -43,7 +43,7 @@ def largest_misfit(model: Model, equilibrium: Equilibrium, found: Identification
     return max(sizes)
 
 
-def misfit_warnings(model: Model, error: dict[str, Any]) -> list[str]:
+def misfit_warnings(model: Model, error: Tables) -> list[str]:
     """Says where Z over the whirl speeds is not what K and C make of it."""
     size = error["identification"]
     if (

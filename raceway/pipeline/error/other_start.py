@@ -12,8 +12,6 @@ The orbit without friction and the motions from rest are furthest apart; a growi
 
 from __future__ import annotations
 
-from typing import Any
-
 import attrs
 
 from raceway.bodies.equilibrium import Equilibrium
@@ -22,6 +20,7 @@ from raceway.errors import ConvergenceError, StabilityError
 from raceway.pipeline.error.free_vibration import without_free_vibration
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 from raceway.planning.steady_orbits import remembers_its_start
+from raceway.storage.tables import Tables
 
 #: Other starts in the order in which they are tried.
 _OTHERS: dict[str, tuple[str, ...]] = {"orbit": ("ramp", "static"), "ramp": ("orbit", "static"), "static": ("orbit", "ramp")}
@@ -86,7 +85,7 @@ def _begun_by(model: Model, kind: str) -> Model:
     return attrs.evolve(model, scene=scene)
 
 
-def start_warnings(model: Model, error: dict[str, Any]) -> list[str]:
+def start_warnings(model: Model, error: Tables) -> list[str]:
     """Says that an error is not known because no other start could be compared with."""
     if not remembers_its_start(model.scene) or error["transient"] is not None:
         return []

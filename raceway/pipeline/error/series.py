@@ -10,7 +10,6 @@ window, plus that of the time step.
 from __future__ import annotations
 
 from math import pi
-from typing import Any
 
 import attrs
 
@@ -20,13 +19,14 @@ from raceway.errors import BeyondPlanError
 from raceway.pipeline.error.steady_motion import Settled
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.steady_orbits import compares_with_steady_motion
+from raceway.storage.tables import Tables
 
 #: Relative error of Z in a window above which it is told.
 _MUCH = 0.05
 
 
 def with_series_error(
-    model: Model, found: Identification, error: dict[str, Any], steady: Settled, on_progress: OnProgress | None = None
+    model: Model, found: Identification, error: Tables, steady: Settled, on_progress: OnProgress | None = None
 ) -> Identification:
     """The same with ``series_error`` held against steady motions where the speed changes.
 

@@ -17,7 +17,7 @@ def condensed(rigid: Kernel) -> Kernel:
         ball, ball_gain, ball_known = balls
         scalars, table = constants
         f, K, C, work = response
-        begin(t, q, v, scalars, table, work)
+        begin(t, q, v, constants, work)
         for _ in range(ITERATIONS):
             shift(scalars, ball, ball_gain, ball_known, work)
             status = rigid(t, q, v, balls, contacts, constants, response)

@@ -9,11 +9,11 @@ e = (e_rest + shift + side (x + R u), e_rest + rho - X u).
 """
 
 import numpy as np
-from numba import float64, int64, void
+from numba import float64, int64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import MOVED, MOVED_RATE
-from raceway.core.signatures import MATRIX, VECTOR
+from raceway.core.signatures import CONSTANTS, MATRIX, VECTOR
 
 #: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
 #: friction coefficient, stick stiffness [N/m], shares of the gyroscopic moment (inner + outer = 2), D / d_m,
@@ -29,14 +29,16 @@ COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT = range
 COLUMNS = 8
 
 
-@jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64, int64, int64))
-def place(t, q, v, scalars, table, work, direction, centre, velocity):
-    """Of every ball: the azimuth's cos and sin, e (axial, radial) and its velocity, into three rows of ``work``.
+@jit(void(float64, VECTOR, VECTOR, CONSTANTS, MATRIX, types.UniTuple(int64, 3)))
+def place(t, q, v, constants, work, rows):
+    """Of every ball: the azimuth's cos and sin, e (axial, radial) and its velocity, into three ``rows`` of ``work``.
 
     Notes
     -----
     A ball that orbits meets the ring at another place every moment: de/dt has a part of the cage speed.
     """
+    scalars, table = constants
+    direction, centre, velocity = rows
     n = table.shape[0]
     rest_a, rest_r, arm, cage = scalars[REST_AXIAL], scalars[REST_RADIAL], scalars[TILT_ARM], scalars[CAGE]
     turn_c, turn_s = 1.0, 0.0

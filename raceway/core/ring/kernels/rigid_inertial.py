@@ -226,7 +226,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     z, elastic_bodies = table.shape[0], work.shape[0] > WORK_ROWS
     gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
     by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
-    place(t, q, v, scalars, table, work, DIRECTION, CENTRE, VELOCITY)
+    place(t, q, v, constants, work, (DIRECTION, CENTRE, VELOCITY))
     if elastic_bodies:
         move_centres(work, CENTRE, VELOCITY)
     for k in range(z):

@@ -53,7 +53,7 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
     by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
     elastic_bodies = work.shape[0] > WORK_ROWS
     z = table.shape[0]
-    place(t, q, v, scalars, table, work, row.DIRECTION, row.CENTRE, row.VELOCITY)
+    place(t, q, v, constants, work, (row.DIRECTION, row.CENTRE, row.VELOCITY))
     if elastic_bodies:
         move_centres(work, row.CENTRE, row.VELOCITY)
     moving = 0

@@ -159,7 +159,7 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
     z, arm, elastic_bodies = table.shape[0], scalars[TILT_ARM], work.shape[0] > WORK_ROWS
     gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
     by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
-    place(t, q, v, scalars, table, work, DIRECTION, NORMAL, VELOCITY)
+    place(t, q, v, constants, work, (DIRECTION, NORMAL, VELOCITY))
     if elastic_bodies:
         move_centres(work, NORMAL, VELOCITY)
     for k in range(z):

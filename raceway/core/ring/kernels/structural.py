@@ -70,7 +70,7 @@ from raceway.core.ring.kernels.structural_rows import (
     TURNING,
     WEIGHT,
 )
-from raceway.core.signatures import MATRIX, VECTOR
+from raceway.core.signatures import CONSTANTS, MATRIX, VECTOR
 
 #: Iterations until it is given up, and answers of ``correct``.
 ITERATIONS = 60
@@ -100,10 +100,11 @@ def _compliances(scalars, work):
             work[CURVE, c] = (2.0 * a2 + 6.0 * a3 * u) / (scalars[DISTANCE] * scalars[DISTANCE]) if inside else 0.0
 
 
-@jit(void(float64, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX))
-def begin(t, q, v, scalars, table, work):
+@jit(void(float64, VECTOR, VECTOR, CONSTANTS, MATRIX))
+def begin(t, q, v, constants, work):
     """Lines of groove centres and the compliances there."""
-    place(t, q, v, scalars, table, work, DIRECTION, CENTRE, SPEED)
+    scalars, table = constants
+    place(t, q, v, constants, work, (DIRECTION, CENTRE, SPEED))
     work[NORM, 0] = np.inf
     if scalars[COUPLED] == 0.0:
         _compliances(scalars, work)

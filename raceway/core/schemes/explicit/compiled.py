@@ -74,7 +74,7 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
         return 0
     # A bearing alone has no linear damping and stiffness at all.
     ground, taken = linear.damping.any() or linear.stiffness.any(), 0
-    while taken < steps.count:
+    while taken < steps.total:
         number = steps.first + taken + 1
         t = number * dt
         outer_force(outer, t, push)

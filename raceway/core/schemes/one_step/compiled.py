@@ -1,6 +1,6 @@
 """The compiled loop; equations in ``raceway.core.schemes.one_step``.  ``coefficients``: am, af, beta, gamma, tolerance."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import boolean, float64, types, void
@@ -22,23 +22,23 @@ _NOTHING = 1e-30
 class Formula(NamedTuple):
     """Numbers of the method, its step [s], and the derivatives of a [1/s^2] and v [1/s] by the displacement at the end."""
 
-    am: Any
-    af: Any
-    beta: Any
-    gamma: Any
-    dt: Any
-    to_a: Any
-    to_v: Any
+    am: float
+    af: float
+    beta: float
+    gamma: float
+    dt: float
+    to_a: float
+    to_v: float
 
 
 class Trial(NamedTuple):
     """The state at the end of a step as it is known, each (5,): q, v, a, forces but for inertia, imbalance."""
 
-    q: Any
-    v: Any
-    a: Any
-    rest: Any
-    residual: Any
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    rest: np.ndarray
+    residual: np.ndarray
 
 
 FORMULA = record(Formula, *[float64] * 7)
@@ -111,7 +111,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
     work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
     response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
     next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
-    for step in range(steps.count):
+    for step in range(steps.total):
         number = steps.first + step + 1
         t = number * dt
         outer_force(outer, t, push)
@@ -155,4 +155,4 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
         accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
         copy_matrix(contacts.new, state.memory)
         note_step(recording, number, t, motion, push, work, state.ball)
-    return steps.count
+    return steps.total

@@ -95,7 +95,7 @@ def quasi_static(solver: Kernel) -> Kernel:
         report, push, total, still = np.zeros(2), np.empty(5), np.empty(5), state.motion.copy()
         loaded = Linear(linear.mass, linear.damping, linear.stiffness, linear.free, total)
         rest = Rest(np.empty(5), np.empty_like(state.ball), state.memory)
-        for step in range(steps.count):
+        for step in range(steps.total):
             number = steps.first + step + 1
             t = number * steps.dt
             extrapolate(outer, t, linear.load, state, push, rest, total)
@@ -111,6 +111,6 @@ def quasi_static(solver: Kernel) -> Kernel:
             for i in range(5):
                 still[0, i] = rest.q[i]
             note_step(recording, number, t, still, push, work, state.ball)
-        return steps.count
+        return steps.total
 
     return equilibria
