@@ -11,6 +11,7 @@ from validation.command_line import LAW, MINIMAL, invoke, python, raceway
 #: A signal while the commands are imported.
 LOADING = """
 import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may start a program in the background without
 class Interrupted:
     def __getattr__(self, attribute):
         if attribute == "main":

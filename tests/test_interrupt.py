@@ -123,7 +123,7 @@ def test_nohup_is_respected():
 
 @pytest.mark.parametrize("number", [signal.SIGTERM])
 def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_path):
-    words = ["sweep", ARTICLE, "--set", "integrator.turns=40", "--grid", "load.axial=400:2000:8", "--out", tmp_path / "s"]
+    words = ["sweep", ARTICLE, "--set", "integrator.turns=40", "--grid", "load.axial=400:2000:24", "--out", tmp_path / "s"]
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
     end = time.monotonic() + 100.0
@@ -160,7 +160,7 @@ def test_a_study_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_and_leaves_no_
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
     rows, end = tmp_path / f"{name}-rows.jsonl", time.monotonic() + 100.0
-    while not rows.is_file() and time.monotonic() < end:
+    while not (rows.is_file() and rows.stat().st_size) and time.monotonic() < end:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes of the command
     error = process.communicate(timeout=60.0)[1].decode()
