@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from raceway.bodies.model import build_model
-from raceway.core.ring.ring import Increment
+from raceway.core.ring.increment import Increment
 from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import integrate

@@ -11,7 +11,7 @@ AREAS = {
     "rigid": """
         bodies/__init__ bodies/basis bodies/contact_error bodies/equilibrium bodies/grooves bodies/model
         bodies/modules bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
-        core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/ring core/ring/root
+        core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/ring core/ring/increment core/ring/root
         core/ring/system data/bearings bodies/pressure pipeline/settle scene/inner_ring""",
     "motion": """
         core/excitations core/schemes/advance core/ring/changing_speed core/ring/energy core/ring/friction core/schemes core/ring/surrogate core/ring/orbit
@@ -48,7 +48,7 @@ AREAS = {
         data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture
         studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
-        __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/hookspecs framework/registry
+        __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/higher_types framework/hookspecs framework/registry
         framework/sources pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
         storage/files storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         studies/article/command studies/article/screen studies/compare/command studies/compare/screen studies/map/command

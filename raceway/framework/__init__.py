@@ -1,7 +1,7 @@
 """Kinds of plug-ins, and how they are found.
 
 contracts   duties of each kind, numbered
-hookspecs   hooks that a plug-in may implement
+hookspecs   hooks that a plug-in may implement;  higher_types: names of types that both are handed
 options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
 duties      calls of the duties of bodies, with their faults put to the plug-in

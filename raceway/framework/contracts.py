@@ -20,19 +20,23 @@ if TYPE_CHECKING:
     import click
     import numpy as np
 
-    from raceway.bodies.equilibrium import Equilibrium
-    from raceway.bodies.model import Bearing as BuiltBearing
-    from raceway.bodies.model import Model
     from raceway.core.jit import Kernel
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.schemes.drivers import Scheme
     from raceway.core.signals.identification import Identification
     from raceway.core.stepping.record import Record
     from raceway.errors import Mistake
-    from raceway.planning.decisions import Balls, Motion
-    from raceway.planning.parts import Decisions
-    from raceway.planning.plan import Plan
-    from raceway.scene.tables import Bearing, Scene
+    from raceway.framework.higher_types import (
+        Balls,
+        Bearing,
+        BuiltBearing,
+        Decisions,
+        Equilibrium,
+        Model,
+        Motion,
+        Plan,
+        Scene,
+    )
 
 
 class ContactLaw(attrs.AttrsInstance, Protocol):

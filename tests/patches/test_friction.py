@@ -15,7 +15,7 @@ from raceway.core.patches.contact import Contact, SlipState
 from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.core.patches.history import History
-from raceway.core.ring.ring import Increment
+from raceway.core.ring.increment import Increment
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.unused import unused

@@ -10,7 +10,8 @@ import numpy as np
 
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.ring.ring import AT_ONCE, Evaluation, Increment
+from raceway.core.ring.increment import AT_ONCE, Increment
+from raceway.core.ring.ring import Evaluation
 from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError

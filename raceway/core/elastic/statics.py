@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError
-
-if TYPE_CHECKING:
-    from raceway.core.elastic.system import ElasticSystem
 
 #: Iterations of one load step, trials of one line search, smallest part of the load.
 NEWTON_LIMIT, TRIALS, SMALLEST_PART = 40, 12, 1.0 / 16.0
@@ -37,7 +34,7 @@ class Settled:
     residuals: list[float]
 
 
-def settle(system: ElasticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
+def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
     """The state at which contact forces and elasticity balance ``system.load``, near a guess (size,).
 
     Raises
@@ -74,7 +71,7 @@ def settle(system: ElasticSystem, guess: np.ndarray, tolerance: float = TOLERANC
         system.load = load
 
 
-def _refuse(system: ElasticSystem, y: np.ndarray, history: list[float]) -> None:
+def _refuse(system: Any, y: np.ndarray, history: list[float]) -> None:
     try:
         if system.contact is not None:
             system.contact.refuse()
@@ -82,9 +79,7 @@ def _refuse(system: ElasticSystem, y: np.ndarray, history: list[float]) -> None:
         raise ConvergenceError(str(why), {"y": y, "load_part": 1.0, "residuals": history}) from why
 
 
-def _newton(
-    system: ElasticSystem, guess: np.ndarray, tolerance: float, history: list[float], share: float
-) -> tuple[np.ndarray, int]:
+def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[float], share: float) -> tuple[np.ndarray, int]:
     y = guess.copy()
     system.locate(y)
     rest = system.load - system.static_internal(y, share)
@@ -110,9 +105,7 @@ def _newton(
     raise ConvergenceError(f"Newton's residual stands at {history[-1]:.1e} of the load after {NEWTON_LIMIT} iterations.")
 
 
-def _along(
-    system: ElasticSystem, y: np.ndarray, step: np.ndarray, rest: np.ndarray, enough: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _along(system: Any, y: np.ndarray, step: np.ndarray, rest: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
     """State along a step (size,) at which the potential's slope is a part of that at ``y``, and the residual there.
 
     Notes

@@ -12,6 +12,7 @@ from raceway.core.patches.balls import AppliedLoads, Balls, LinearisedBalls
 from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.core.patches.history import History
 from raceway.core.patches.pool import STEP, Pool, Row
+from raceway.core.ring.increment import AT_ONCE, Increment
 from raceway.core.ring.kernels.layout import (
     BALL_OVER_PITCH,
     CENTRIFUGAL,
@@ -29,7 +30,7 @@ from raceway.core.ring.kernels.layout import (
     TILT_ARM,
     place,
 )
-from raceway.core.ring.ring import AT_ONCE, TOLERANCE, Evaluation, Increment
+from raceway.core.ring.ring import TOLERANCE, Evaluation
 from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.signatures import Constants
 from raceway.core.stepping.record import Record

@@ -1,6 +1,6 @@
 """The compiled bearing: five coordinates of the inner ring, balls condensed out.
 
-ring            five coordinates on balls, however their forces are computed
+ring            five coordinates on balls, however their forces are computed;  increment: a step that they are asked at
 system          a ring whose forces are compiled;  surrogate: rings that are stepped, and a compiled one near each
 kernels         internal force and tangents
 equilibrium     static state by a trust region on the total potential

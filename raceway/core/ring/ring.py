@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 import attrs
 import numpy as np
 
+from raceway.core.ring.increment import AT_ONCE, Increment
 from raceway.core.ring.kernels.layout import (
     CAGE,
     CENTRIFUGAL,
@@ -53,25 +54,6 @@ class Evaluation:
     contact_force: np.ndarray
     ball: np.ndarray
     memory: np.ndarray
-
-
-@attrs.frozen(eq=False)
-class Increment:
-    """A step of an integrator since the law's memory was committed.
-
-    Attributes
-    ----------
-    dt : its length [s];  gain : derivative of the balls' rates by their places [1/s]
-    memory : (2 Z, m); None for the ring's ``law_state``
-    """
-
-    dt: float = 0.0
-    gain: float = 0.0
-    memory: np.ndarray | None = None
-
-
-#: No time has passed.
-AT_ONCE = Increment()
 
 
 class Spin(Protocol):

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.ring.ring import Increment
+from raceway.core.ring.increment import Increment
 from raceway.core.stepping.protocol import Observation, State
 from raceway.core.stepping.record import Motion
 from raceway.core.stepping.states import check_start

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, settle
+from raceway.core.ring.increment import AT_ONCE, Increment
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP
 from raceway.core.ring.kernels.columns import BLOCK, ROW, are_condensed, elastic_columns, work_rows
 from raceway.core.ring.kernels.layout import (
@@ -16,7 +17,7 @@ from raceway.core.ring.kernels.layout import (
     FRICTION,
     GYROSCOPIC,
 )
-from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Increment, Ring
+from raceway.core.ring.ring import COORDINATES, TOLERANCE, Evaluation, Ring
 from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, Rest
 from raceway.core.stepping.states import check_state
 from raceway.errors import ConvergenceError

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.pipeline.result import Result
-    from raceway.pipeline.simulate import Simulation
+    from raceway.framework.higher_types import Result, Simulation
 
 _USED, _OTHER, _STATIC = "#0b5fa5", "#b9c4cf", "#c8501e"
 _MICRO = 1e6
