@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-import attrs
 import click
 
 from raceway import __version__
@@ -71,8 +70,7 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
-@attrs.frozen
-class RunOptions:
+class RunOptions(NamedTuple):
     """What ``raceway run`` is given."""
 
     scene: Path

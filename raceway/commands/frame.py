@@ -90,7 +90,7 @@ def common(command: F) -> F:
 
 
 def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
-    """The innermost decorator of a command with many options: they come as one record, an attrs class with their names."""
+    """The innermost decorator of a command with many options: they come as one record, a named tuple with their names."""
 
     def decorate(command: Callable[[R], int]) -> Callable[..., int]:
         @wraps(command)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from multiprocessing.connection import Connection, wait
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -19,6 +17,8 @@ from raceway.framework.options import between, option
 from raceway.framework.orphans import deaf_to_terminals, end_with
 
 if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
     from raceway.framework.contracts import Batch
 
 #: What a process may take to import the program, beyond the patience with its first batch [s].
@@ -37,6 +37,8 @@ class Processes:
     def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
         left, again, tried = iter(batches), list[Any](), set[int]()
         crew: list[_Worker] = []
+
+        from multiprocessing.connection import wait
 
         def following() -> Batch | None:
             return again.pop() if again else next(left, None)
@@ -75,6 +77,8 @@ class _Worker:
     """One process and the batch that it works at."""
 
     def __init__(self, work: Work) -> None:
+        import multiprocessing
+
         context = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
         self.pipe, child = context.Pipe()
         self.process = context.Process(target=_serve, args=(child, work, os.getpid()), daemon=True)

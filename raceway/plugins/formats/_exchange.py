@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.core.mesh.hex_mesh import FACES, HexMesh
 from raceway.errors import MeshError, extra
 from raceway.storage.tables import ReadTables
 from raceway.storage.user_files import memory_for, size_of, told
 
 if TYPE_CHECKING:
     from meshio import Mesh
+
+    from raceway.core.mesh.hex_mesh import HexMesh
 
 #: Bytes of the largest mesh file.
 LARGEST = 2**32
@@ -118,6 +119,8 @@ def hexahedra(path: Path, content: Mesh) -> tuple[np.ndarray, list[int | None]]:
 
 def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: ReadTables, facet_sets: ReadTables) -> HexMesh:
     """A ``HexMesh`` without points that no cell uses; ``MeshError`` names the file if it is none."""
+    from raceway.core.mesh.hex_mesh import HexMesh
+
     points = np.asarray(points, dtype=float)
     if points.ndim == 2 and points.shape[1] == 3 and cells.min() >= 0 and cells.max() < len(points):
         used = np.zeros(len(points), dtype=bool)
@@ -142,6 +145,8 @@ def facets_of_quads(path: Path | str, cells: np.ndarray, quads: np.ndarray) -> n
     MeshError
         Quadrilaterals on no cell.
     """
+    from raceway.core.mesh.hex_mesh import FACES
+
     faces = np.sort(cells[:, FACES].reshape(-1, 4), axis=1)
     wanted = np.sort(np.asarray(quads, dtype=np.int64), axis=1)
     _, number = np.unique(np.concatenate([faces, wanted]), axis=0, return_inverse=True)
@@ -156,6 +161,8 @@ def facets_of_quads(path: Path | str, cells: np.ndarray, quads: np.ndarray) -> n
 
 def example() -> HexMesh:
     """Two cells with sets, for the conformance suite."""
+    from raceway.core.mesh.hex_mesh import HexMesh
+
     corner = [(x, y, z) for z in (0.0, 0.7) for x, y in ((0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1.3))]
     cells = [[0, 1, 4, 3, 6, 7, 10, 9], [1, 2, 5, 4, 7, 8, 11, 10]]
     sets = {"bottom": [[0, 0], [1, 0]], "end": [[1, 3]]}

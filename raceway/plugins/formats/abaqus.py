@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.errors import MeshError
 from raceway.framework.options import one_of, option
 from raceway.plugins.formats import _exchange as exchange
@@ -19,6 +18,8 @@ from raceway.storage.user_files import memory_for
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from raceway.core.mesh.hex_mesh import HexMesh
 
 #: Element types that both programs know, by this program's word for the hexahedron.
 _TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.plugins.formats import _exchange as exchange
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from raceway.core.mesh.hex_mesh import HexMesh
 
 _NODES, _FACETS = "nodes:", "facets:"
 

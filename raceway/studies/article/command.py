@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
+from typing import NamedTuple
 
-import attrs
 import click
 from click.core import ParameterSource
 
@@ -29,8 +29,7 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.storage.tables import Tables
 
 
-@attrs.frozen
-class ArticleOptions:
+class ArticleOptions(NamedTuple):
     """What ``raceway study article`` is given."""
 
     scene: Path | None

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.frame import (
@@ -35,8 +34,7 @@ if TYPE_CHECKING:
     from raceway.framework.registry import Registry
 
 
-@attrs.frozen
-class MapOptions:
+class MapOptions(NamedTuple):
     """What ``raceway study map`` is given."""
 
     scene: Path | None

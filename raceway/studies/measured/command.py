@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.frame import (
@@ -24,8 +24,7 @@ from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, wri
 from raceway.errors import SceneError
 
 
-@attrs.frozen
-class IdentifyOptions:
+class IdentifyOptions(NamedTuple):
     """What ``raceway identify`` is given."""
 
     signals: Path

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.frame import (
@@ -26,8 +26,7 @@ from raceway.errors import SceneError
 from raceway.studies.stability.command import verdict
 
 
-@attrs.frozen
-class PrecisionOptions:
+class PrecisionOptions(NamedTuple):
     """What ``raceway precision`` is given."""
 
     scene: Path

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.console import warn
@@ -14,8 +14,7 @@ from raceway.storage.tables import Tables
 from raceway.studies.sweep.store_command import at_option, head, selection_of, store_argument, told
 
 
-@attrs.frozen
-class ExportOptions:
+class ExportOptions(NamedTuple):
     """What ``raceway export`` is given."""
 
     store: Path

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.frame import (
@@ -26,8 +26,7 @@ from raceway.commands.inputs import changed_tables, slug, tell_faults, writable
 from raceway.errors import ConvergenceError, SceneError
 
 
-@attrs.frozen
-class StabilityOptions:
+class StabilityOptions(NamedTuple):
     """What ``raceway stability`` is given."""
 
     scene: Path | None

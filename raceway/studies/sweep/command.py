@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import attrs
 import click
@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from raceway.studies.sweep import Design, Store
 
 
-@attrs.frozen
-class SweepOptions:
+class SweepOptions(NamedTuple):
     """What ``raceway sweep`` is given."""
 
     scene: Path

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.frame import PATH, attempt, common, record, show
@@ -21,8 +20,7 @@ store_argument = click.argument("store", type=PATH)
 at_option = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a value of an axis; repeat for more.")
 
 
-@attrs.frozen
-class PlotOptions:
+class PlotOptions(NamedTuple):
     """What ``raceway plot`` is given."""
 
     store: Path

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.frame import (
@@ -32,8 +31,7 @@ if TYPE_CHECKING:
     from raceway.scene.tables import Scene
 
 
-@attrs.frozen
-class ViewOptions:
+class ViewOptions(NamedTuple):
     """What ``raceway view`` is given."""
 
     scene: Path
