@@ -12,6 +12,7 @@ from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.patches.balls import Balls
 from raceway.core.patches.pool import Pool
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
+from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.run import run
@@ -52,6 +53,12 @@ def test_ring_and_balls_are_in_equilibrium(free):
     assert now.force[3:] == pytest.approx([0.0, 0.0], abs=1e-8)
     # Without centrifugal forces both races carry the same.
     assert found.contact_force[:12] == pytest.approx(found.contact_force[12:], rel=1e-9)
+
+
+def test_it_is_stepped_from_python_and_has_a_compiled_ring_near_it(free):
+    case, _ = free
+    assert compiled(case.system) is None
+    assert compiled(surrogate(case.system)) is not None
 
 
 def test_it_is_near_resultants_of_the_same_bodies(free):
