@@ -64,11 +64,15 @@ class Ended:
 
     @property
     def told(self) -> bool:
-        """One line that says what stopped it; a sweep's second one says how much is done."""
+        """One line that says what stopped it; a second one says how much is done, or where a comparison goes on."""
         word = "Ctrl-C" if self.number == signal.SIGINT else signal.Signals(self.number).name
         stopped = [line for line in self.lines if line.startswith(f"stopped by {word}")]
         rest = [line for line in self.lines if line not in stopped]
-        return len(stopped) == 1 and len(rest) <= self.command.startswith("sweep") and "Traceback" not in str(self.lines)
+        return (
+            len(stopped) == 1
+            and len(rest) <= self.command.startswith(("sweep", "compare"))
+            and "Traceback" not in str(self.lines)
+        )
 
 
 def started(words: tuple[str, ...], out: Path) -> subprocess.Popen[bytes]:

@@ -18,7 +18,7 @@ from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.executors.joblib import Joblib
 from raceway.studies.sweep import open_store
-from validation.command_line import ARTICLE, EXAMPLES, raceway
+from validation.command_line import ARTICLE, EXAMPLES, python, raceway
 from validation.sessions import left, members
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
@@ -196,6 +196,32 @@ def threads(_points):
 
 def test_workers_of_joblib_watch_their_parent_from_the_start():
     assert all(WATCH in names for _, names in Joblib(workers=2).compute(threads, [(0, []), (1, [])]))
+
+
+class Deaf:
+    """Work that tells the signals that its worker does not hear."""
+
+    def __call__(self, points):
+        return [int(number) for number in signal.pthread_sigmask(signal.SIG_BLOCK, ())]
+
+    def fault(self):
+        return None
+
+
+@pytest.mark.parametrize("name", ["processes", "joblib", "dask"])
+def test_workers_do_not_hear_a_terminal_from_their_start(name):
+    """In a process of its own: what clears up behind the first worker is started with it."""
+    code = f"""
+from raceway.framework.registry import default_registry
+from tests.test_interrupt import Deaf
+if __name__ == "__main__":
+    executor = default_registry().find("executor", "{name}").plugin(workers=2)
+    print([found for _, found in executor.compute(Deaf(), [(number, []) for number in range(4)])])
+"""
+    found = python("-c", code)
+    assert found.returncode == 0, found.stderr
+    heard = [{signal.SIGINT, signal.SIGHUP} - set(mask) for mask in json.loads(found.stdout)]
+    assert heard == 4 * [set()]
 
 
 def blocked(process: int) -> set[int]:

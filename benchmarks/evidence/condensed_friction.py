@@ -168,7 +168,9 @@ def _inertia() -> list[Row]:
         _, jacobian, _ = system._groove(rest.displacement, np.zeros(5), 0.0)
         still = row.balls.smoothed_stiffness(row.last, row.centre, row.where)
         speed = 2.0 * np.pi * rpm / 60.0
-        moving = attrs.evolve(still, held=still.held - system.ball_mass * speed**2 * np.eye(len(still.held)))
+        moving = attrs.evolve(
+            still, ball_stiffness=still.ball_stiffness - system.ball_mass * speed**2 * np.eye(len(still.ball_stiffness))
+        )
         both = [float((jacobian.T @ row.balls.tangent(one) @ jacobian)[1, 1]) for one in (still, moving)]
         expected = both[1] / both[0] - 1.0
         note = "change of the dynamic stiffness by the balls' mass; linear theory with tangents at rest, 3 points"

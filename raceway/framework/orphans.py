@@ -42,3 +42,17 @@ def deaf_to_terminals() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def start_tracker() -> None:
+    """Start what clears up behind processes of ``multiprocessing``, before the first of them.
+
+    Notes
+    -----
+    Python starts it with the first process and lets that thread hear Ctrl-C again afterwards, and so the process, too.
+    """
+    from multiprocessing import resource_tracker
+
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    resource_tracker.ensure_running()
+    signal.pthread_sigmask(signal.SIG_SETMASK, blocked)

@@ -15,7 +15,7 @@ import attrs
 from raceway.errors import PluginError, extra
 from raceway.framework.contracts import Answer, Lost, Refused, Work
 from raceway.framework.options import between, inside, option, optional
-from raceway.framework.orphans import deaf_to_terminals
+from raceway.framework.orphans import deaf_to_terminals, start_tracker
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -67,6 +67,7 @@ class Dask:
             # None would be a fixed port, with a warning where another cluster has it.
             options = {"processes": True, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
             with deaf_to_terminals():
+                start_tracker()
                 local = LocalCluster(n_workers=self.workers, **options)
             with local as cluster, Client(cluster) as client:
                 yield client

@@ -12,7 +12,7 @@ import attrs
 from raceway.errors import PluginError, extra
 from raceway.framework.contracts import Answer, Lost, Work
 from raceway.framework.options import between, option
-from raceway.framework.orphans import deaf_to_terminals, end_with
+from raceway.framework.orphans import deaf_to_terminals, end_with, start_tracker
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Batch
@@ -75,7 +75,9 @@ class Joblib:
         begin = {"initializer": end_with, "initargs": (os.getpid(),)}
         with parallel_config(backend="loky", inner_max_num_threads=1, **begin):
             pool = Parallel(n_jobs=workers, return_as="generator_unordered", batch_size=1, pre_dispatch=before)
-            answers = pool(calls)
+            with deaf_to_terminals():  # it starts the workers
+                start_tracker()
+                answers = pool(calls)
             try:
                 yield from answers
             finally:

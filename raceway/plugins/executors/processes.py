@@ -14,7 +14,7 @@ import attrs
 from raceway.errors import PluginError
 from raceway.framework.contracts import Answer, Lost, Work
 from raceway.framework.options import between, option
-from raceway.framework.orphans import deaf_to_terminals, end_with
+from raceway.framework.orphans import deaf_to_terminals, end_with, start_tracker
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -83,6 +83,7 @@ class _Worker:
         self.pipe, child = context.Pipe()
         self.process = context.Process(target=_serve, args=(child, work, os.getpid()), daemon=True)
         with deaf_to_terminals():
+            start_tracker()
             self.process.start()
         child.close()
         self.batch: Batch | None = None
