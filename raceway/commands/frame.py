@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from raceway.commands.progress import ProgressBar
     from raceway.framework.registry import Registry
 
+
 R = TypeVar("R")
 F = TypeVar("F", bound=Callable[..., object])
 
@@ -94,7 +95,7 @@ def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
 
     def decorate(command: Callable[[R], int]) -> Callable[..., int]:
         @wraps(command)
-        def filled(**given: Any) -> int:
+        def filled(**given: object) -> int:
             return command(kind(**given))
 
         return filled

@@ -25,7 +25,7 @@ or run all checks at once with ``check(entry)``, as ``raceway check-plugin [KIND
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Entry, Registry
@@ -75,7 +75,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     if name in _PUBLIC:
         return getattr(import_module(_PUBLIC[name]), name)
     raise AttributeError(f"module 'raceway.testing' has no attribute '{name}'")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def synthetic_record(
     )
 
 
-def model_of(sense: int = 1, direction: float = 0.0) -> Any:
+def model_of(sense: int = 1, direction: float = 0.0) -> SimpleNamespace:
     """A model as identifiers see it, for the same spring, mass and dashpot."""
     from raceway.core.excitations.harmonic import harmonic
     from raceway.testing.systems import linear_system
@@ -96,6 +96,6 @@ def model_of(sense: int = 1, direction: float = 0.0) -> Any:
     )
 
 
-def equilibrium_at_rest() -> Any:
+def equilibrium_at_rest() -> SimpleNamespace:
     """An equilibrium without displacement."""
     return SimpleNamespace(displacement=np.zeros(5), ball=np.zeros((1, 2)), stiffness=np.zeros((5, 5)))
