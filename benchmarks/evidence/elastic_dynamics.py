@@ -158,7 +158,7 @@ def _bearing() -> list[Row]:
     built, found = _built()
     ring: Any = built.system
     period = built.excitation.period_s
-    orbit = steady_orbit(ring.at_standstill(), period, found.displacement)
+    orbit = steady_orbit(built.bearing.orbiting(ring), period, found.displacement)
     start = from_orbit(ring, orbit, 0.0)
     limit = ring.critical_time_step(found.stiffness)
     steps = 40 * (int(0.05 * period / (0.7 * limit)) // 40 + 1)
