@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from raceway.core.stepping.record import Motion, Record, Schedule
-
-if TYPE_CHECKING:
-    pass
 
 #: Stiffness [N/m], mass [kg], damping [N s/m], frequency [Hz], force [N] of the synthetic records.
 STIFFNESS, MASS, DAMPING, FREQUENCY, FORCE = 2.0e8, 2.0, 4000.0, 200.0, 300.0

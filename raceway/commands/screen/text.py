@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import floor, log10
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
@@ -14,9 +14,6 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.storage.tables import ReadTables
-
-if TYPE_CHECKING:
-    pass
 
 Row = tuple[str, str, str]
 
