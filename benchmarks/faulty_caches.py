@@ -92,7 +92,7 @@ def run_of(tables: dict[str, Any]) -> list[float]:
     from raceway.scene.file import scene_from_dict
 
     result = run(scene_from_dict(tables))
-    found = [float(value) for value in np.ravel(result.as_dict()["equilibrium"]["stiffness"])]
+    found = [float(value) for value in np.ravel(result.to_dict()["equilibrium"]["stiffness"])]
     if result.identification is not None:
         z = complex(result.identification.dynamic_stiffness)
         found += [z.real, z.imag]

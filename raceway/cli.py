@@ -121,7 +121,7 @@ def run(given: RunOptions) -> int:
         except (ConvergenceError, BeyondPlanError) as error:
             _keep_state(error, loaded, folder)
             raise
-    content = result.as_dict()
+    content = result.to_dict()
     files: list[str] = []
     failed = attempt(lambda: [result.save(folder)], files)
     if failed is None:
@@ -155,7 +155,7 @@ def plan(
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    content = make_plan(loaded, registry=registry).as_dict()
+    content = make_plan(loaded, registry=registry).to_dict()
     tell_faults(registry)
     from raceway.commands.screen.plan import plan_screen
 

@@ -155,7 +155,7 @@ def test_effects_and_words_say_what_the_rows_say(small):
 
 
 def test_json_table_and_picture(small, tmp_path):
-    answer = json.loads(json.dumps(small.as_dict(), allow_nan=False))
+    answer = json.loads(json.dumps(small.to_dict(), allow_nan=False))
     assert [axis["key"] for axis in answer["axes"]] == ["excitation.kind", "supports.tilt"]
     assert len(answer["rows"]) == 4 and answer["rows"][0]["result"]["schema"] == 1
     assert [list(row) for row in small.table()] == [["kind", "tilt", "K N/um", "|Z| N/um", "error %"]] * 4
@@ -176,7 +176,7 @@ def test_a_failed_point_is_kept_and_the_effects_hold_for_the_rest(monkeypatch):
     assert [e["term"] for e in found.effects] == [("supports.tilt",)] * 2
     assert any("no luck" in word for word in found.words)
     assert found.table()[3]["note"] == "failed"
-    json.dumps(found.as_dict(), allow_nan=False)
+    json.dumps(found.to_dict(), allow_nan=False)
 
 
 def test_a_refused_combination_is_kept_with_its_reason():

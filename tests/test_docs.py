@@ -45,7 +45,7 @@ def test_a_law_written_from_the_page_is_short_conforms_and_runs_in_a_scene(folde
     power = run(scene_from_dict(tables, registry), registry)
     hertz = run(scene_from_dict({**tables, "contact": {"kind": "hertz"}}, registry), registry)
     same = run(scene_from_dict({**tables, "contact": {"kind": "power", "exponent": 1.5}}, registry), registry)
-    assert power.as_dict()["environment"]["plugins"][0]["distribution"] == "power_law.py"
+    assert power.to_dict()["environment"]["plugins"][0]["distribution"] == "power_law.py"
     # With n = 1.5 it is Hertz, to the rounding of its factor and the steps' tolerance of 1e-9.
     z = hertz.identification.dynamic_stiffness
     assert abs(same.identification.dynamic_stiffness - z) < 1e-7 * abs(z)

@@ -65,7 +65,7 @@ def static():
 
 def test_a_static_scene_balances_and_tells_what_it_found(static):
     result, seen = static
-    found = result.as_dict()
+    found = result.to_dict()
     json.dumps(found, allow_nan=False)
     balls, model = found["equilibrium"]["balls"], found["model"]
     # Newton's residual is 1e-7 of the forces.
@@ -94,9 +94,9 @@ def test_the_screen_names_all_peak_pressures_and_tells_how_good_the_balance_is(s
     from raceway.commands.screen.result import run_screen
 
     console = Console(width=200, record=True, file=io.StringIO())
-    console.print(run_screen(static[0].as_dict(), ()))
+    console.print(run_screen(static[0].to_dict(), ()))
     text = console.export_text()
-    ball = max(static[0].as_dict()["equilibrium"]["balls"], key=lambda one: one["load_inner_n"])
+    ball = max(static[0].to_dict()["equilibrium"]["balls"], key=lambda one: one["load_inner_n"])
     for key, word in (("points_inner", "points"), ("nodal_inner", "nodal"), ("inner", "by Hertz")):
         assert f"{1e-6 * ball[f'peak_pressure_{key}_pa']:.0f} MPa {word}" in text
     for row in ("penetration share", "unbalanced force", "energies", "hourglass"):
@@ -109,8 +109,8 @@ def test_an_hourglass_coefficient_without_hourglass_modes_is_told():
 
 
 def test_a_bed_under_the_outer_ring_yields_under_the_load(static):
-    bed = run(scene(supports={"outer_seat": 1e12})).as_dict()
-    held = static[0].as_dict()
+    bed = run(scene(supports={"outer_seat": 1e12})).to_dict()
+    held = static[0].to_dict()
     assert bed["model"]["reaction_n"]["x"] == pytest.approx(-2500.0, rel=1e-5)  # Newton's residual, as above
     # The ring slides by the load over the bed's stiffness on the whole cylinder at least (62 mm by 16 mm), and widens besides.
     slide = 2500.0 / (1e12 * np.pi * 0.062 * 0.016)
@@ -169,7 +169,7 @@ def test_a_motion_on_an_orbit_starts_as_it_goes_on():
 @pytest.mark.parametrize("kind", ["newmark", "generalized_alpha"])
 def test_implicit_steps_run_from_the_scene(kind):
     """Series of equilibria and the tangent run in the matrix."""
-    found = run(scene(**EXCITED, integrator={"kind": kind, "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})).as_dict()
+    found = run(scene(**EXCITED, integrator={"kind": kind, "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})).to_dict()
     json.dumps(found, allow_nan=False)
     assert found["identification"]["equivalent_stiffness"] > 1e7
     # Eight steps a turn: the balance is that of the trapezoidal rule, some percent.
@@ -179,7 +179,7 @@ def test_implicit_steps_run_from_the_scene(kind):
 
 
 def test_explicit_steps_run_from_the_scene():
-    found = run(scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"})).as_dict()
+    found = run(scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"})).to_dict()
     json.dumps(found, allow_nan=False)
     steps, stability = found["cost"]["steps"], found["stability"]
     # By itself a run takes 0.8 of the stable step of elements and contacts, in whole multiples of 360 steps a turn.
@@ -197,8 +197,8 @@ def test_a_step_above_the_stable_limit_is_refused_with_the_limit():
 
 
 def test_a_held_axial_displacement_is_that_of_the_axial_load_alone(static):
-    alone = static[0].as_dict()["equilibrium"]
-    found = run(scene(load={"axial": 2500.0, "radial": [500.0, 0.0]}, supports={"axial": "displacement"})).as_dict()
+    alone = static[0].to_dict()["equilibrium"]
+    found = run(scene(load={"axial": 2500.0, "radial": [500.0, 0.0]}, supports={"axial": "displacement"})).to_dict()
     held = found["equilibrium"]["displacement"]
     assert held["x"] == pytest.approx(alone["displacement"]["x"], rel=1e-6)  # Newton's tolerance
     assert held["y"] > 0.0
@@ -212,16 +212,16 @@ def test_a_held_axial_displacement_is_that_of_the_axial_load_alone(static):
 @pytest.mark.parametrize("kinematics", [{"spin_speed_rpm": 40000.0}, {"radial_expansion": 1e-6}])
 def test_a_held_axial_displacement_is_that_of_the_mounted_bearing(static, kinematics):
     """What presses the turning or grown bearing comes after it: the same place, another force."""
-    alone = static[0].as_dict()["equilibrium"]
-    found = run(scene(kinematics=kinematics, supports={"axial": "displacement"})).as_dict()["equilibrium"]
+    alone = static[0].to_dict()["equilibrium"]
+    found = run(scene(kinematics=kinematics, supports={"axial": "displacement"})).to_dict()["equilibrium"]
     assert found["displacement"]["x"] == pytest.approx(alone["displacement"]["x"], rel=1e-6)
     assert found["held_axial"]["mounted_n"] == 2500.0
     assert found["held_axial"]["running_n"] > 2525.0
 
 
 def test_a_larger_inner_raceway_moves_less_for_the_same_load(static):
-    before = static[0].as_dict()
-    found = run(scene(kinematics={"radial_expansion": 1e-6})).as_dict()
+    before = static[0].to_dict()
+    found = run(scene(kinematics={"radial_expansion": 1e-6})).to_dict()
     moved = found["equilibrium"]["displacement"]["x"] - before["equilibrium"]["displacement"]["x"]
     rigid = [one["model"]["rigid_rings"]["displacement"]["x"] for one in (found, before)]
     # Geometry decides, -cot(contact angle) to first order; the stiffness of contact and mesh enters with a tenth of that,

@@ -120,7 +120,7 @@ def test_k_shows_the_digits_that_its_error_leaves():
 def test_the_error_of_k_is_that_of_z_where_the_inertia_cancels_it():
     tables = _near_resonance(start="static", turns=6)
     tables["rotor"] = {"mass": 1000.0}  # |Z| is six times K
-    found = run(scene_from_dict(tables)).as_dict()
+    found = run(scene_from_dict(tables)).to_dict()
     k, z = found["identification"], found["identification"]["dynamic_stiffness"]
     assert k["equivalent_stiffness_error"] == pytest.approx(found["error"]["total"] * z["abs"])
     assert k["equivalent_stiffness_error"] > 5.0 * found["error"]["total"] * k["equivalent_stiffness"]

@@ -27,7 +27,7 @@ RUNNING = [path for path in sorted(FOLDER.glob("*.toml")) if path.stem not in ME
 
 @pytest.mark.parametrize("path", RUNNING, ids=lambda path: path.stem)
 def test_example_runs(path):
-    result = run(load_scene(path)).as_dict()
+    result = run(load_scene(path)).to_dict()
     json.dumps(result, allow_nan=False)
     assert result["stability"]["status"] == "completed"
     found = result["identification"]
@@ -57,7 +57,7 @@ def test_the_elastic_examples_answer_what_condensed_bodies_do():
     """
     coarse = load_scene(FOLDER / "b7206_elastic_coarse.toml")
     condensed = attrs.evolve(coarse, bodies=Condensed(), mesh=None)
-    elastic, other = (run(scene).as_dict() for scene in (coarse, condensed))
+    elastic, other = (run(scene).to_dict() for scene in (coarse, condensed))
     for i in range(3):
         assert elastic["equilibrium"]["stiffness"][i][i] == pytest.approx(other["equilibrium"]["stiffness"][i][i], rel=0.018)
     assert elastic["warnings"] == []

@@ -29,7 +29,7 @@ def test_same_numbers_through_run():
     from raceway.pipeline.run import run
     from validation.scenes import rotating
 
-    result = run(scene_from_dict(rotating(1000.0, "locked", 12000.0, False, "quasi_static"))).as_dict()
+    result = run(scene_from_dict(rotating(1000.0, "locked", 12000.0, False, "quasi_static"))).to_dict()
     found = result["identification"]["equivalent_stiffness"]
     # The load turns past all azimuths: between balls and towards a ball differ by less than 0.1 % here.
     assert found == pytest.approx(secant(1000.0, "locked", 12000.0, False), rel=1e-3)

@@ -27,7 +27,7 @@ def test_the_largest_penetration_is_hertz_s_approach_at_the_largest_load():
     # and the softer race approaches more.
     softer = max(float(e.approach(counts["peak_contact_force_n"])) for e in (result.model.inner, result.model.outer))
     # Dashpots and centrifugal force set the forces of the two races apart by some newtons of 800.
-    assert result.as_dict()["stability"]["max_penetration_m"] == pytest.approx(softer, rel=0.03)
+    assert result.to_dict()["stability"]["max_penetration_m"] == pytest.approx(softer, rel=0.03)
 
 
 def test_the_stable_limit_is_that_of_the_orbit_where_it_is_stiffer_than_the_equilibrium(built):

@@ -52,7 +52,7 @@ def result_keys():
         elif isinstance(value, list) and value:
             yield from inside(value[0], f"{path}[]")
 
-    return set(inside(run(load_scene(ARTICLE, ["integrator.turns=2"])).as_dict(), ""))
+    return set(inside(run(load_scene(ARTICLE, ["integrator.turns=2"])).to_dict(), ""))
 
 
 def can_be_imported(name):

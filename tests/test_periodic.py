@@ -309,7 +309,7 @@ def test_a_run_up_is_refused():
 
 
 def test_the_result_tells_the_multipliers():
-    content = json.loads(json.dumps(solved(scene()).as_dict(), allow_nan=False))
+    content = json.loads(json.dumps(solved(scene()).to_dict(), allow_nan=False))
     fate = content["stability"]["floquet"]
     assert len(fate["multipliers"]) == 6
     assert fate["verdict"] == "neutral"  # next to no damping

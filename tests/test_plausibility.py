@@ -67,7 +67,7 @@ def test_a_moment_on_locked_tilts_has_no_effect_and_says_so():
 
 
 def test_damping_comes_with_its_absolute_error():
-    found = computed(contact={"damping": 0.001}).as_dict()
+    found = computed(contact={"damping": 0.001}).to_dict()
     table, total = found["identification"], found["error"]["total"]
     w = 2.0 * 3.141592653589793 * table["frequency_hz"]
     assert table["equivalent_damping_error"] == pytest.approx(total * table["dynamic_stiffness"]["abs"] / w)

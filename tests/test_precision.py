@@ -60,7 +60,7 @@ def test_errors_fall_with_the_order_of_the_methods_and_in_the_order_of_theory(la
 
 
 def test_the_reference_is_more_accurate_than_the_rows_and_says_how(ladder):
-    content = ladder.as_dict()
+    content = ladder.to_dict()
     assert content["reference"]["error"] < 0.1 * min(row["error"] for row in content["rows"])
     assert "extrapolated" in content["reference"]["how"] or "steady orbit" in content["reference"]["how"]
     assert not any(row["at_bound"] for row in content["rows"])
@@ -70,7 +70,7 @@ def test_the_reference_is_more_accurate_than_the_rows_and_says_how(ladder):
 
 
 def test_the_front_falls_and_the_cheapest_are_on_it(ladder):
-    content = ladder.as_dict()
+    content = ladder.to_dict()
     front = [content["rows"][place] for place in content["front"]]
     times, errors = [row["time_s"] for row in front], [row["error"] for row in front]
     assert times == sorted(times) and errors == sorted(errors, reverse=True)
@@ -128,7 +128,7 @@ def test_finished_rows_survive_a_stop_and_are_reused(tmp_path):
     assert [row["reused"] for row in found.judged] == [True, True, False, False, False, False]
     again = precision(FEW, LADDER, repeats=1, store=store)
     assert all(row["reused"] for row in again.judged)
-    assert again.as_dict()["reference"] == found.as_dict()["reference"]
+    assert again.to_dict()["reference"] == found.to_dict()["reference"]
 
 
 def test_a_disk_that_takes_no_more_rows_does_not_stop_the_study(tmp_path):

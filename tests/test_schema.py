@@ -25,7 +25,7 @@ def test_it_is_a_valid_schema():
 def test_examples_fit(path):
     tables = tomllib.loads(path.read_text(encoding="utf-8"))
     assert [error.message for error in CHECK.iter_errors(tables)] == []
-    assert [error.message for error in CHECK.iter_errors(load_scene(path).as_dict())] == []
+    assert [error.message for error in CHECK.iter_errors(load_scene(path).to_dict())] == []
 
 
 def test_every_installed_plug_in_has_a_branch_with_its_options():

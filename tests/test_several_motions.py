@@ -50,7 +50,7 @@ def test_the_stable_motion_beyond_a_fold():
 def test_two_stable_motions_are_told(kind):
     """80 kg: between the folds."""
     result = solved(heavy(80.0, kind=kind))
-    told = result.as_dict()["motion"]["orbits"]
+    told = result.to_dict()["motion"]["orbits"]
     lasting = [one for one in told if one["stable"]]
     assert len(lasting) == 2 and len(told) == 3
     assert [one["taken"] for one in told] == [True, False, False]
@@ -58,7 +58,7 @@ def test_two_stable_motions_are_told(kind):
     assert min(one["multiplier"] for one in told if not one["stable"]) > 1.2
     assert any("2 steady motions" in text for text in result.warnings)
     with (console := Console(width=200, file=StringIO())).capture() as shown:
-        console.print(run_screen(result.as_dict(), []))
+        console.print(run_screen(result.to_dict(), []))
     words = shown.get()
     assert "Steady motions that were found" in words and "-7.548 + 7.854j" in words
 

@@ -81,7 +81,7 @@ def test_a_grid_is_numbered_like_its_product_and_cut_into_chains_of_neighbours()
     for chain in chains:
         alike = {(design.point(n)["load.axial"], design.point(n)["supports.tilt"]) for n in chain}
         assert len(alike) == 1 and len(chain) <= 4
-    assert Design.from_dict(json.loads(json.dumps(design.as_dict()))) == design
+    assert Design.from_dict(json.loads(json.dumps(design.to_dict()))) == design
     assert list(grid(["a.b=x,y"]).chains(4)) == [[0, 1]]
 
 

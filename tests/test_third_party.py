@@ -52,7 +52,7 @@ scenes = {
 }
 answers = {}
 for name, tables in scenes.items():
-    result = run(scene_from_dict(tables)).as_dict()
+    result = run(scene_from_dict(tables)).to_dict()
     found = result["identification"]
     answers[name] = {
         "k": found["equivalent_stiffness"], "c": found["equivalent_damping"], "plugins": result["environment"]["plugins"],
@@ -83,7 +83,7 @@ def test_installed_plugins_conform(installed):
     code = """
 import json
 from raceway.testing import check_named
-found = [check_named(name).as_dict() for name in ("hunt_crossley", "excitation:two_frequency", "bodies:cylindrical_rollers")]
+found = [check_named(name).to_dict() for name in ("hunt_crossley", "excitation:two_frequency", "bodies:cylindrical_rollers")]
 print(json.dumps(found))
 """
     for conformity in python(installed, code):

@@ -29,7 +29,7 @@ def test_every_case_keeps_the_tolerance_of_its_source():
 
 
 def test_as_dict_is_what_scripts_rely_on():
-    table = verify(only="masta-dgbb-5").as_dict()
+    table = verify(only="masta-dgbb-5").to_dict()
     assert json.loads(json.dumps(table, allow_nan=False)) == table
     assert table["passed"] is True and table["kept"] == {"published": {"within": 3, "of": 3}}
     assert len(table["rows"]) == 3
@@ -97,7 +97,7 @@ def test_a_solver_that_fails_is_a_row_with_its_reason(monkeypatch):
     found = verify(only="masta-dgbb-1")
     assert not found.passed
     assert "no static equilibrium" in found.rows[0].note
-    assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["rows"][0]["computed"] is None
+    assert json.loads(json.dumps(found.to_dict(), allow_nan=False))["rows"][0]["computed"] is None
 
 
 def test_a_number_that_is_not_finite_is_a_row_without_one(monkeypatch):

@@ -94,7 +94,7 @@ def check(tables: dict[str, Any]) -> tuple[Scene | None, Plan | None, str]:
     try:
         scene = scene_from_dict(tables)
         plan = make_plan(scene)
-        json.dumps(plan.as_dict(), allow_nan=False)
+        json.dumps(plan.to_dict(), allow_nan=False)
         mistakes = foreseen(scene)
         implausible(scene)
     except RacewayError as error:

@@ -187,7 +187,7 @@ def outcome(tables: Tables) -> str:
 
 def refuse_nan(result: Result) -> None:
     """Raise ``AssertionError`` for a number that is none, in arrays too: result.json has null where arrays have NaN."""
-    json.dumps(result.as_dict(), allow_nan=False)
+    json.dumps(result.to_dict(), allow_nan=False)
     still = result.equilibrium
     arrays = {"equilibrium": still.displacement, "tangent": still.stiffness, "ball loads": still.contact_force}
     if result.identification is not None:

@@ -23,7 +23,7 @@ PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures"
 
 def rows() -> list[Row]:
     found = compare(read_toml("examples/b7206.toml"), VARY)
-    content = found.as_dict()
+    content = found.to_dict()
     runs = content["rows"]
     failed = [row for row in runs if "identification" not in row["result"]]
     out = [Row("runs with a dynamic stiffness", f"{len(runs) - len(failed)} of {len(runs)}", "all", not failed, COMMAND)]

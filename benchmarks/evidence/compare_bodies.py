@@ -21,7 +21,7 @@ PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "condense
 def rows() -> list[Row]:
     found = compare(read_toml(SCENE), VARY)
     stiffness = _stiffness(found)
-    failed = len(found.as_dict()["rows"]) - len(stiffness)
+    failed = len(found.to_dict()["rows"]) - len(stiffness)
     out = [
         Row("runs with a dynamic stiffness", f"{len(stiffness)} of {len(stiffness) + failed}", "all", not failed, COMMAND)
     ]
@@ -55,7 +55,7 @@ def _on_beds() -> dict[str, object]:
 def _stiffness(found: Comparison) -> dict[tuple[str, str, float], float]:
     """K [N/m] by kind of bodies, tilt and speed."""
     out = {}
-    for row in found.as_dict()["rows"]:
+    for row in found.to_dict()["rows"]:
         point, result = row["point"], row["result"]
         if "identification" in result:
             key = point.get("bodies.kind", "condensed"), point["supports.tilt"], float(point["excitation.speed_rpm"])

@@ -88,7 +88,7 @@ def _run(points: int | None, **changes: Any) -> tuple[dict[str, Any], float]:
     for name, table in changes.items():
         made[name] = {**made.get(name, {}), **table}
     begin = time.process_time()
-    found = run(scene_from_dict(made)).as_dict()
+    found = run(scene_from_dict(made)).to_dict()
     return found, time.process_time() - begin
 
 

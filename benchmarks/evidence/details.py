@@ -30,11 +30,11 @@ def _scene(**tables: object) -> dict[str, object]:
 def _penalty() -> list[Row]:
     command = "raceway run examples/b7206.toml --set contact.kind=penalty"
     stiff = run(scene_from_dict(_scene(contact={"kind": "penalty", "stiffness": _PENALTY})))
-    ball = stiff.as_dict()["equilibrium"]["balls"][0]
+    ball = stiff.to_dict()["equilibrium"]["balls"][0]
     own = _PENALTY * -float(stiff.equilibrium.gap[0])
     hertz = 1e-6 * float(stiff.model.inner.peak_pressure(ball["load_inner_n"]))
     plain = run(scene_from_dict(_scene()))
-    load = plain.as_dict()["equilibrium"]["balls"][0]["load_inner_n"]
+    load = plain.to_dict()["equilibrium"]["balls"][0]["load_inner_n"]
     found = run(scene_from_dict(_scene(contact={"kind": "penalty", "calibrate_at": load}))).error["contact"]
     words = "penalty, rigid bodies: error.contact where its approach is Hertz's"
     return [
@@ -88,7 +88,7 @@ def _example() -> list[Row]:
     name = "examples/b7206_elastic.toml"
     scene = load_scene(ROOT / name)
     condensed = evolve(scene, bodies=Condensed(), mesh=None)
-    found, other = (run(each).as_dict() for each in (scene, condensed))
+    found, other = (run(each).to_dict() for each in (scene, condensed))
     kyy, expected = (each["equilibrium"]["stiffness"][1][1] for each in (found, other))
     pressure, hertz = (each["equilibrium"]["balls"][0]["peak_pressure_inner_pa"] for each in (found, other))
     command = f"raceway run {name}"

@@ -89,7 +89,7 @@ def _bearing() -> list[Row]:
     from raceway.pipeline.run import run
 
     begin = time.process_time()
-    result = run(load_scene(ROOT / SCENE)).as_dict()
+    result = run(load_scene(ROOT / SCENE)).to_dict()
     cpu = time.process_time() - begin
     found, balls = result["equilibrium"], result["equilibrium"]["balls"]
     inner = np.array([ball["load_inner_n"] for ball in balls])

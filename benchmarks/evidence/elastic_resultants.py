@@ -145,9 +145,9 @@ def _half(mesh: tuple[float, int, int]) -> dict[str, Any]:
 def _moving(integrator: str) -> list[Row]:
     of: dict[str, Any] = {**EXCITED, "integrator": {"kind": integrator, "turns": 2, "steps_per_turn": 60}}
     begin = time.process_time()
-    found = run(scene_from_dict(elastic(COARSEST, **of))).as_dict()
+    found = run(scene_from_dict(elastic(COARSEST, **of))).to_dict()
     cpu = time.process_time() - begin
-    expected = run(scene_from_dict(tables(**CONDENSED, **of))).as_dict()
+    expected = run(scene_from_dict(tables(**CONDENSED, **of))).to_dict()
     one, other = (each["identification"]["equivalent_stiffness"] for each in (found, expected))
     quantity = f"dynamic stiffness at 12 000 r/min, {integrator}, coarsest mesh: difference from condensed bodies"
     note = f"{1e-6 * one:.1f} and {1e-6 * other:.1f} N/um; {found['cost']['steps']} steps, {cpu:.0f} CPU-s"

@@ -73,7 +73,7 @@ def fourier_value(tables: dict[str, Any]) -> complex | None:
 
 def motions(result: Result) -> list[complex]:
     """Z of each steady motion that a result lists."""
-    listed = [one["dynamic_stiffness"] for one in result.as_dict()["motion"]["orbits"]]
+    listed = [one["dynamic_stiffness"] for one in result.to_dict()["motion"]["orbits"]]
     return [complex(one["real"], one["imag"]) for one in listed]
 
 
@@ -94,7 +94,7 @@ def start_rows(count: int, seed: int) -> list[Row]:
         estimate = result.error["total"]
         error = abs(found.dynamic_stiffness - wanted) / abs(wanted)
         of_k = abs(found.equivalent_stiffness - true.equivalent_stiffness)
-        stated = result.as_dict()["identification"]["equivalent_stiffness_error"]
+        stated = result.to_dict()["identification"]["equivalent_stiffness_error"]
         judged.append((np.nan, error, np.nan) if estimate is None else (estimate, error, of_k / stated))
         if len(judged) % 10 == 0:
             other = fourier_value(one.tables)

@@ -27,7 +27,7 @@ THEORY = {"central_difference": 0.5, "newmark": 1.0}
 
 def rows() -> list[Row]:
     study = precision(read_toml(SCENE), repeats=5)
-    content = study.as_dict()
+    content = study.to_dict()
     base = [row for row in content["rows"] if row["base"] and row["error"] is not None]
     reference = content["reference"]
     direct = [row for row in base if row["family"] == "steady orbit"]

@@ -51,7 +51,7 @@ def _pairs() -> list[Row]:
         result = _pair(excitation=excitation)
         found, running = result.identification, row(rpm)
         expected = secant(running, None, 2, found.mass_used, found.speed, x)
-        preload = result.as_dict()["equilibrium"]["preload"]["running_n"]
+        preload = result.to_dict()["equilibrium"]["preload"]["running_n"]
         note = f"{1e-6 * found.equivalent_stiffness:.2f} against {1e-6 * expected:.2f} N/um; preload {preload:.1f} N"
         name = f"DB pair, 300 N mounted, {rpm:g} r/min: error of K"
         out.append(below(name, _off(found.equivalent_stiffness, expected), _LIMIT, MOUNTED, note))

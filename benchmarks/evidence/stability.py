@@ -23,7 +23,7 @@ _SECONDS = 480.0
 
 def rows() -> list[Row]:
     study = stability()
-    content = study.as_dict()
+    content = study.to_dict()
     wall = f"wall time {content['seconds']:.0f} s, beside what else the cores did"
     study.write(FOLDER)
     found = content["rows"]

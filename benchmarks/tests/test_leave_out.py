@@ -32,7 +32,7 @@ system, record = surrogate(result.model.system), None if result.simulation is No
 shapes = {name: list(getattr(system, name).shape) for name in ("table", "law_params", "law_state", "scalars")}
 if record is not None:
     shapes |= {name: list(getattr(record, name).shape) for name in ("displacement", "gap", "ball")}
-print(json.dumps({"plan": result.model.plan.as_dict(), "loaded": sorted(sys.modules), "kernels": kernels, "shapes": shapes, "made": clock["compiled"] + clock["loaded"]}))
+print(json.dumps({"plan": result.model.plan.to_dict(), "loaded": sorted(sys.modules), "kernels": kernels, "shapes": shapes, "made": clock["compiled"] + clock["loaded"]}))
 """
 
 
@@ -66,7 +66,7 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     plan = make_plan(scene)
     compute(scene)  # compiles what is not in the cache yet: a process of its own has a time limit
     found = run(*changes)
-    expected = json.loads(json.dumps(plan.as_dict()))
+    expected = json.loads(json.dumps(plan.to_dict()))
     for one in (found["plan"], expected):
         one.pop("predicted_wall_s")  # each process times the machine
     assert found["plan"] == expected
@@ -105,7 +105,7 @@ def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrat
     scene = load_scene(ARTICLE, ELASTIC)
     compute(scene)  # as above
     found = run(*ELASTIC)
-    assert found["plan"] == json.loads(json.dumps(make_plan(scene).as_dict()))
+    assert found["plan"] == json.loads(json.dumps(make_plan(scene).to_dict()))
     for module in make_plan(scene).modules:
         assert (module.module in found["loaded"]) == module.needed, module
     assert {"raceway.bodies.condensed.compliances", "raceway.core.revolution"} <= set(found["loaded"])

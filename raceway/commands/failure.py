@@ -32,7 +32,7 @@ def save_failure(error: RacewayError, scene: Scene, folder: Path) -> list[Path]:
         "title": scene.title,
         "error": {"kind": type(error).__name__, "message": str(error)},
         "state": {name: array.tolist() for name, array in arrays.items()},
-        "scene": scene.as_dict(),
+        "scene": scene.to_dict(),
     }
     paths = [write_json(without_nan(content), folder / "failure.json")]
     if arrays:

@@ -73,7 +73,7 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
     from raceway.testing import check_named
 
     conformity = check_named(name, registry_with(plugins))
-    show(conformity.as_dict(), as_json, None, lambda: plugin_screen.conformity_screen(conformity))
+    show(conformity.to_dict(), as_json, None, lambda: plugin_screen.conformity_screen(conformity))
     return 0 if conformity.conforms else 1
 
 

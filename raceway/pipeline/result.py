@@ -27,7 +27,7 @@ SCHEMA = 1
 
 @attrs.frozen(eq=False)
 class Result:
-    """One run.  ``as_dict`` gives result.json; the arrays stay on the object.
+    """One run.  ``to_dict`` gives result.json; the arrays stay on the object.
 
     Attributes
     ----------
@@ -53,13 +53,13 @@ class Result:
     def title(self) -> str:
         return self.model.scene.title
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return without_nan(
             {
                 "schema": SCHEMA,
                 "title": self.title,
-                "scene": self.model.scene.as_dict(),
-                "plan": self.model.plan.as_dict(),
+                "scene": self.model.scene.to_dict(),
+                "plan": self.model.plan.to_dict(),
                 "equilibrium": equilibrium_table(self.model, self.equilibrium),
                 "identification": self._identification(),
                 "model": self.bodies,
@@ -135,7 +135,7 @@ class Result:
         RacewayError
             A folder that cannot be written.
         """
-        return write_json(self.as_dict(), folder / "result.json")
+        return write_json(self.to_dict(), folder / "result.json")
 
 
 def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:

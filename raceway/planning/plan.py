@@ -67,7 +67,7 @@ class Plan:
         """Whether a part is kept, by its name."""
         return any(one.part == part for one in self.kept)
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return {
             "kept": [attrs.asdict(p) for p in self.kept],
             "left_out": [attrs.asdict(p) for p in self.left_out],

@@ -303,7 +303,7 @@ class Scene:
         changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
         return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         """Every key of the scene file with its value, defaults too; loads again as the same scene."""
         tables: Tables = {"title": self.title}
         for name in TABLES:

@@ -265,7 +265,7 @@ class BodiesSuite(Suite):
     def test_run(self, bodies: BodiesKind) -> str:
         registry: Registry = registry_with(bodies)
         result = run(scene_of(bodies, registry=registry), registry)
-        told = json.loads(json.dumps(result.as_dict(), allow_nan=False))
+        told = json.loads(json.dumps(result.to_dict(), allow_nan=False))
         require(told["scene"]["bodies"]["kind"] == bodies.name, "result.json names another kind of bodies")
         stiffness = told["identification"]["equivalent_stiffness"]
         require(stiffness is not None and stiffness > 0.0, f"the stiffness is {stiffness} N/m")

@@ -37,7 +37,7 @@ class ReportSuite(Suite):
 
     @duty("the result is left untouched")
     def test_result_untouched(self, report: Report) -> None:
-        before = example_result().as_dict()
+        before = example_result().to_dict()
         with tempfile.TemporaryDirectory() as folder:
             report.write(example_result(), Path(folder))
-        require(example_result().as_dict() == before, "the result was changed")
+        require(example_result().to_dict() == before, "the result was changed")

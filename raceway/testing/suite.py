@@ -72,7 +72,7 @@ class Conformity:
     def conforms(self) -> bool:
         return bool(self.rows) and all(row.good for row in self.rows)
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return {
             "kind": self.kind,
             "name": self.name,

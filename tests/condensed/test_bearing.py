@@ -127,9 +127,9 @@ def test_a_result_tells_what_elasticity_does_and_how_sure_it_is():
     result = run(
         scene_from_dict(tables(excitation=ROTATING, rotor={"mass": 2.0}, integrator={"kind": "quasi_static", "turns": 1}))
     )
-    content = json.loads(json.dumps(result.as_dict(), allow_nan=False))
+    content = json.loads(json.dumps(result.to_dict(), allow_nan=False))
     model, error = content["model"], content["error"]
-    rigid = run(scene_from_dict(tables(bodies={"kind": "rigid"}))).as_dict()["equilibrium"]
+    rigid = run(scene_from_dict(tables(bodies={"kind": "rigid"}))).to_dict()["equilibrium"]
     assert model["rigid_rings"]["stiffness"] == pytest.approx(np.array(rigid["stiffness"]), rel=1e-9, abs=1e-3)
     assert model["rigid_rings"]["displacement"]["x"] == pytest.approx(rigid["displacement"]["x"], rel=1e-9)
     # Thin rings on rigid seats: stiffer by 5 and 8 % (physics.md, section 10).
@@ -207,6 +207,6 @@ def test_rings_that_lag_by_more_than_the_stated_error_are_told(speed_rpm, told):
         "excitation": {"kind": "bidirectional", "speed_rpm": speed_rpm, "amplitude": "constant", "force": 20.0},
     }  # fmt: skip
     result = run(scene_from_dict(tables))
-    lag = result.as_dict()["model"]["inertia"]["inner_supported_error"]
+    lag = result.to_dict()["model"]["inertia"]["inner_supported_error"]
     assert lag == pytest.approx((speed_rpm / 60.0 / 2140.0) ** 2, rel=0.05) and result.error["total"] < 2e-3
     assert any("inner ring follows at once" in text for text in result.warnings) is told

@@ -177,7 +177,7 @@ def test_energy_balances_with_friction(built):
 
 
 def test_friction_makes_damping_and_is_reported():
-    result = run(scene_from_dict(rubbing(0.03, turns=6))).as_dict()
+    result = run(scene_from_dict(rubbing(0.03, turns=6))).to_dict()
     found, stability = result["identification"], result["stability"]
     assert found["equivalent_damping"] > 1000.0
     assert stability["friction_energy_j"] > 0.0 and stability["energy_drift"] < 1e-3
@@ -187,7 +187,7 @@ def test_friction_makes_damping_and_is_reported():
         2.0 * np.pi * found["force_amplitude_n"] * found["forward_amplitude_m"] * np.sin(np.radians(found["phase_lag_deg"]))
     )
     assert stability["friction_energy_j"] == pytest.approx(6 * work, rel=0.1)
-    without = run(scene_from_dict(rubbing(0.0))).as_dict()
+    without = run(scene_from_dict(rubbing(0.0))).to_dict()
     assert without["stability"]["friction_energy_j"] is None
 
 

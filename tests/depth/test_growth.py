@@ -82,7 +82,7 @@ def test_an_expanded_ring_loads_its_balls(built):
 
 
 def test_growth_needs_the_bore(tables):
-    given = {k: v for k, v in scene_from_dict(tables()).as_dict()["bearing"].items() if k not in ("bore", "preset")}
+    given = {k: v for k, v in scene_from_dict(tables()).to_dict()["bearing"].items() if k not in ("bore", "preset")}
     scene = scene_from_dict({"bearing": given, "load": {"axial": 100.0}, "kinematics": {"ring_growth": True}})
     with pytest.raises(SceneError, match=r"kinematics\.ring_growth.*needs the bearing's `bore`"):
         make_plan(scene)

@@ -45,7 +45,7 @@ def test_offset_of_a_pair_stays_at_every_speed(rpm, told):
     expected = secant(running, None, 2, found.mass_used, found.speed, x)
     assert found.equivalent_stiffness == pytest.approx(expected, rel=TOLERANCE)
     assert told is None or 1e-6 * found.equivalent_stiffness == pytest.approx(told, rel=TOLERANCE)
-    preload = result.as_dict()["equilibrium"]["preload"]
+    preload = result.to_dict()["equilibrium"]["preload"]
     assert preload["mounted_n"] == 300.0
     assert preload["running_n"] == pytest.approx(axial(running, x), rel=TOLERANCE)
 
@@ -61,7 +61,7 @@ def test_growth_loads_a_pair(built, growth, told):
     assert now.stiffness[1, 1] == pytest.approx(tangent[1], rel=TOLERANCE)
     assert (now.stiffness[1, 1] > settle(built(**pair())).stiffness[1, 1]) == (growth > 0.0)
     if told is not None:
-        found = run(scene_from_dict(pair(kinematics={"radial_expansion": growth}))).as_dict()["equilibrium"]
+        found = run(scene_from_dict(pair(kinematics={"radial_expansion": growth}))).to_dict()["equilibrium"]
         values = 1e-6 * found["stiffness"][0][0], 1e-6 * found["stiffness"][1][1], found["preload"]["running_n"]
         assert values == pytest.approx(told, rel=TOLERANCE)
 
@@ -73,7 +73,7 @@ def test_a_held_displacement_is_that_of_the_mounted_bearing(rpm, growth):
         supports={"axial": "displacement"},
         kinematics={"spin_speed_rpm": rpm, "radial_expansion": growth},
     )
-    found = run(scene_from_dict(tables)).as_dict()["equilibrium"]
+    found = run(scene_from_dict(tables)).to_dict()["equilibrium"]
     running, x = row(rpm, growth), approach(row(), 400.0)
     force, tangent, _ = running(np.array([x, 0.0, 0.0, 0.0, 0.0]))
     assert found["displacement"]["x"] == pytest.approx(x, rel=TOLERANCE)
@@ -89,7 +89,7 @@ def test_a_spring_keeps_its_force(load):
     """The second row carries the spring's force, the first one the load with it, each as a single row would."""
     kinematics = {"spin_speed_rpm": 20000.0, "radial_expansion": 2e-6}
     result = run(scene_from_dict(pair("spring", kinematics=kinematics, load={"axial": load})))
-    found = result.as_dict()["equilibrium"]
+    found = result.to_dict()["equilibrium"]
     assert found["preload"]["rows_n"] == pytest.approx([300.0 + load, 300.0], rel=1e-8)
     assert found["preload"]["running_n"] == found["preload"]["mounted_n"] == 300.0
     running, tangent = row(20000.0, 2e-6), np.zeros(5)
@@ -204,5 +204,5 @@ def test_every_kind_of_bodies_is_mounted_at_standstill(built, bodies, kinematics
 def test_the_kind_of_no_preload_is_told_to_do_nothing():
     scene = scene_from_dict(b7206c(bearing={"preload_kind": "spring"}))
     assert any("preload_kind" in one for one in unused(scene))
-    found = run(scene).as_dict()["equilibrium"]
+    found = run(scene).to_dict()["equilibrium"]
     assert found["preload"] is None and found["held_axial"] is None

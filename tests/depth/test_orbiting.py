@@ -146,7 +146,7 @@ def test_a_series_of_equilibria_has_no_rates(built, damping):
 def test_lines_of_the_result():
     tables = scene(rotor={"mass": 2.0})
     tables["excitation"] = {"kind": "bidirectional", "speed_rpm": SPEED, "unbalance": 3e-4}
-    result = run(scene_from_dict(tables)).as_dict()
+    result = run(scene_from_dict(tables)).to_dict()
     found = {line["name"]: line for line in result["identification"]["lines"]}
     assert list(found) == ["1x", "2x", "3x", "ball pass", "2x ball pass"]
     assert found["1x"]["forward_m"] == pytest.approx(result["identification"]["forward_amplitude_m"], rel=1e-2)
@@ -161,14 +161,14 @@ def test_lines_of_the_result():
 def test_backward_whirl_has_a_backward_line():
     tables = b7206c(excitation={"kind": "bidirectional", "speed_rpm": SPEED, "unbalance": 3e-4, "whirl": "backward"})
     tables["integrator"] = {"turns": 3, "steps_per_turn": 120}
-    found = run(scene_from_dict(tables)).as_dict()["identification"]
+    found = run(scene_from_dict(tables)).to_dict()["identification"]
     assert found["backward_amplitude_m"] > 1e3 * found["forward_amplitude_m"]
     assert found["lines"][0]["backward_m"] == pytest.approx(found["backward_amplitude_m"], rel=1e-3)
 
 
 def test_lines_above_half_the_sampling_rate_are_left_out():
     tables = scene(turns=3, steps=16)
-    names = [line["name"] for line in run(scene_from_dict(tables)).as_dict()["identification"]["lines"]]
+    names = [line["name"] for line in run(scene_from_dict(tables)).to_dict()["identification"]["lines"]]
     assert "ball pass" in names and "2x ball pass" not in names
 
 

@@ -154,6 +154,6 @@ def test_bad_pairs_are_refused(tables, bearing, words):
 
 
 def test_a_pair_needs_a_distance(tables):
-    plain = {k: v for k, v in scene_from_dict(tables()).as_dict()["bearing"].items() if k not in ("width", "preset")}
+    plain = {k: v for k, v in scene_from_dict(tables()).to_dict()["bearing"].items() if k not in ("width", "preset")}
     with pytest.raises(SceneError, match="needs `row_distance`"):
         scene_from_dict({"bearing": {**plain, "arrangement": "DT"}, "load": {"axial": 100.0}})

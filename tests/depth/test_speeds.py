@@ -116,7 +116,7 @@ def test_error_of_a_fit_covers_its_distance_from_the_steady_motion(speeds):
     assert found.mass_used == one.mass_used
     # K and Z differ by the known m w^2 alone.
     wrong = abs(found.equivalent_stiffness - one.equivalent_stiffness)
-    assert wrong <= 1.001 * result.as_dict()["identification"]["equivalent_stiffness_error"]
+    assert wrong <= 1.001 * result.to_dict()["identification"]["equivalent_stiffness_error"]
     told = any("take identifier 'fft_1x' at each" in text for text in result.warnings)
     assert told == (result.error["identification"] > 0.05)
 
@@ -415,14 +415,14 @@ def test_every_window_of_a_run_up_states_its_error(tilt):
         result.model.scene.identifier.method.identify([result.simulation.record], None, result.model).series_error
     )
     assert (told < 5.0 * (own + result.error["time_step"])).all()
-    rows = result.as_dict()["identification"]["series"]
+    rows = result.to_dict()["identification"]["series"]
     assert [row["error"] for row in rows] == told.tolist()
     worst = rows[int(told.argmax())]["speed_rpm"]
     assert told.max() > (0.5 if tilt == "locked" else 0.05)
     assert any(f"(at {worst:.0f} r/min)" in text and "windows" in text for text in result.warnings)
     assert "of the last window alone" in result.error["how"]["total"]
     shown = Console(width=200, record=True, file=StringIO())
-    shown.print(run_screen(result.as_dict(), []))
+    shown.print(run_screen(result.to_dict(), []))
     assert f"at {worst:.6g} r/min; of {len(told)} windows" in shown.export_text()
 
 

@@ -55,7 +55,7 @@ def free():
 
 
 def test_a_static_scene_balances_and_tells_what_it_took_off(static):
-    found = static.as_dict()
+    found = static.to_dict()
     json.dumps(found, allow_nan=False)
     model, mesh = found["model"], found["model"]["mesh"]
     # Newton's residual is 1e-7 of the forces.
@@ -76,7 +76,7 @@ def test_a_static_scene_balances_and_tells_what_it_took_off(static):
 
 
 def test_each_ball_carries_the_same_to_both_rings_along_its_line(static):
-    found, equilibrium = static.as_dict()["equilibrium"], static.equilibrium
+    found, equilibrium = static.to_dict()["equilibrium"], static.equilibrium
     balls = found["balls"]
     for ball in balls:
         # Balls without centrifugal force; the ball's middle, where both forces act, is in balance: the residual.
@@ -140,14 +140,14 @@ def test_a_coarse_mesh_gives_what_condensed_bodies_give():
     coarse = run(scene_from_dict({**article, "bodies": TINY["bodies"], "mesh": mesh}))
     condensed = run(scene_from_dict({**article, "bodies": {"kind": "condensed"}}))
     rigid = run(scene_from_dict(article))
-    assert coarse.as_dict()["model"]["mesh"]["cells"] < 3000
+    assert coarse.to_dict()["model"]["mesh"]["cells"] < 3000
     ratio = coarse.equilibrium.displacement[:2] / condensed.equilibrium.displacement[:2]
     stiffness = np.diag(coarse.equilibrium.stiffness) / np.diag(condensed.equilibrium.stiffness)
     # What is taken off is known to 1 % of a contact's compliance (``replaced_uncertainty``), and both are calibrated on contacts at
     # surface points.  Deliberate fault: without ``- beyond[...]`` in ``resultant_contact`` kyy is 1.3 % too stiff.
     np.testing.assert_allclose(ratio, 1.0, atol=0.01)
     np.testing.assert_allclose(stiffness, 1.0, atol=0.01)
-    told = coarse.as_dict()
+    told = coarse.to_dict()
     mesh = told["model"]["mesh"]
     # What contacts at surface points have beyond depth matching: some 1 % of a contact's 6 to 8 nm/N.
     assert all(0.02e-9 < mesh[f"calibration_{race}_m_per_n"] < 0.2e-9 for race in ("inner", "outer"))
@@ -168,7 +168,7 @@ def test_the_screen_tells_of_the_bodies_and_of_no_points(static):
     from raceway.commands.screen.result import run_screen
 
     console = Console(width=200, record=True, file=io.StringIO())
-    console.print(run_screen(static.as_dict(), ()))
+    console.print(run_screen(static.to_dict(), ()))
     text = console.export_text()
     for words in ("contacts as resultants calibrated to Hertz", "unbalanced force", "energies"):
         assert words in text
@@ -179,8 +179,8 @@ def test_the_screen_tells_of_the_bodies_and_of_no_points(static):
 def test_implicit_steps_keep_the_energy_to_the_square_of_the_step():
     def drift(steps: int) -> float:
         found = run(scene(**EXCITED, integrator={"kind": "newmark", "turns": 1, "steps_per_turn": steps, "tolerance": 1e-6}))
-        stability = found.as_dict()["stability"]
-        assert stability["energies_j"]["contact"] > 0.0 and found.as_dict()["identification"]["equivalent_stiffness"] > 1e7
+        stability = found.to_dict()["stability"]
+        assert stability["energies_j"]["contact"] > 0.0 and found.to_dict()["identification"]["equivalent_stiffness"] > 1e7
         return float(stability["energy_drift"])
 
     coarse, fine = drift(32), drift(64)
@@ -190,15 +190,15 @@ def test_implicit_steps_keep_the_energy_to_the_square_of_the_step():
 
 def test_a_series_of_equilibria_gives_the_tangents_stiffness():
     step = {"kind": "quasi_static", "turns": 1, "steps_per_turn": 8, "tolerance": 1e-6}
-    series = run(scene(**EXCITED, integrator=step)).as_dict()["identification"]["equivalent_stiffness"]
-    tangent = run(scene(**EXCITED, identifier={"kind": "tangent"})).as_dict()["identification"]["equivalent_stiffness"]
+    series = run(scene(**EXCITED, integrator=step)).to_dict()["identification"]["equivalent_stiffness"]
+    tangent = run(scene(**EXCITED, identifier={"kind": "tangent"})).to_dict()["identification"]["equivalent_stiffness"]
     # 300 N of the 1000 N that each of three balls carries: a few percent of curvature.
     assert series == pytest.approx(tangent, rel=0.05)
 
 
 def test_explicit_steps_run_and_are_planned():
     wanted = scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"})
-    found = run(wanted).as_dict()
+    found = run(wanted).to_dict()
     steps, stability = found["cost"]["steps"], found["stability"]
     json.dumps(found, allow_nan=False)
     # By itself a run takes 0.8 of the stable step of elements and contacts, in whole multiples of 360 steps a turn.

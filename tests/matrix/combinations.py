@@ -182,7 +182,7 @@ def outcome(cell: Combination) -> Outcome | SceneError:
         raise AssertionError(f"{cell} failed: {failed}") from failed
     found = result.identification
     return Outcome(
-        json.dumps(result.as_dict(), allow_nan=False),
+        json.dumps(result.to_dict(), allow_nan=False),
         result.stability["energy_drift"],
         found.equivalent_stiffness,
         found.dynamic_stiffness,

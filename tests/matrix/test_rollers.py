@@ -64,7 +64,7 @@ def test_rollers_run_with_every_integrator_and_excitation(excitation, integrator
         # What no bodies run: a steady motion of a force that does not repeat.
         assert default_registry().find("integrator", integrator).plugin.steady and excitation == "run_up", str(found)
         return
-    assert "NaN" not in json.dumps(found.as_dict(), allow_nan=False)
+    assert "NaN" not in json.dumps(found.to_dict(), allow_nan=False)
     inertial = default_registry().find("integrator", integrator).plugin.inertial
     now, usual = found.identification, outcome(excitation, "newmark").identification
     assert now.equivalent_stiffness > 0.0

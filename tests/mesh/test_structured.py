@@ -167,8 +167,8 @@ def test_the_ball_load_comes_from_the_scene():
 
 def test_a_scene_with_a_mesh_tells_all_its_keys():
     scene = load_scene(EXAMPLES / "b7206_article_mesh.toml")
-    assert scene.as_dict()["mesh"]["growth"] == 1.35
-    assert scene_from_dict(scene.as_dict()).mesh == scene.mesh
+    assert scene.to_dict()["mesh"]["growth"] == 1.35
+    assert scene_from_dict(scene.to_dict()).mesh == scene.mesh
 
 
 @pytest.mark.parametrize(

@@ -154,7 +154,7 @@ def test_the_edge_of_the_groove_is_told_with_the_load():
 
 def test_the_result_tells_pressures_approaches_and_points(free):
     result = run(scene(supports={"tilt": "free"}))
-    ball = result.as_dict()["equilibrium"]["balls"][0]
+    ball = result.to_dict()["equilibrium"]["balls"][0]
     nodal, hertz = ball["peak_pressure_nodal_inner_pa"], ball["peak_pressure_inner_pa"]
     assert nodal == pytest.approx(hertz, rel=0.03)
     parts = [ball[f"approach_{part}inner_m"] for part in ("", "hertz_", "penetration_", "structural_")]

@@ -180,7 +180,7 @@ def test_points_agree_with_resultants_on_what_friction_does():
             contact=contact, integrator={"kind": "quasi_static", "turns": 2, "steps_per_turn": 24},
             **{**ROTATING, "excitation": {**ROTATING["excitation"], "force": 600.0}, "mesh": {} if "kind" in contact else ROTATING["mesh"]},
         )  # fmt: skip
-        found = run(case).as_dict()
+        found = run(case).to_dict()
         lost.append(found["stability"]["friction_energy_j"])
         stiffness.append(found["identification"]["equivalent_stiffness"])
     assert lost[0] > 0.0

@@ -126,7 +126,7 @@ def test_a_rectangle_is_the_ring_of_the_catalogue():
 
 def test_a_scene_with_a_polygon_loads_again_as_the_same():
     given = scene(inner_profile=INNER)
-    assert scene_from_dict(given.as_dict()).bearing == given.bearing
+    assert scene_from_dict(given.to_dict()).bearing == given.bearing
 
 
 @pytest.mark.parametrize(

@@ -104,7 +104,7 @@ def test_uneven_samples_and_a_speed_that_drifts(rig, held, state):
 def test_a_speed_alone_gives_k_without_c(rig, held, state):
     quiet = attrs.evolve(silent(Signals()), duration=0.25)
     found = identify(attrs.evolve(record(rig, response(rig, held, state, quiet), quiet, 1), key=None), rig, held)
-    content = found.as_dict()
+    content = found.to_dict()
     assert content["identification"]["equivalent_damping"] is None
     assert any("C is not identified" in text for text in content["warnings"])
     assert found.state.stiffness == pytest.approx(state.stiffness, rel=2e-3)

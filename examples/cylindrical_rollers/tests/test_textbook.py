@@ -145,7 +145,7 @@ def test_what_rollers_cannot_do_is_refused_by_its_key(table, keys, path):
 
 def test_a_run_says_whose_bodies_it_used():
     tables = {**raceway_cylindrical_rollers.CylindricalRollers.example_scene(), "bodies": TABLES["bodies"]}
-    told = run(scene_from_dict(tables, REGISTRY), REGISTRY).as_dict()
+    told = run(scene_from_dict(tables, REGISTRY), REGISTRY).to_dict()
     assert {p["name"]: p["distribution"] for p in told["environment"]["plugins"]}["cylindrical_rollers"].startswith(
         "raceway_cyl"
     )

@@ -64,7 +64,7 @@ class Floquet:
             return "pair"
         return "+1" if first.real > 0.0 else "-1"
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         """For result.json."""
         return {
             "multipliers": [{"real": float(m.real), "imag": float(m.imag), "abs": float(abs(m))} for m in self.multipliers],

@@ -66,7 +66,7 @@ def steady(
         "steps": refined.solved.path.intervals,
         "evaluations": refined.evaluations,
         "error": refined.error,
-        "floquet": {**found.fate.as_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": found.how},
+        "floquet": {**found.fate.to_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": found.how},
         "orbits": told,
         "warnings": warnings(found, told, tolerance),
     }

@@ -108,7 +108,7 @@ def article(given: ArticleOptions) -> int:
         with keeping("curves", kept):
             found = study(made, given.processes, kept, registry, given.plugins, progress)
         progress("writing", 0, 0)
-        content, files = found.as_dict(), list[str]()
+        content, files = found.to_dict(), list[str]()
         failed = attempt(lambda: write(found, folder, pictures, command), files) or found.fault
     if failed is None and all(row["status"] == "failed" for row in content["rows"]):
         failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")

@@ -61,7 +61,7 @@ class Trend:
         """Rounds to the printed digits: within half a unit of the last one."""
         return self.off is not None and self.off <= 0.5
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return {**attrs.asdict(self), "off_in_last_digits": self.off, "holds": self.holds}
 
 

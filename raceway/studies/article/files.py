@@ -32,7 +32,7 @@ def write(study: Article, folder: Path, pictures: bool = True, command: str = "r
     RacewayError
         matplotlib is missing, or a folder or disk that cannot be written.
     """
-    content = study.as_dict()
+    content = study.to_dict()
     files = [write_json(content, folder / "article.json")]
     files += [_csv(rows, folder / f"{name}.csv") for name, rows in _tables(study, content).items()]
     if pictures:

@@ -29,7 +29,7 @@ class Finding:
     value: float | None = None
     why: str = ""
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return {"at": dict(self.at), "holds": self.holds, "value": self.value, "why": self.why}
 
 

@@ -72,7 +72,7 @@ class Article:
         """How many motions were sought: steady orbits, and with friction transients."""
         return sum(map(len, [*self.curves.rows.values(), self.rig, *self.scan.values()]))
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         made = self.curves.design
         rows = [
@@ -90,8 +90,8 @@ class Article:
                 "bodies": made.bodies,
                 "friction": made.friction if len(made.frictions) > 1 else 0.0,
                 "friction_trends": causes.friction_trends(self.curves),
-                "verdicts": [one.as_dict() for one in self.verdicts],
-                "quasi_static": [one.as_dict() for one in self.trends],
+                "verdicts": [one.to_dict() for one in self.verdicts],
+                "quasi_static": [one.to_dict() for one in self.trends],
                 "static": self.static,
                 "rig": self.rig,
                 "causes": {f"{load:g}": dict(causes.one_at_a_time(self.curves, load)) for load in made.loads},

@@ -40,9 +40,9 @@ class Verdict:
     def words(self) -> str:
         return f"{self.kind} {self.region}" if self.region else self.kind
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         plain = attrs.asdict(self, filter=lambda field, _: field.name != "findings")
-        return {**plain, "verdict": self.words, "findings": [one.as_dict() for one in self.findings]}
+        return {**plain, "verdict": self.words, "findings": [one.to_dict() for one in self.findings]}
 
 
 def judge(number: str, claim: str, rule: str, computed: str, findings: Sequence[Finding]) -> Verdict:

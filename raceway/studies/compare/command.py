@@ -68,7 +68,7 @@ def compare(
             if not stop.partial.rows:
                 raise
             comparison, stopped = stop.partial, stop  # what is finished is shown and written first
-    content = comparison.as_dict()
+    content = comparison.to_dict()
     files: list[str] = []
     failed = attempt(lambda: [write_json(content, folder / "compare.json")], files) or comparison.fault
     if pictures and failed is None and stopped is None:

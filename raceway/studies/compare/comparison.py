@@ -24,11 +24,11 @@ class Comparison(Findings):
     def words(self) -> list[str]:
         return explain(self)
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         return {
             "title": self.title,
-            "axes": [axis.as_dict() for axis in self.axes],
+            "axes": [axis.to_dict() for axis in self.axes],
             "rows": [{"point": row.point, "result": row.result, "doubt": row.doubt} for row in self.rows],
             "effects": self.effects,
             "held": self.held,
@@ -51,7 +51,7 @@ class Comparison(Findings):
         """
         from raceway.studies.compare.picture import ComparisonPicture
 
-        return ComparisonPicture().write(self.as_dict(), folder)
+        return ComparisonPicture().write(self.to_dict(), folder)
 
 
 def _screen_row(row: Row, names: dict[str, str], noted: bool) -> dict[str, str]:

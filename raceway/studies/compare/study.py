@@ -93,6 +93,6 @@ def _item(tables: ReadTables, registry: Registry) -> Item:
 
 def _result(tables: ReadTables, registry: Registry) -> Tables:
     try:
-        return run(scene_from_dict(tables, registry), registry).as_dict()
+        return run(scene_from_dict(tables, registry), registry).to_dict()
     except RacewayError as error:
         return {"status": "failed" if error.exit_code == 1 else "refused", "reason": str(error)}

@@ -32,7 +32,7 @@ class Axis:
     def ends(self) -> tuple[Any, Any]:
         return self.values[0], self.values[-1]
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return {"key": self.key, "values": list(self.values)}
 
 

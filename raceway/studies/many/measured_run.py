@@ -78,7 +78,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
         try:
             found = run(scene, registry)
             cpu = time.process_time() - cpu
-            result = found.as_dict()
+            result = found.to_dict()
         except RacewayError as error:
             status = "failed" if error.exit_code == 1 else "refused"
             return {

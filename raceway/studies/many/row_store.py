@@ -80,7 +80,7 @@ def row_key(scene: Scene, registry: Registry, extra: object = None, program: str
     ----------
     program : instead of ``program_key(registry)``
     """
-    return tables_key(scene.as_dict(), registry, extra, program, files_of(scene))
+    return tables_key(scene.to_dict(), registry, extra, program, files_of(scene))
 
 
 def tables_key(

@@ -99,7 +99,7 @@ def study_map(given: MapOptions) -> int:
         failed = attempt(lambda: write_data(found, folder), written)
         if pictures and failed is None:
             failed = attempt(lambda: write_pictures(found, folder), written)
-    content = {**found.as_dict(), "files": written}
+    content = {**found.to_dict(), "files": written}
     failed = failed or found.fault
     if failed is None and not any(row["status"] == "completed" for row in found.rows):
         failed = ConvergenceError(f"no point of the map gave a number; the first reason: {found.rows[0]['reason']}")

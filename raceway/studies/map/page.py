@@ -33,13 +33,13 @@ _UNITS = {
 
 def write_data(found: Map, folder: Path) -> list[Path]:
     """Write map.json and map.csv."""
-    content = without_nan(found.as_dict())
+    content = without_nan(found.to_dict())
     return [write_json(content, folder / "map.json"), write_whole(_csv(content).encode(), folder / "map.csv")]
 
 
 def write_pictures(found: Map, folder: Path) -> list[Path]:
     """Write map.html, and its figures as PNG files."""
-    content = without_nan(found.as_dict())
+    content = without_nan(found.to_dict())
     paths = [save_figure(draw(content), folder / name, 110) for name, (draw, _) in _drawn(content).items()]
     return [*paths, _page(content).write(folder / "map.html")]
 

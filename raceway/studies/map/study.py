@@ -41,7 +41,7 @@ class Map:
     words: list[str]
     fault: RacewayError | None = None
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         tables = self.design.tables
         return {

@@ -83,7 +83,7 @@ def identify(given: IdentifyOptions) -> int:
         from raceway.studies.measured.from_files import from_files
 
         found = from_files(given.signals, loaded, own, registry, given.slow_roll, vector, progress)
-    content, files = {"title": loaded.title, "file": str(given.signals), **found.as_dict()}, list[str]()
+    content, files = {"title": loaded.title, "file": str(given.signals), **found.to_dict()}, list[str]()
     failed = attempt(lambda: [write_json(content, folder / "identify.json")], files)
     if pictures and failed is None:
         from raceway.studies.measured.figures import write_figures

@@ -54,7 +54,7 @@ class Found:
         """Half-widths at 95 %, all causes together (4,): K [N/m] and C [N s/m] with the rig's tilt, then with it locked."""
         return np.sqrt(sum(part**2 for part in self.parts.values()))
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         """Tables for JSON."""
         state = self.state
         return without_nan(

@@ -79,7 +79,7 @@ def precision(given: PrecisionOptions) -> int:
 
         with keeping("rows", kept):
             found = study(tables, given.vary, given.reference, given.repeats, given.limit, kept, registry, progress)
-    content, files = found.as_dict(), list[str]()
+    content, files = found.to_dict(), list[str]()
     failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
     if failed is None:
         failed = verdict(content, found.converged, bool(given.reference))

@@ -150,7 +150,7 @@ def _base(tables: ReadTables, settings: list[Setting], registry: Registry) -> st
 
 def _physics(scene: Scene) -> str:
     inertial = not needs_motion(scene) or scene.integrator.method.inertial
-    content = {name: part for name, part in scene.as_dict().items() if name not in (*NUMERICAL, "title")}
+    content = {name: part for name, part in scene.to_dict().items() if name not in (*NUMERICAL, "title")}
     return json.dumps([content, inertial], sort_keys=True, default=str)
 
 

@@ -163,7 +163,7 @@ class Precision:
                 lines.append(f"model error: {words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
         return [*lines, *self.notes]
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         keep = (
             "family",
             "setting",
@@ -209,7 +209,7 @@ class Precision:
         """
         from raceway.studies.precision.picture import PrecisionReport
 
-        return PrecisionReport(picture=pictures).write(self.as_dict(), folder)
+        return PrecisionReport(picture=pictures).write(self.to_dict(), folder)
 
 
 def _reference_table(reference: Reference) -> Tables:

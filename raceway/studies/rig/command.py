@@ -62,7 +62,7 @@ def rig(
             from raceway.studies.rig.study import study
 
             found = study(loaded, own, registry, progress, kept)
-        content, files = found.as_dict(), list[str]()
+        content, files = found.to_dict(), list[str]()
         failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or found.fault
         if pictures and failed is None:
             from raceway.studies.rig.page import write_page

@@ -49,7 +49,7 @@ _ASSUMED = [
 
 def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     """Words, tables and figures."""
-    content = study.as_dict()
+    content = study.to_dict()
     worst, rows, own = content["worst"], content["rows"], study.rig
     out = Page(
         f"What a sensor beside a bearing tells of it: {study.title}", _rig_words(study), f"Raceway {__version__}, study rig"
@@ -105,7 +105,7 @@ def _signals(out: Page, study: RigStudy, drawn: dict[str, Figure]) -> None:
         [(drawn["error-split"], "dots of error for each cause on a logarithmic scale", "Error of K by its causes")],
         wide=True,
     )
-    out.table(*_split(study.as_dict()["rows"]), caption="Error of K [%] by one cause at a time")
+    out.table(*_split(study.to_dict()["rows"]), caption="Error of K [%] by one cause at a time")
 
 
 def _rig_words(study: RigStudy) -> str:

@@ -56,7 +56,7 @@ class Point:
     def name(self) -> str:
         return f"{self.state.speed * 30.0 / pi:.0f}rpm-{self.axial:.0f}N"
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         state, true = self.state, self.state.stiffness
         return {
             "speed_rpm": state.speed * 30.0 / pi,
@@ -87,7 +87,7 @@ class Point:
         }
 
     def _identified(self) -> Tables:
-        found, true = self.found.as_dict(), self.state.stiffness
+        found, true = self.found.to_dict(), self.state.stiffness
         uncertain = found["identification"]["equivalent_stiffness_error"] / true
         return {**found, "error": self.found.state.stiffness / true - 1.0, "relative_uncertainty": uncertain}
 
@@ -105,15 +105,15 @@ class RigStudy:
     failed: list[Tables]
     fault: RacewayError | None = None
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         """Everything but the signals, as plain tables for JSON."""
         return without_nan(
             {
                 "title": self.title,
-                "scene": self.scene.as_dict(),
+                "scene": self.scene.to_dict(),
                 "rig": {**attrs.asdict(self.rig), "mass_kg": self.rig.mass, "disc_mass_kg": self.rig.disc_mass},
                 "critical_speed_rpm": self.critical,
-                "rows": [point.as_dict() for point in self.points],
+                "rows": [point.to_dict() for point in self.points],
                 "failed": self.failed,
                 "worst": self.worst,
                 "worst_by_cause": self.worst_by_cause,

@@ -79,7 +79,7 @@ def stability(given: StabilityOptions) -> int:
 
         with keeping("cases", kept):
             found = study(tables, given.only, given.processes, kept, registry, given.plugins, progress)
-    content, files = found.as_dict(), list[str]()
+    content, files = found.to_dict(), list[str]()
     failed = attempt(lambda: found.write(folder), files) or found.fault
     from raceway.studies.stability.screen import stability_screen
 

@@ -139,7 +139,7 @@ def _radial(equilibrium: Equilibrium) -> float:
 
 def _carried(case: Case, load: float, result: Callable[[], Result]) -> Row:
     def reaction() -> Measured:
-        return -float(result().as_dict()["model"]["reaction_n"]["x"]), None
+        return -float(result().to_dict()["model"]["reaction_n"]["x"]), None
 
     balance = Near(1e-5, "an equilibrium of all nodes is solved to 1e-7 of its forces")
     return judged(case.name, case.arguments["shown"], "axial force on the outer seat [N]", balance, load, reaction)
@@ -155,7 +155,7 @@ def points_at_rest(case: Case, registry: Registry) -> list[Row]:
 
     def settled(axial: float) -> tuple[float, float, Result]:
         found = run(scene_at(a["tables"], {**a["changes"], "load.axial": axial}, registry), registry)
-        stored = found.as_dict()["model"]["energies_j"]
+        stored = found.to_dict()["model"]["energies_j"]
         return float(found.equilibrium.displacement[0]), stored["elastic"] + stored["contact"], found
 
     def slope() -> Measured:

@@ -53,7 +53,7 @@ class Stability:
     def failed(self) -> tuple[Row, ...]:
         return tuple(row for row in self.rows if row.verdict == FAILED)
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return {
             "title": self.title,
             "cases": self.cases,
@@ -75,7 +75,7 @@ class Stability:
         """
         from raceway.studies.stability.picture import StabilityReport
 
-        return StabilityReport().write(self.as_dict(), folder)
+        return StabilityReport().write(self.to_dict(), folder)
 
 
 def stability(

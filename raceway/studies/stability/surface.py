@@ -93,7 +93,7 @@ def condensed_at_rest(case: Case, registry: Registry) -> list[Row]:
     }
     found = run(scene_at(a["tables"], changes, registry), registry)
     known = run(scene_at(a["tables"], like, registry), registry)
-    balls = found.as_dict()["equilibrium"]["balls"]
+    balls = found.to_dict()["equilibrium"]["balls"]
     pressed = [b for b in balls if b["contact_angle_inner_deg"] is not None]
     axial = sum(b["load_inner_n"] * np.sin(np.radians(b["contact_angle_inner_deg"])) for b in pressed)
     close = Near(0.06, "two points along a semi-axis are off by percents; converged ones differ by 1 %")

@@ -129,7 +129,7 @@ def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | No
     content = {
         "title": store.title,
         "store": str(store.path),
-        "axes": [axis.as_dict() for axis in store.axes],
+        "axes": [axis.to_dict() for axis in store.axes],
         "states": states,
         "rows": [_row(row) for row in store.rows()] if as_json else [],
     }

@@ -86,9 +86,9 @@ class Design:
             return 0
         return max(range(len(self.axes)), key=lambda k: (self.axes[k].numeric, len(self.axes[k].values), k))
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         if self.axes:
-            return {"axes": [axis.as_dict() for axis in self.axes]}
+            return {"axes": [axis.to_dict() for axis in self.axes]}
         return {"points": list(self.listed)}
 
     @classmethod

@@ -70,8 +70,8 @@ def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path
     registry = registry_of(files)
     found = survey(tables, design, registry)
     facts = {
-        "scene": found.scene.as_dict(),
-        "design": design.as_dict(),
+        "scene": found.scene.to_dict(),
+        "design": design.to_dict(),
         "identity": identity(registry, found.used),
         "files": found.files,
     }

@@ -28,7 +28,7 @@ def verify(only: str | None, every: bool, as_json: bool) -> int:
         from raceway.studies.verify.study import verify as study
 
         verification = study(only, progress)
-    content = verification.as_dict()
+    content = verification.to_dict()
     from raceway.studies.verify.screen import verify_screen
 
     show(content, as_json, None, lambda: verify_screen(content, verification.passed, every))

@@ -86,7 +86,7 @@ class Verification:
                 found[row.case] = row
         return tuple(found.values())
 
-    def as_dict(self) -> Tables:
+    def to_dict(self) -> Tables:
         return {"passed": self.passed, "kept": self.kept, "rows": [attrs.asdict(row) for row in self.rows]}
 
 
