@@ -4,6 +4,7 @@ cli            the command line: ``raceway``
 commands       what all commands share: options, progress, screens, how a command ends
 studies        many runs made into one answer, a folder a study, each with its command
 testing        conformance suites for plug-ins; the scaffold of a new one
+front          what ``import raceway`` offers for one scene: run, plan, check, evolve
 pipeline       one run: equilibrium, motion, identification, error, result
 bodies         rings and balls: rigid, condensed or elastic; from scene and plan to a model
 planning       what a scene needs, what is left out, what it will cost
@@ -30,6 +31,10 @@ from typing import Any
 __version__ = "0.1.0"
 
 _PUBLIC = {
+    "run": "raceway.front.run",
+    "plan": "raceway.front.plan",
+    "check": "raceway.front.check",
+    "evolve": "raceway.front.evolve",
     "hookimpl": "raceway.framework.hookspecs",
     "load_scene": "raceway.scene.file",
     "scene_from_dict": "raceway.scene.file",

@@ -24,14 +24,15 @@ from raceway.commands.frame import (
     plugin_files,
     programs,
     record,
-    registry_with,
     show,
     show_progress,
 )
-from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults, writable
+from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults
 from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
 from raceway.commands.reports import chosen_reports, write_reports
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
 from raceway.studies.command import study
 from raceway.studies.compare.command import compare
 from raceway.studies.measured.command import identify
@@ -114,10 +115,10 @@ def run(given: RunOptions) -> int:
         require_matplotlib("leave out --pictures")
     tell_faults(registry)
     with show_progress() as progress:
-        from raceway.pipeline.run import run as compute
+        from raceway.front.run import run as compute
 
         try:
-            result = compute(loaded, registry, progress, patience=given.patience)
+            result = compute(loaded, progress=progress, patience=given.patience)
         except (ConvergenceError, BeyondPlanError) as error:
             _keep_state(error, loaded, folder)
             raise
@@ -151,11 +152,11 @@ def plan(
     Example:
       raceway plan examples/b7206.toml --set supports.tilt=free
     """
-    from raceway.planning.plan import make_plan
+    from raceway.front.plan import plan as planned
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    content = make_plan(loaded, registry=registry).to_dict()
+    content = planned(loaded).to_dict()
     tell_faults(registry)
     from raceway.commands.screen.plan import plan_screen
 
@@ -179,16 +180,14 @@ def check(
     Example:
       raceway check examples/b7206.toml --json
     """
-    from raceway.planning.implausible import foreseen, implausible
-    from raceway.planning.plan import make_plan
+    from raceway.front.check import check as checked
 
     registry = registry_with(plugins)
-    loaded = load(scene, changes, registry)
-    make_plan(loaded, registry=registry)
+    found = checked(load(scene, changes, registry))
     tell_faults(registry)
-    if mistakes := foreseen(loaded):
-        raise SceneError(mistakes)
-    for text in implausible(loaded):
+    if found.mistakes:
+        raise SceneError(found.mistakes)
+    for text in found.warnings:
         warn(text)
     if as_json:
         print_json({"errors": []})

@@ -302,7 +302,7 @@ def test_a_traceback_is_shown_only_when_asked_for():
 
 
 def test_a_fault_of_the_program_is_one_message(monkeypatch):
-    monkeypatch.setattr("raceway.planning.plan.make_plan", lambda scene, **_: 1 / 0)
+    monkeypatch.setattr("raceway.front.check.make_plan", lambda scene, **_: 1 / 0)
     found = invoke("check", ARTICLE)
     assert found.exit_code == 1
     assert "unexpected ZeroDivisionError" in found.stderr

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from raceway.bodies.model import build_model
-from raceway.commands.frame import registry_with
 from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.registry import default_registry
+from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.studies.stability import elastic, scenes

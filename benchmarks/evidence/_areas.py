@@ -29,7 +29,7 @@ AREAS = {
     "kernels": "core/jit core/signatures framework/plugin_kernel storage/kernel_files",
     "plan": "framework/probe pipeline/allowance planning",
     "scene": """
-        framework/options planning/implausible planning/unused scene/__init__ scene/catalogue scene/file scene/requires scene/structure
+        framework/options planning/implausible planning/unused scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
         scene/tables""",
     "article": "studies/article data/article",
     "compare": "studies/compare",
@@ -49,7 +49,7 @@ AREAS = {
         studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
         __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/higher_types framework/hookspecs framework/registry
-        framework/sources pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
+        framework/sources front pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
         storage/files storage/tables storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         studies/article/command studies/article/screen studies/compare/command studies/compare/screen studies/map/command
         studies/measured/command studies/precision/command studies/precision/screen studies/rig/command studies/rig/screen

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.evidence import Row, below
-from raceway.commands.frame import registry_with
+from raceway.framework.registry import registry_with
 from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.study import stability
 from raceway.studies.stability.workers import measure

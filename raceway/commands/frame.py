@@ -12,11 +12,9 @@ import click
 
 from raceway.commands.console import described, print_json, warn
 from raceway.errors import RacewayError
-from raceway.framework.registry import default_registry
 
 if TYPE_CHECKING:
     from raceway.commands.progress import ProgressBar
-    from raceway.framework.registry import Registry
 
 
 R = TypeVar("R")
@@ -63,20 +61,6 @@ programs = click.option(
     "--execute", multiple=True, type=click.Path(path_type=Path), metavar="FILE.geo", callback=_allow, expose_value=False,
     help="Execute this file of [mesh], a program of Gmsh; repeat for more.",
 )  # fmt: skip
-
-
-def registry_with(files: tuple[Path, ...]) -> Registry:
-    """The plug-ins of this process and those of one-off files.
-
-    Raises
-    ------
-    PluginError
-        A file that is missing, fails to import or adds nothing.
-    """
-    registry = default_registry()
-    for file in files:
-        registry.load_file(file)
-    return registry
 
 
 def on_scene(command: F) -> F:

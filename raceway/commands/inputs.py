@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import re
 import unicodedata
 from importlib.util import find_spec
@@ -16,6 +15,7 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
+    from raceway.scene.given import Given
     from raceway.scene.tables import Scene
 
 
@@ -62,22 +62,8 @@ def tell_faults(registry: Registry) -> None:
 
 def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Mistake]]:
     """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
-    from raceway.scene.file import parse_change, read_toml, titled, with_paths, with_value
-
-    if scene.is_dir():
-        inside = sorted(str(p) for p in scene.glob("*.toml"))
-        hint = f"; scenes in it: {', '.join(inside[:5])}" if inside else " without a scene (*.toml) in it"
-        raise SceneError.at(str(scene), None, f"is a folder{hint}")
-    tables = read_toml(scene)
-    mistakes: list[Mistake] = []
-    made: list[tuple[str, object]] = []
-    for change in changes:
-        try:
-            made.append(parse_change(change))
-            tables = with_value(tables, *made[-1])
-        except SceneError as error:
-            mistakes += [Mistake(f"--set {m.path}", m.value, m.message) for m in error.mistakes]
-    return with_paths(titled(tables, scene.stem, made), scene.parent, registry), mistakes
+    given, mistakes = _changed(scene, changes)
+    return given.plain(registry), mistakes
 
 
 def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
@@ -88,11 +74,9 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
     SceneError
         With the mistakes of both.
     """
-    from raceway.scene.file import scene_from_dict
-
-    tables, mistakes = changed_tables(scene, changes, registry)
+    given, mistakes = _changed(scene, changes)
     try:
-        loaded = scene_from_dict(tables, registry)
+        loaded = given.scene(registry)
     except SceneError as error:
         raise SceneError([*mistakes, *error.mistakes]) from None
     if mistakes:
@@ -100,27 +84,17 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
     return loaded
 
 
-def writable(folder: Path) -> Path:
-    """Refuse a folder that cannot be written before anything is computed; make nothing yet."""
-    place = folder
-    while not place.exists() and place != place.parent:
-        place = place.parent
-    if not place.is_dir():
-        raise RacewayError(
-            f"`{folder}` cannot be the folder of the results: `{place}` is a file. Choose another with --out."
-        )
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise RacewayError(f"`{folder}` cannot be written: no permission in `{place}`. Choose another folder with --out.")
-    if not folder.exists():
-        # A folder that cannot be made is refused now; an empty one is taken away again.
+def _changed(scene: Path, changes: tuple[str, ...]) -> tuple[Given, list[Mistake]]:
+    from raceway.scene.given import as_given
+
+    given = as_given(scene)
+    mistakes: list[Mistake] = []
+    for change in changes:
         try:
-            folder.mkdir(parents=True)
-            folder.rmdir()
-        except OSError as why:
-            raise RacewayError(
-                f"`{folder}` cannot be made: {why.strerror or why}. Choose another folder with --out."
-            ) from None
-    return folder
+            given = given.changed(change)
+        except SceneError as error:
+            mistakes += [Mistake(f"--set {m.path}", m.value, m.message) for m in error.mistakes]
+    return given, mistakes
 
 
 def require_matplotlib(otherwise: str) -> None:

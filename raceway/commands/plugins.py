@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from raceway.commands.console import print_json
-from raceway.commands.frame import common, plugin_files, registry_with, show
+from raceway.commands.frame import common, plugin_files, show
 from raceway.commands.inputs import faults
 from raceway.errors import RacewayError
-from raceway.framework.registry import default_registry
+from raceway.framework.registry import default_registry, registry_with
 
 
 @click.command(short_help="List what is installed, with options.")

@@ -12,7 +12,7 @@ exact set of third-party plug-ins to load), ``RACEWAY_TRACE`` (set: every hook c
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -326,3 +326,17 @@ def _trace(text: str) -> None:
 def default_registry() -> Registry:
     """The plug-ins of this process: built-ins and whatever is installed."""
     return Registry()
+
+
+def registry_with(files: Iterable[str | Path]) -> Registry:
+    """The plug-ins of this process and those of one-off files, which it keeps.
+
+    Raises
+    ------
+    PluginError
+        A file that is missing, fails to import or adds nothing.
+    """
+    registry = default_registry()
+    for file in files:
+        registry.load_file(file)
+    return registry

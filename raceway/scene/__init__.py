@@ -1,6 +1,7 @@
 """The scene: what the user said.
 
 tables      its tables as frozen attrs classes, SI
+given       a scene as the user gave it: file, text, dict or Scene, with changes
 file        TOML to scene, with ``--set`` changes
 structure   plain tables to attrs objects, strictly, every mistake with its path
 schema      JSON schema of a scene file

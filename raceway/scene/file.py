@@ -17,6 +17,7 @@ from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import preset
+from raceway.scene.given import Given
 from raceway.scene.requires import check_requires
 from raceway.scene.rig import Rig
 from raceway.scene.structure import structure
@@ -86,18 +87,27 @@ def read_toml(path: str | Path) -> Tables:
     except (OSError, UnicodeDecodeError) as why:
         reason = "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else why.strerror or str(why)
         raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+    return parse_toml(text, str(path))
+
+
+def parse_toml(text: str, name: str) -> Tables:
+    """The tables of a TOML text; ``name`` says in messages where it came from.
+
+    Raises
+    ------
+    SceneError
+        A text that is empty or malformed, with the line.
+    """
     if not text.strip():
-        raise SceneError.at(
-            str(path), None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)"
-        )
+        raise SceneError.at(name, None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as why:
-        raise SceneError.at(str(path), None, f"is not valid TOML: {why}") from None
+        raise SceneError.at(name, None, f"is not valid TOML: {why}") from None
     except RecursionError:
-        raise SceneError.at(str(path), None, "cannot be read: lists or tables are nested too deep") from None
+        raise SceneError.at(name, None, "cannot be read: lists or tables are nested too deep") from None
     except ValueError:  # Python's limit for the digits of an integer
-        raise SceneError.at(str(path), None, "cannot be read: a number has thousands of digits") from None
+        raise SceneError.at(name, None, "cannot be read: a number has thousands of digits") from None
 
 
 def _text(path: Path) -> str:
@@ -117,12 +127,8 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
     SceneError
         With every mistake that was found.
     """
-    tables, parsed = read_toml(path), [parse_change(change) for change in changes]
-    for key, value in parsed:
-        tables = with_value(tables, key, value)
-    tables = titled(tables, Path(path).stem, parsed)
-    registry = registry or default_registry()
-    return scene_from_dict(with_paths(tables, Path(path).parent, registry), registry)
+    given = Given(read_toml(path), Path(path).stem, Path(path).parent).changed(*changes)
+    return given.scene(registry or default_registry())
 
 
 def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
@@ -162,6 +168,8 @@ def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]])
 
 def _told(value: object) -> str:
     """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
+    if value is None:
+        return "none"
     if isinstance(value, str):
         return value
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
@@ -199,6 +207,15 @@ def with_value(tables: ReadTables, key: str, value: object) -> Tables:
     return result
 
 
+def without(tables: ReadTables, key: str) -> Tables:
+    """A copy of the tables without what stands at a dotted key; what is not there may be missing."""
+    name, _, rest = key.partition(".")
+    if not rest:
+        return {word: value for word, value in tables.items() if word != name}
+    inner = tables.get(name)
+    return {**tables, name: without(inner, rest)} if isinstance(inner, dict) else dict(tables)
+
+
 def scene_from_dict(
     tables: ReadTables, registry: Registry | None = None, known_parts: dict[Hashable, Any] | None = None
 ) -> Scene:
@@ -216,7 +233,8 @@ def scene_from_dict(
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    title, plain = _plain_tables(tables, registry, mistakes)
+    title, said = _known_tables(tables, registry, mistakes)
+    plain = {**said, "bearing": _with_preset(said["bearing"], mistakes)} if "bearing" in said else said
     parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 
@@ -244,11 +262,11 @@ def scene_from_dict(
             structure(plain[name], cls, name, mistakes)
     if mistakes:
         raise SceneError(mistakes)
-    return Scene(title=title, source=plain, **parts)
+    return Scene(title=title, source=plain, given=Given(said), **parts)
 
 
-def _plain_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
-    """Title, and a copy of the known tables with the bearing's preset in it."""
+def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
+    """Title, and a copy of the known tables."""
     known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "requires", "title"]
     for name in tables:
         if name not in known:
@@ -263,9 +281,7 @@ def _plain_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake
             mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
             plain[name] = {}
     check_requires(plain.get("requires", {}), registry, mistakes)
-    if "bearing" in plain:
-        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
-    else:
+    if "bearing" not in plain:
         mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
     return title, plain
 

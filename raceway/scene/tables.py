@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cache
 from math import acos, asin, cos, degrees, pi, radians, sin
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
@@ -25,7 +25,12 @@ from raceway.framework.options import (
     positive,
     word_or,
 )
-from raceway.storage.tables import Tables
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    import os
+
+    from raceway.scene.given import Given
 
 
 @attrs.frozen
@@ -272,7 +277,23 @@ class Identifying:
 
 @attrs.frozen
 class Scene:
-    """One scene; ``source`` is the tree of plain tables it was made from, presets resolved."""
+    """One scene: what is computed, in SI units, every key checked.
+
+    Attributes
+    ----------
+    title : str, says in its second line what was changed since it was read
+    bearing, supports, rotor, load, contact, kinematics, integrator, identifier : tables of the scene file
+    excitation, bodies, mesh : plug-ins with their options; excitation and mesh may be None
+    source : the tree of plain tables it was made from, presets resolved
+    given : what the user said, presets not resolved, from which ``with_`` goes on
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+    >>> scene.load.axial  # [N]
+    1000.0
+    """
 
     title: str
     bearing: Bearing
@@ -287,6 +308,72 @@ class Scene:
     integrator: Integration
     identifier: Identifying
     source: Tables = attrs.field(repr=False, eq=False)
+    given: Given | None = attrs.field(default=None, repr=False, eq=False)
+
+    @classmethod
+    def from_toml(cls, source: str | os.PathLike[str]) -> Scene:
+        """Read a scene from a TOML file, or from TOML text.
+
+        Parameters
+        ----------
+        source : path of a file (str or Path), or the text itself
+
+        Raises
+        ------
+        SceneError
+            With every mistake that was found.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> rw.Scene.from_toml('[bearing]\npreset = "B7206C"').bearing.ball_count
+        15
+        """
+        from raceway.scene.given import as_scene
+
+        return as_scene(source)
+
+    @classmethod
+    def from_dict(cls, tables: ReadTables) -> Scene:
+        """Read a scene from a dict of tables, as a TOML file would give them.
+
+        Raises
+        ------
+        SceneError
+            With every mistake that was found.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "supports": {"tilt": "free"}}).supports.tilt
+        'free'
+        """
+        from raceway.scene.given import as_scene
+
+        return as_scene(tables)
+
+    def with_(self, **tables: Any) -> Scene:
+        """This scene with some keys changed; the plug-ins of this process are known.
+
+        Parameters
+        ----------
+        tables : by name, each a dict that is merged into the table; None takes a table or key out
+
+        Raises
+        ------
+        SceneError
+            With every mistake that was found.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> scene = rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+        >>> scene.with_(load={"axial": 400.0}, supports={"tilt": "free"}).load.axial
+        400.0
+        """
+        from raceway.scene.given import as_scene
+
+        return as_scene(self, tables)
 
     @property
     def spin_speed(self) -> float:

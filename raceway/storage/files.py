@@ -46,3 +46,26 @@ def write_whole(content: bytes, path: Path) -> Path:
     with scratch_file(path, "Choose another folder with --out.") as scratch:
         scratch.write_bytes(content)
     return path
+
+
+def writable(folder: Path) -> Path:
+    """Refuse a folder that cannot be written before anything is computed; make nothing yet."""
+    place = folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    if not place.is_dir():
+        raise RacewayError(
+            f"`{folder}` cannot be the folder of the results: `{place}` is a file. Choose another with --out."
+        )
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise RacewayError(f"`{folder}` cannot be written: no permission in `{place}`. Choose another folder with --out.")
+    if not folder.exists():
+        # A folder that cannot be made is refused now; an empty one is taken away again.
+        try:
+            folder.mkdir(parents=True)
+            folder.rmdir()
+        except OSError as why:
+            raise RacewayError(
+                f"`{folder}` cannot be made: {why.strerror or why}. Choose another folder with --out."
+            ) from None
+    return folder

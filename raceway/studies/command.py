@@ -7,9 +7,8 @@ from pathlib import Path
 import click
 
 from raceway.commands.console import Commands
-from raceway.commands.frame import registry_with
 from raceway.errors import PluginError, RacewayError
-from raceway.framework.registry import default_registry
+from raceway.framework.registry import default_registry, registry_with
 from raceway.framework.sources import foreign_words
 
 

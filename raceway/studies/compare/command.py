@@ -14,12 +14,13 @@ from raceway.commands.frame import (
     on_scene,
     out_folder,
     plugin_files,
-    registry_with,
     show,
     show_progress,
 )
-from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
 from raceway.errors import SceneError
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
 
 
 @click.command(short_help="One scene, some keys varied, everything else the same.")

@@ -15,13 +15,14 @@ from raceway.commands.frame import (
     out_option,
     plugin_files,
     record,
-    registry_with,
     set_keys,
     show,
     show_progress,
 )
-from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, writable
+from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults
 from raceway.errors import SceneError
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
 
 
 class IdentifyOptions(NamedTuple):

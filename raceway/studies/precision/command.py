@@ -15,14 +15,15 @@ from raceway.commands.frame import (
     out_option,
     plugin_files,
     record,
-    registry_with,
     scene_file,
     set_keys,
     show,
     show_progress,
 )
-from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults, writable
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
 from raceway.errors import SceneError
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
 from raceway.studies.stability.command import verdict
 
 

@@ -14,11 +14,12 @@ from raceway.commands.frame import (
     on_scene,
     out_folder,
     plugin_files,
-    registry_with,
     show,
     show_progress,
 )
-from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults, writable
+from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
 
 
 @click.command(short_help="A test rig's signals, and the bearing read back from them.")

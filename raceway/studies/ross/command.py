@@ -9,7 +9,8 @@ import click
 
 from raceway.commands.console import warn
 from raceway.commands.frame import PATH, attempt, common, record, show
-from raceway.commands.inputs import slug, writable
+from raceway.commands.inputs import slug
+from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 from raceway.studies.sweep.store_command import at_option, head, selection_of, store_argument, told
 

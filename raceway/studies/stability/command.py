@@ -16,14 +16,15 @@ from raceway.commands.frame import (
     plugin_files,
     processes_at_a_time,
     record,
-    registry_with,
     scene_if_any,
     set_keys,
     show,
     show_progress,
 )
-from raceway.commands.inputs import changed_tables, slug, tell_faults, writable
+from raceway.commands.inputs import changed_tables, slug, tell_faults
 from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
 
 
 class StabilityOptions(NamedTuple):

@@ -17,14 +17,15 @@ from raceway.commands.frame import (
     out_option,
     plugin_files,
     record,
-    registry_with,
     scene_file,
     set_keys,
     show,
     show_progress,
 )
-from raceway.commands.inputs import changed_tables, has_netcdf, slug, tell_faults, writable
+from raceway.commands.inputs import changed_tables, has_netcdf, slug, tell_faults
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

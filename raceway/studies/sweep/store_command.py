@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from raceway.commands.frame import PATH, attempt, common, record, show
-from raceway.commands.inputs import require_matplotlib, slug, writable
+from raceway.commands.inputs import require_matplotlib, slug
+from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

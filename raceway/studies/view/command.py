@@ -15,14 +15,15 @@ from raceway.commands.frame import (
     out_folder,
     plugin_files,
     record,
-    registry_with,
     show,
     show_progress,
 )
-from raceway.commands.inputs import load, slug, tell_faults, writable
+from raceway.commands.inputs import load, slug, tell_faults
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.duties import traits_of
+from raceway.framework.registry import registry_with
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

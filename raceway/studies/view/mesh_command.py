@@ -18,14 +18,15 @@ from raceway.commands.frame import (
     out_folder,
     plugin_files,
     programs,
-    registry_with,
     show,
 )
-from raceway.commands.inputs import load, slug, tell_faults, writable
+from raceway.commands.inputs import load, slug, tell_faults
 from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.registry import registry_with
 from raceway.framework.sources import blamed
 from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -1,0 +1,61 @@
+"""One scene computed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from raceway.framework.registry import default_registry
+from raceway.pipeline.allowance import PATIENCE
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import run as compute
+from raceway.pipeline.simulate import OnProgress
+from raceway.scene.given import as_scene
+from raceway.storage.files import writable
+
+
+def run(
+    scene: Any,
+    *,
+    progress: OnProgress | None = None,
+    patience: float = PATIENCE,
+    plugins: Iterable[str | Path] = (),
+    out: str | Path | None = None,
+) -> Result:
+    """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    progress : called as ``progress(what, done, total)`` between chunks of steps; an exception stops the run
+    patience : times the planned time, of processor time, after which a run is stopped; ``inf``: never
+    plugins : files of one-off plug-ins that the scene uses
+    out : folder in which result.json is written; None: nothing is written
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    SceneError
+        With every mistake of the scene; a combination that cannot run.
+    ConvergenceError, StabilityError, BeyondPlanError
+        No solution, or none in the time allowed; ``error.state`` holds the last good arrays.
+    RacewayError
+        A folder that cannot be written, before anything is computed.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> result = rw.run({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+    >>> round(result.equilibrium.displacement[0] * 1e6, 1)  # of the inner ring along the axis [um]
+    16.4
+    """
+    read = as_scene(scene, plugins=plugins)
+    folder = None if out is None else writable(Path(out))
+    result = compute(read, default_registry(), progress, patience=patience)
+    if folder is not None:
+        result.save(folder)
+    return result

@@ -1,0 +1,197 @@
+"""A scene as the user gave it: a file, TOML text, a dict of tables or a Scene, and the changes made since.
+
+Every door of the package reads scenes here, the command line too.
+"""
+
+from __future__ import annotations
+
+import copy
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.errors import SceneError
+from raceway.framework.registry import Registry, registry_with
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from raceway.scene.tables import Scene
+
+#: A change: ``"load.axial=400"``, ``{"load.axial": 400}`` or ``{"load": {"axial": 400}}``.
+Change = str | Mapping[str, Any]
+#: What makes a string the text of a scene rather than the name of a file.
+_SIGNS_OF_TOML = ("\n", "=", "[")
+
+
+@attrs.frozen
+class Given:
+    """What the user said of a scene.
+
+    Attributes
+    ----------
+    tables : as they were written, presets not resolved
+    name : the title where the tables have none
+    folder : where relative names of files start; None: at the working folder
+    changes : (key, value) in the order in which they were made; None takes the key or the table out
+    """
+
+    tables: Tables
+    name: str = "untitled"
+    folder: Path | None = None
+    changes: tuple[tuple[str, Any], ...] = ()
+
+    def changed(self, *changes: Any) -> Given:
+        """With further changes, each a ``Change``.
+
+        Raises
+        ------
+        SceneError
+            A change that is none, or that goes through a value as if it were a table.
+        """
+        from raceway.scene.file import parse_change
+
+        made: list[tuple[str, Any]] = []
+        for change in changes:
+            if isinstance(change, str):
+                made.append(parse_change(change))
+            elif isinstance(change, Mapping):
+                made += _leaves(tidy(change), "")
+            else:
+                rule = 'must be text such as "load.axial=400", or a mapping such as {"load.axial": 400}'
+                raise SceneError.at("change", change, rule)
+        found = attrs.evolve(self, changes=(*self.changes, *made))
+        found._merged()
+        return found
+
+    def plain(self, registry: Registry) -> Tables:
+        """The tables with all changes, the title that tells them, and files that start at the folder."""
+        from raceway.scene.file import titled, with_paths
+
+        tables = titled(self._merged(), self.name, self.changes)
+        return copy.deepcopy(tables) if self.folder is None else with_paths(tables, self.folder, registry)
+
+    def scene(self, registry: Registry) -> Scene:
+        """The scene, every key checked.
+
+        Raises
+        ------
+        SceneError
+            With every mistake that was found.
+        """
+        from raceway.scene.file import scene_from_dict
+
+        return attrs.evolve(scene_from_dict(self.plain(registry), registry), given=self)
+
+    def _merged(self) -> Tables:
+        from raceway.scene.file import with_value, without
+
+        tables = self.tables
+        for key, value in self.changes:
+            tables = without(tables, key) if value is None else with_value(tables, key, value)
+        return tables
+
+
+def as_given(source: Any) -> Given:
+    """What a user hands in as a scene.
+
+    Parameters
+    ----------
+    source : Scene, path (str or Path), TOML text, or dict of tables
+
+    Raises
+    ------
+    SceneError
+        Something else; a file that is missing, unreadable or no TOML.
+    """
+    from raceway.scene.file import parse_toml, read_toml
+    from raceway.scene.tables import Scene
+
+    if isinstance(source, Scene):
+        return source.given if source.given is not None else Given(copy.deepcopy(source.source))
+    if isinstance(source, Mapping):
+        return Given(tidy(source))
+    if isinstance(source, str) and _is_text(source):
+        return Given(parse_toml(source, "scene"))
+    if isinstance(source, str | os.PathLike):
+        path = Path(source)
+        if isinstance(source, str) and not path.suffix and not path.exists():
+            raise SceneError.at("scene", source, "is neither a file nor the TOML text of a scene")
+        if path.is_dir():
+            inside = sorted(str(p) for p in path.glob("*.toml"))
+            hint = f"; scenes in it: {', '.join(inside[:5])}" if inside else " without a scene (*.toml) in it"
+            raise SceneError.at(str(path), None, f"is a folder{hint}")
+        return Given(read_toml(path), path.stem, path.parent)
+    rule = f"must be a file, TOML text, a dict of tables or a Scene, not {type(source).__name__}"
+    raise SceneError.at("scene", None, rule)
+
+
+def as_scene(source: Any, *changes: Change, plugins: Iterable[str | Path] = ()) -> Scene:
+    """A scene of whatever a user hands in as one.
+
+    Parameters
+    ----------
+    source : Scene, path (str or Path), TOML text, or dict of tables
+    changes : as ``Given.changed`` takes them
+    plugins : files of one-off plug-ins that are loaded before
+
+    Raises
+    ------
+    SceneError
+        With every mistake that was found.
+    PluginError
+        A plug-in file that is missing, fails to import or adds nothing.
+    """
+    from raceway.scene.tables import Scene
+
+    registry = registry_with(plugins)
+    if isinstance(source, Scene) and not changes:
+        return source
+    return as_given(source).changed(*changes).scene(registry)
+
+
+def plain_tables(source: Any, *changes: Change, registry: Registry) -> Tables:
+    """The tables of a scene, its title among them, for what makes many scenes of one; not checked.
+
+    Raises
+    ------
+    SceneError
+        A source that is no scene, or a change that cannot be made.
+    """
+    return as_given(source).changed(*changes).plain(registry)
+
+
+def tidy(value: Any) -> Any:
+    """Plain Python values of a tree: numbers of numpy, tuples and paths become what a TOML file holds."""
+    if isinstance(value, Mapping):
+        return {str(key): tidy(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [tidy(inner) for inner in value]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
+        return value.tolist()
+    return value
+
+
+def _leaves(table: ReadTables, before: str) -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of a tree; an empty table is a value."""
+    for name, value in table.items():
+        if isinstance(value, dict) and value:
+            yield from _leaves(value, f"{before}{name}.")
+        else:
+            yield before + name, value
+
+
+def _is_text(source: str) -> bool:
+    """Whether a string is the text of a scene: it names no file, and has what TOML has."""
+    if not any(sign in source for sign in _SIGNS_OF_TOML):
+        return not source.strip()
+    try:
+        return not Path(source).exists()
+    except (OSError, ValueError):  # longer than a name can be, or with a zero in it
+        return True
