@@ -34,9 +34,16 @@ One TOML file. SI units; a key that is not SI base says so in its name (`_rpm`, 
 default; a key without default is required. A table with `kind` names a plug-in, and its other keys are that plug-in's own.
 Every mistake is reported at once, each with its path, the value, the rule and the nearest valid name.
 
+A number of a key that has a unit may be text with another unit of the same dimension: `axial = "1 kN"`,
+`ball_diameter = "9.525 mm"`, `speed_rpm = "200 Hz"`, `radial = ["100 N", 0.0]`. It becomes a number in the key's unit while the
+scene is read. Known are m, N, Pa, g, s, Hz and rad with the prefixes n, u (µ), m, c, k, M and G, and in, min, deg, r, rev and rpm;
+products, quotients and powers are written as `N s/m`, `kg m2` or `N/mm^3`. In Python, quantities of pint are taken, too.
+
 `raceway check SCENE` validates, `raceway schema` prints the same declarations as a JSON schema for editors, `--set
 table.key=value` changes one key for one run. Made by `python -m benchmarks.documents` from the declarations in
 `raceway/scene/tables.py` and in the plug-ins; do not edit by hand.
+
+`raceway new-scene` writes a scene with comments to start from.
 
 `title` is a string; by default the name of the file. What `--set` changes stands in its second line, by key, on screens,
 pictures and pages, and in the name of the folder of the results, so that no run overwrites another's.

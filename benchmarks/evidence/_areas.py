@@ -30,7 +30,7 @@ AREAS = {
     "plan": "framework/probe pipeline/allowance planning",
     "scene": """
         framework/options planning/implausible planning/unused scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
-        scene/tables""",
+        scene/tables scene/units""",
     "article": "studies/article data/article",
     "compare": "studies/compare",
     "map": "studies/map data/map",

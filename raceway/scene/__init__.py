@@ -4,6 +4,7 @@ tables      its tables as frozen attrs classes, SI
 given       a scene as the user gave it: file, text, dict or Scene, with changes
 file        TOML to scene, with ``--set`` changes
 structure   plain tables to attrs objects, strictly, every mistake with its path
+units       numbers given as text with a unit
 schema      JSON schema of a scene file
 catalogue   bearing presets
 requires    plug-ins that a scene needs

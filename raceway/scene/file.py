@@ -20,7 +20,7 @@ from raceway.scene.catalogue import preset
 from raceway.scene.given import Given
 from raceway.scene.requires import check_requires
 from raceway.scene.rig import Rig
-from raceway.scene.structure import structure
+from raceway.scene.structure import structure, table_without_units
 from raceway.scene.tables import TABLES, Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of
@@ -134,18 +134,36 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
 def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
     """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
     result = copy.deepcopy(dict(tables))
-    for name, (kind, default) in PLUGIN_TABLES.items():
-        table = result.get(name)
-        if not isinstance(table, dict):
-            continue
-        word = table.get("kind", default)
-        if not isinstance(word, str) or word not in registry.names(kind) or (kind, word) in registry.shadowed():
-            continue
-        for field in attrs.fields(registry.find(kind, word).plugin):
-            value = table.get(field.name)
+    for name in PLUGIN_TABLES:
+        plugin = _plugin(name, tables, registry)
+        for field in () if plugin is None else attrs.fields(plugin):
+            value = result[name].get(field.name)
             if field.metadata.get("path") and isinstance(value, str) and not Path(value).is_absolute():
-                table[field.name] = str(folder / value)
+                result[name][field.name] = str(folder / value)
     return result
+
+
+def numbers_only(tables: ReadTables, registry: Registry) -> Tables:
+    """A copy of the tables in which numbers that are text with a unit are numbers in the keys' own units."""
+    result = dict(tables)
+    for name, table in tables.items():
+        if isinstance(table, dict):
+            classes = (TABLES.get(name), STUDY_TABLES.get(name), _plugin(name, tables, registry))
+            for cls in (one for one in classes if one is not None):
+                result[name] = table_without_units(result[name], cls)
+    return result
+
+
+def _plugin(name: str, tables: ReadTables, registry: Registry) -> type | None:
+    """The class of the plug-in that a table names, if there is one."""
+    table = tables.get(name)
+    if name not in PLUGIN_TABLES or not isinstance(table, dict):
+        return None
+    kind, default = PLUGIN_TABLES[name]
+    word = table.get("kind", default)
+    if not isinstance(word, str) or word not in registry.names(kind) or (kind, word) in registry.shadowed():
+        return None
+    return registry.find(kind, word).plugin
 
 
 def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]]) -> Tables:
@@ -207,6 +225,14 @@ def with_value(tables: ReadTables, key: str, value: object) -> Tables:
     return result
 
 
+def value_at(tables: ReadTables, key: str) -> Any:
+    """What stands at a dotted key, or None."""
+    found: Any = tables
+    for name in key.split("."):
+        found = found.get(name) if isinstance(found, dict) else None
+    return found
+
+
 def without(tables: ReadTables, key: str) -> Tables:
     """A copy of the tables without what stands at a dotted key; what is not there may be missing."""
     name, _, rest = key.partition(".")
@@ -234,7 +260,9 @@ def scene_from_dict(
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
     title, said = _known_tables(tables, registry, mistakes)
-    plain = {**said, "bearing": _with_preset(said["bearing"], mistakes)} if "bearing" in said else said
+    plain = numbers_only(said, registry)
+    if "bearing" in plain:
+        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 

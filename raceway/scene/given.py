@@ -15,6 +15,7 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, registry_with
+from raceway.scene.units import unit_of
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -69,10 +70,12 @@ class Given:
         return found
 
     def plain(self, registry: Registry) -> Tables:
-        """The tables with all changes, the title that tells them, and files that start at the folder."""
-        from raceway.scene.file import titled, with_paths
+        """The tables with all changes, numbers in the keys' units, the title that tells it, and files that start at the folder."""
+        from raceway.scene.file import numbers_only, titled, value_at, with_paths
 
-        tables = titled(self._merged(), self.name, self.changes)
+        tables = numbers_only(self._merged(), registry)
+        told = [(key, None if value is None else value_at(tables, key)) for key, value in self.changes]
+        tables = titled(tables, self.name, told)
         return copy.deepcopy(tables) if self.folder is None else with_paths(tables, self.folder, registry)
 
     def scene(self, registry: Registry) -> Scene:
@@ -166,16 +169,32 @@ def plain_tables(source: Any, *changes: Change, registry: Registry) -> Tables:
 
 
 def tidy(value: Any) -> Any:
-    """Plain Python values of a tree: numbers of numpy, tuples and paths become what a TOML file holds."""
+    """Plain Python values of a tree: numbers of numpy, tuples and paths become what a TOML file holds, quantities text."""
     if isinstance(value, Mapping):
         return {str(key): tidy(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
         return [tidy(inner) for inner in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
+    if hasattr(value, "magnitude") and hasattr(value, "to_base_units"):
+        return _quantity(value)
     if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
         return value.tolist()
     return value
+
+
+def _quantity(value: Any) -> Any:
+    """A quantity of pint as a number with its unit in text, or several; a number where it has no unit."""
+    unit = f"{value.units:~C}"
+    try:
+        unit_of(unit)
+    except ValueError:  # a unit that only pint knows
+        value = value.to_base_units()
+        unit = f"{value.units:~C}"
+    numbers = tidy(value.magnitude)
+    if not unit:
+        return numbers
+    return [f"{number!r} {unit}" for number in numbers] if isinstance(numbers, list) else f"{numbers!r} {unit}"
 
 
 def _leaves(table: ReadTables, before: str) -> Iterator[tuple[str, Any]]:

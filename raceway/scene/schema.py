@@ -16,6 +16,7 @@ from raceway.scene.catalogue import catalogue
 from raceway.scene.file import PLUGIN_TABLES as PLUGIN_TABLES
 from raceway.scene.file import STUDY_TABLES
 from raceway.scene.tables import TABLES
+from raceway.scene.units import PATTERN
 from raceway.storage.tables import Tables
 
 _TYPES = {float: "number", int: "integer", str: "string", bool: "boolean"}
@@ -36,7 +37,7 @@ def scene_schema(registry: Registry | None = None) -> Tables:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Raceway scene",
-        "description": "SI units; a key that is not SI base says so in its name (_rpm, _deg).",
+        "description": 'SI units; a key that is not SI base says so in its name (_rpm, _deg).  Text with a unit is converted: "1 kN".',
         "type": "object",
         "properties": tables,
         "required": ["bearing"],
@@ -95,13 +96,13 @@ def key_schema(field: Any) -> Tables:
     words = facts.pop("words", None)
     kinds = [k for k in _members(field.type) if words is None or k is not str]
     limits = {key: facts[key] for key in _LIMITS if key in facts}
-    forms = [_form(kind, limits if kind in (float, int) else {}) for kind in kinds]
+    unit, text = field.metadata.get("unit", ""), field.metadata.get("help", "")
+    forms = [form for kind in kinds for form in _forms(kind, limits, bool(unit))]
     if words is not None:
         forms.append({"enum": words})
     schema: Tables = forms[0] if len(forms) == 1 else {"anyOf": forms}
     if "enum" in facts:
         schema["enum"] = facts["enum"]
-    unit, text = field.metadata.get("unit", ""), field.metadata.get("help", "")
     schema["description"] = f"{text} [{unit}]" if unit else text
     if field.default is not attrs.NOTHING and field.default is not None and not isinstance(field.default, attrs.Factory):  # type: ignore[arg-type]
         schema["default"] = list(field.default) if isinstance(field.default, tuple) else field.default
@@ -114,14 +115,17 @@ def _members(kind: Any) -> list[Any]:
     return [kind]
 
 
-def _form(kind: Any, limits: dict[str, float]) -> Tables:
-    if get_origin(kind) is tuple and get_args(kind)[-1] is Ellipsis:
-        item = get_args(kind)[0]
-        return {"type": "array", "items": _form(item, limits)}
+def _forms(kind: Any, limits: dict[str, float], measured: bool) -> list[Tables]:
+    """What a value may look like; one that is measured may be text with a unit, whose limits the loader alone checks."""
     if get_origin(kind) is tuple:
-        count = len(get_args(kind))
-        return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}
-    return {"type": _TYPES[kind], **limits} if kind in _TYPES else {}
+        items = get_args(kind)
+        inner = _forms(items[0], {}, measured)
+        array: Tables = {"type": "array", "items": inner[0] if len(inner) == 1 else {"anyOf": inner}}
+        return [array if items[-1] is Ellipsis else {**array, "minItems": len(items), "maxItems": len(items)}]
+    if kind not in _TYPES:
+        return [{}]
+    form = {"type": _TYPES[kind], **(limits if kind in (float, int) else {})}
+    return [form, {"type": "string", "pattern": PATTERN}] if measured and kind is float else [form]
 
 
 def _first_line(plugin: type) -> str:

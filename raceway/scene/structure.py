@@ -1,13 +1,14 @@
 """Turns the tables of a TOML file into attrs objects, strictly, and collects every mistake with its path.
 
-cattrs does the walking; here are the strict types (12.7 is not an integer, true is not a number, no NaN) and the
-translation of what it raises into ``Mistake``.
+cattrs does the walking; here are the strict types (12.7 is not an integer, true is not a number, no NaN), numbers that are text
+with a unit, and the translation of what it raises into ``Mistake``.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeVar, get_args
 
 import attrs
@@ -16,6 +17,7 @@ from cattrs.gen import make_dict_structure_fn, override
 
 from raceway.errors import Mistake
 from raceway.framework.options import nearest
+from raceway.scene.units import is_quantity, number_in
 from raceway.storage.tables import Tables
 
 T = TypeVar("T")
@@ -113,6 +115,45 @@ _HOOKS: dict[Any, Any] = {
 }
 
 
+#: Types of keys whose numbers may be text with a unit; counts have none.
+_WORDS = (float | str, str | float)
+_MEASURED = (float, float | None, tuple[float, float], tuple[float, ...], tuple[tuple[float, float], ...] | None, *_WORDS)
+
+
+def without_units(value: object, attribute: Any) -> Any:
+    """A key's value with the numbers that are text in the key's own unit.
+
+    Raises
+    ------
+    ValueError
+        Text that is no number of this unit, and no word either where the key takes words.
+    """
+    unit = attribute.metadata.get("unit", "")
+    if not unit or attribute.type not in _MEASURED:
+        return value
+    if isinstance(value, list | tuple):
+        return [without_units(inner, attribute) for inner in value]
+    if not isinstance(value, str) or (attribute.type in _WORDS and not is_quantity(value)):
+        return value
+    return number_in(unit, value)
+
+
+def table_without_units(table: Tables, cls: type) -> Tables:
+    """A copy of a table with all numbers in the keys' own units; what is wrong stays, to be told where it is checked."""
+    attrs.resolve_types(cls)
+    fields, result = attrs.fields_dict(cls), dict(table)
+    for key, value in table.items():
+        field = fields.get(key)
+        if field is None:
+            continue
+        if isinstance(value, dict) and field.type is not None and attrs.has(field.type):
+            result[key] = table_without_units(value, field.type)
+        elif isinstance(value, str | list | tuple):
+            with suppress(ValueError):
+                result[key] = without_units(value, field)
+    return result
+
+
 def _equal_to(kind: object) -> Callable[[object], bool]:
     return lambda other: bool(other == kind)
 
@@ -149,7 +190,7 @@ def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
     def hook(value: object, _type: object) -> Any:
         if isinstance(value, list | dict) and attribute.metadata.get("no_list"):
             raise ValueError(attribute.metadata["no_list"])
-        result = converter.structure(value, attribute.type)
+        result = converter.structure(without_units(value, attribute), attribute.type)
         if attribute.validator is not None:
             attribute.validator(None, attribute, result)
         return result

@@ -1,0 +1,158 @@
+"""Units of numbers given as text, such as "1 kN": read at the door, into the unit of the key, never inside.
+
+A unit is a product of symbols with whole powers: ``N s/m``, ``kg m2``, ``N/mm^2``.  Turns are a dimension of their own, so that
+12 000 r/min and 200 Hz are the same speed, and a speed is no inverse of time.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from fractions import Fraction
+from functools import cache
+
+import attrs
+
+from raceway.framework.options import nearest
+
+#: Powers of metre, kilogram, second and radian.
+Dimension = tuple[int, int, int, int]
+
+
+@attrs.frozen
+class Unit:
+    """``factor`` times pi to the power ``pi`` of the SI unit of this dimension: products of decimals are exact, pi is kept apart."""
+
+    dimension: Dimension
+    factor: Fraction = Fraction(1)
+    pi: int = 0
+
+    def times(self, other: Unit, power: int) -> Unit:
+        dimension = tuple(a + power * b for a, b in zip(self.dimension, other.dimension, strict=True))
+        m, kg, s, rad = dimension
+        return Unit((m, kg, s, rad), self.factor * other.factor**power, self.pi + power * other.pi)
+
+
+_ONE = Unit((0, 0, 0, 0))
+#: With prefixes.
+_SCALED = {
+    "m": Unit((1, 0, 0, 0)),
+    "g": Unit((0, 1, 0, 0), Fraction(1, 1000)),
+    "s": Unit((0, 0, 1, 0)),
+    "N": Unit((1, 1, -2, 0)),
+    "Pa": Unit((-1, 1, -2, 0)),
+    "Hz": Unit((0, 0, -1, 1), Fraction(2), 1),
+    "rad": Unit((0, 0, 0, 1)),
+}
+_PREFIXES = {"n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
+_TURN = Unit((0, 0, 0, 1), Fraction(2), 1)
+#: As they are.
+_PLAIN = {
+    "in": Unit((1, 0, 0, 0), Fraction("0.0254")),
+    "min": Unit((0, 0, 1, 0), Fraction(60)),
+    "deg": Unit((0, 0, 0, 1), Fraction(1, 180), 1),
+    "°": Unit((0, 0, 0, 1), Fraction(1, 180), 1),
+    "r": _TURN,
+    "rev": _TURN,
+    "rpm": Unit((0, 0, -1, 1), Fraction(1, 30), 1),
+}
+#: Of each dimension, what a message offers.
+_OFFERED = {
+    "m": "m, mm, um or in",
+    "N": "N or kN",
+    "Pa": "Pa, MPa or GPa",
+    "r/min": "r/min, rpm, Hz or rad/s",
+    "deg": "deg or rad",
+    "Hz": "Hz or kHz",
+    "s": "s or ms",
+    "kg": "kg or g",
+    "kg m": "kg m or g mm",
+    "N/m": "N/m or N/um",
+}
+_FACTOR = re.compile(r"([^\W\d_]+|°)(?:(?:\^|\*\*)?([+-]?\d{1,2}))?")
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*", re.DOTALL)
+#: For the JSON schema.
+PATTERN = rf"^\s*{_NUMBER}\s*[^\s\d.].*$"
+#: Digits of a number's power at most: more are no number of a bearing, and fill the memory.
+_LONGEST = 400
+
+
+@cache
+def unit_of(text: str) -> Unit:
+    """A unit from its symbols.
+
+    Raises
+    ------
+    ValueError
+        A symbol that is not known, or no product of symbols.
+    """
+    found, sign = _ONE, 1
+    for part in re.findall(r"\*\*|[/*·\s]|[^/*·\s]+(?:\*\*[+-]?\d+)?", text.replace(" ** ", "**")):
+        if part == "/":
+            sign = -1
+        elif part not in "*·" and part.strip():
+            match = _FACTOR.fullmatch(part)
+            if match is None and part != "1":
+                raise ValueError(f"'{part}' is no unit")
+            if match is not None:
+                found = found.times(_symbol(match[1]), sign * int(match[2] or 1))
+            sign = 1
+    return found
+
+
+def _symbol(name: str) -> Unit:
+    if name in _PLAIN:
+        return _PLAIN[name]
+    if name in _SCALED:
+        return _SCALED[name]
+    if name[:1] in _PREFIXES and name[1:] in _SCALED:
+        return Unit(_ONE.dimension, Fraction(10) ** _PREFIXES[name[0]]).times(_SCALED[name[1:]], 1)
+    known = [*_PLAIN, *_SCALED, *(f"{p}{s}" for s in _SCALED for p in _PREFIXES)]
+    raise ValueError(f"'{name}' is no unit{nearest(name, known)}")
+
+
+def is_quantity(text: str) -> bool:
+    """Whether a text begins with a number."""
+    return _QUANTITY.fullmatch(text) is not None
+
+
+def number_in(unit: str, text: str) -> float:
+    """The number that a text with a unit has in another unit, rounded once: "9.525 mm" in m is 0.009525.
+
+    Parameters
+    ----------
+    unit : of the key, for instance "r/min"
+    text : a number and its unit, for instance "200 Hz"
+
+    Raises
+    ------
+    ValueError
+        No number, an unknown unit, or one of another dimension; the sentence says what is accepted.
+    """
+    match = _QUANTITY.fullmatch(text)
+    wanted = f"a number in {unit}, or text with its unit: {_OFFERED.get(unit, unit)}" if unit else "a number without a unit"
+    if match is None:
+        raise ValueError(f"must be a number, not a string: {wanted}")
+    number, given = match.groups()
+    if not given:
+        raise ValueError(f"must be a number, not a string without a unit: {wanted}")
+    if given == unit:
+        return _rounded(Fraction(1), number)
+    try:
+        source, target = unit_of(given), unit_of(unit)
+    except ValueError as why:
+        raise ValueError(f"{why}: must be {wanted}") from None
+    if source.dimension != target.dimension:
+        raise ValueError(f"'{given}' is not a unit of this key: must be {wanted}")
+    ratio = source.factor / target.factor
+    return _rounded(ratio, number) * math.pi ** (source.pi - target.pi)
+
+
+def _rounded(ratio: Fraction, number: str) -> float:
+    if len(number) > _LONGEST or abs(int(number.lower().partition("e")[2] or 0)) > _LONGEST:
+        raise ValueError("must be a finite number")
+    try:
+        return float(Fraction(number) * ratio)
+    except OverflowError:
+        raise ValueError("must be a finite number") from None
