@@ -49,7 +49,7 @@ AREAS = {
         studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
         __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/higher_types framework/hookspecs framework/registry
-        framework/sources front pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
+        framework/shown framework/sources front pipeline/facts pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
         storage/files storage/tables storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         studies/article/command studies/article/screen studies/compare/command studies/compare/screen studies/map/command
         studies/measured/command studies/precision/command studies/precision/screen studies/rig/command studies/rig/screen

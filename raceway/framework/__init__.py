@@ -8,5 +8,6 @@ duties      calls of the duties of bodies, with their faults put to the plug-in
 sources     entry points and one-off files
 plugin_kernel   compiled kernel of a plug-in, by its declared signature
 probe       trial calls of a plug-in's kernel before a run
+shown       short texts and tables of results, for terminals and notebooks
 orphans     end of worker processes
 """

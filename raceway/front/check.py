@@ -10,20 +10,28 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import default_registry
+from raceway.framework.shown import Fact, Shown
 from raceway.planning.implausible import foreseen, implausible
 from raceway.planning.plan import make_plan
 from raceway.scene.given import as_scene
 from raceway.storage.tables import Tables
 
 
-@attrs.frozen
-class Check:
+@attrs.frozen(repr=False)
+class Check(Shown):
     """What is wrong with a scene; true where nothing is.
 
     Attributes
     ----------
     mistakes : tuple of Mistake, each with ``path``, ``value`` and ``message``; they keep the scene from running
     warnings : tuple of str, values that are possible and unlikely
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.check({"bearing": {"preset": "B7206C"}})
+    1 mistake
+      load.axial  0.0  nothing loads the bearing: there is no stiffness to find
     """
 
     mistakes: tuple[Mistake, ...] = ()
@@ -36,6 +44,12 @@ class Check:
 
     def __bool__(self) -> bool:
         return self.ok
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        count = len(self.mistakes)
+        title = "no mistakes" if self.ok else f"{count} mistake{'' if count == 1 else 's'}"
+        rows = [(one.path, "" if one.value is None else repr(one.value), one.message) for one in self.mistakes]
+        return title, [*rows, *(("warning", "", text) for text in self.warnings)]
 
     def to_dict(self) -> Tables:
         """Mistakes and warnings as plain tables."""

@@ -10,4 +10,5 @@ pressure       peak pressure and semi-axes of contacts
 plausibility   warnings: balls without load, ellipses over the groove's edge
 error          relative errors of Z
 result         the result: result.json
+facts          what it says in short
 """

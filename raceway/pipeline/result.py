@@ -6,7 +6,7 @@ import json
 import math
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -17,24 +17,41 @@ from raceway.bodies.mounting import held_table, preload_table
 from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
+from raceway.framework.shown import Fact, Shown
+from raceway.pipeline.facts import facts
 from raceway.pipeline.motion import motion_table
 from raceway.pipeline.simulate import Simulation
+from raceway.plugins.reports.labelled import labelled
+from raceway.plugins.reports.plot import plot
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    import xarray
 
 SCHEMA = 1
 
 
-@attrs.frozen(eq=False)
-class Result:
+@attrs.frozen(eq=False, repr=False)
+class Result(Shown):
     """One run.  ``to_dict`` gives result.json; the arrays stay on the object.
 
     Attributes
     ----------
+    model : the bearing as it was computed; ``model.scene`` and ``model.plan`` are what it was made from
+    equilibrium : the static state under the constant loads, with ``gap`` [m] and ``contact_force`` [N] of every contact
     identification, simulation : None in a static scene (simulation also where the identifier needs no motion)
     error, cost, stability, environment : the tables of result.json
     bodies : the table ``model``: what elastic bodies change against rigid ones; None for rigid bodies
     lines : spectral lines of the motion, empty where it was not recorded or its speed changes
+    warnings : tuple of str, the weightiest first
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> result = rw.run({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}})
+    >>> result.stiffness.shape, result.ball_loads.shape
+    ((5, 5), (12,))
     """
 
     model: Model
@@ -51,9 +68,101 @@ class Result:
 
     @property
     def title(self) -> str:
+        """Of the scene; its second line says what was changed."""
         return self.model.scene.title
 
+    @property
+    def displacement(self) -> np.ndarray:
+        """(5,) static displacement of the inner ring: x, y, z [m], tilt_y, tilt_z [rad]."""
+        return self.equilibrium.displacement
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """(5, 5) tangent stiffness of the contacts at the equilibrium [N/m, N/rad, N m/m, N m/rad]."""
+        return self.equilibrium.stiffness
+
+    @property
+    def ball_loads(self) -> np.ndarray:
+        """(Z,) static load of each ball on the inner race [N]; of a pair, row after row."""
+        return self.equilibrium.contact_force[: self.model.system.ball_count]
+
+    @property
+    def speed_rpm(self) -> float | None:
+        """Speed of the force whose 1x response is identified [r/min]; None in a static scene."""
+        found = self.identification
+        return None if found is None else found.frequency_hz * 60.0
+
+    @property
+    def dynamic_stiffness(self) -> complex | None:
+        """Z = F/x, complex [N/m]; None in a static scene."""
+        return None if self.identification is None else self.identification.dynamic_stiffness
+
+    @property
+    def equivalent_stiffness(self) -> float | None:
+        """K = Re Z + m w^2 [N/m]; None in a static scene."""
+        return None if self.identification is None else self.identification.equivalent_stiffness
+
+    @property
+    def equivalent_stiffness_error(self) -> float | None:
+        """Estimated absolute error of K [N/m]; None where it is not estimated."""
+        total, z = self.error["total"], self.dynamic_stiffness
+        return None if total is None or z is None else total * abs(z)
+
+    @property
+    def equivalent_damping(self) -> float | None:
+        """C = Im Z / w [N s/m]; None in a static scene."""
+        return None if self.identification is None else self.identification.equivalent_damping
+
+    @property
+    def equivalent_damping_error(self) -> float | None:
+        """Estimated absolute error of C [N s/m]; None where it is not estimated.  A smaller C is not resolved."""
+        across, found = self._across(), self.identification
+        return None if across is None or found is None else across * abs(found.dynamic_stiffness) / found.speed
+
+    @property
+    def orbit(self) -> tuple[float, float] | None:
+        """Major and minor semi-axis of the 1x orbit [m]; None in a static scene.  ``to_xarray().motion`` is the path itself."""
+        found = self.identification
+        return None if found is None else (found.orbit_major, found.orbit_minor)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Equilibrium, recorded motion, ball loads and identified numbers with coordinates and units.
+
+        Returns
+        -------
+        xarray.Dataset : whose variables say ``units`` and ``long_name``
+
+        Raises
+        ------
+        RacewayError
+            xarray is missing.
+        """
+        return labelled(self)
+
+    def plot(self, what: str | None = None, ax: Any = None) -> Any:
+        """Draw the orbit, the spectrum of the displacement, or the ball loads.
+
+        Parameters
+        ----------
+        what : "orbit", "spectrum" or "ball_loads"; None: all that there is data for, side by side
+        ax : axes of matplotlib for one picture, polar ones for the ball loads; None: new ones
+
+        Returns
+        -------
+        Axes, or a tuple of them where ``what`` is None
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing; no such picture, or no data for it.
+        """
+        return plot(self, what, ax)
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        return self.title, facts(self)
+
     def to_dict(self) -> Tables:
+        """The content of result.json: plain numbers, lists and tables, None where a number does not exist."""
         return without_nan(
             {
                 "schema": SCHEMA,
@@ -89,9 +198,9 @@ class Result:
             "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
             "dynamic_stiffness_imag_error": None if across is None else across * abs(z),
             "equivalent_stiffness": found.equivalent_stiffness,
-            "equivalent_stiffness_error": None if self.error["total"] is None else self.error["total"] * abs(z),
+            "equivalent_stiffness_error": self.equivalent_stiffness_error,
             "equivalent_damping": found.equivalent_damping,
-            "equivalent_damping_error": None if across is None else across * abs(z) / found.speed,
+            "equivalent_damping_error": self.equivalent_damping_error,
             "mass_used_kg": found.mass_used,
             "tilt": self.model.scene.supports.tilt,
             "phase_lag_deg": found.phase_lag_deg,

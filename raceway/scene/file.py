@@ -178,13 +178,13 @@ def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]])
     Keys are sorted: changes in another order make the same scene, and folders are named by the title.
     """
     title = tables.get("title", name)
-    told = ", ".join(f"{key} = {_told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
-    if told and isinstance(title, str) and title.strip():
-        title += (", " if "\n" in title else "\n") + told
+    made = ", ".join(f"{key} = {told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
+    if made and isinstance(title, str) and title.strip():
+        title += (", " if "\n" in title else "\n") + made
     return {**tables, "title": title}
 
 
-def _told(value: object) -> str:
+def told(value: object) -> str:
     """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
     if value is None:
         return "none"

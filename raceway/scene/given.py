@@ -61,19 +61,19 @@ class Given:
             if isinstance(change, str):
                 made.append(parse_change(change))
             elif isinstance(change, Mapping):
-                made += _leaves(tidy(change), "")
+                made += leaves(tidy(change))
             else:
                 rule = 'must be text such as "load.axial=400", or a mapping such as {"load.axial": 400}'
                 raise SceneError.at("change", change, rule)
         found = attrs.evolve(self, changes=(*self.changes, *made))
-        found._merged()
+        found.merged()
         return found
 
     def plain(self, registry: Registry) -> Tables:
         """The tables with all changes, numbers in the keys' units, the title that tells it, and files that start at the folder."""
         from raceway.scene.file import numbers_only, titled, value_at, with_paths
 
-        tables = numbers_only(self._merged(), registry)
+        tables = numbers_only(self.merged(), registry)
         told = [(key, None if value is None else value_at(tables, key)) for key, value in self.changes]
         tables = titled(tables, self.name, told)
         return copy.deepcopy(tables) if self.folder is None else with_paths(tables, self.folder, registry)
@@ -90,7 +90,8 @@ class Given:
 
         return attrs.evolve(scene_from_dict(self.plain(registry), registry), given=self)
 
-    def _merged(self) -> Tables:
+    def merged(self) -> Tables:
+        """The tables with all changes, as they were said."""
         from raceway.scene.file import with_value, without
 
         tables = self.tables
@@ -197,11 +198,11 @@ def _quantity(value: Any) -> Any:
     return [f"{number!r} {unit}" for number in numbers] if isinstance(numbers, list) else f"{numbers!r} {unit}"
 
 
-def _leaves(table: ReadTables, before: str) -> Iterator[tuple[str, Any]]:
+def leaves(table: ReadTables, before: str = "") -> Iterator[tuple[str, Any]]:
     """Dotted keys and values of a tree; an empty table is a value."""
     for name, value in table.items():
         if isinstance(value, dict) and value:
-            yield from _leaves(value, f"{before}{name}.")
+            yield from leaves(value, f"{before}{name}.")
         else:
             yield before + name, value
 

@@ -25,6 +25,7 @@ from raceway.framework.options import (
     positive,
     word_or,
 )
+from raceway.framework.shown import Fact, Shown
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -275,8 +276,8 @@ class Identifying:
     method: Any = attrs.field(default=None, metadata={"plugin": "identifier"})
 
 
-@attrs.frozen
-class Scene:
+@attrs.frozen(repr=False)
+class Scene(Shown):
     """One scene: what is computed, in SI units, every key checked.
 
     Attributes
@@ -293,6 +294,10 @@ class Scene:
     >>> scene = rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
     >>> scene.load.axial  # [N]
     1000.0
+    >>> scene
+    untitled
+      bearing  preset = B7206C
+      load     axial = 1000
     """
 
     title: str
@@ -389,6 +394,18 @@ class Scene:
         excitation = self.excitation
         changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
         return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        """What was said, a table a row; defaults and a preset's numbers are left out."""
+        from raceway.scene.file import told
+        from raceway.scene.given import as_given, leaves
+
+        rows: list[Fact] = []
+        for name, table in as_given(self).merged().items():
+            if isinstance(table, dict):
+                said = [f"{key} = {told(value)}" for key, value in leaves(table)]
+                rows.append((name, "", ", ".join(said) or "defaults"))
+        return self.title, rows
 
     def to_dict(self) -> Tables:
         """Every key of the scene file with its value, defaults too; loads again as the same scene."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import floor, log10
 from typing import TypeVar
 
 from rich.box import SIMPLE_HEAD
@@ -13,6 +12,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from raceway.framework.shown import number as number
+from raceway.framework.shown import number_within as number_within
 from raceway.storage.tables import ReadTables
 
 Row = tuple[str, str, str]
@@ -34,23 +35,6 @@ def sections(rows: Iterable[Row]) -> RenderableType:
         else:
             table.add_row(escape(quantity), escape(value), escape(remark))
     return Group(*parts)
-
-
-def number(value: float | None, unit: str = "", digits: int = 5) -> str:
-    """Significant digits and unit; a dash for what is not there."""
-    if value is None:
-        return "-"
-    text = f"{value + 0.0:.{digits}g}"
-    return f"{text} {unit}" if unit else text
-
-
-def number_within(value: float, error: float, unit: str) -> str:
-    """A number down to the first digit of its absolute error, and never more than five digits."""
-    digits = 5
-    if value != 0.0 and error > 0.0:
-        digits = min(digits, max(1, floor(log10(abs(value))) - floor(log10(error)) + 1))
-    places = digits - 1 - floor(log10(abs(value))) if value != 0.0 else 0
-    return f"{round(value, places):.0f} {unit}" if places <= 0 and abs(value) < 1e5 else number(value, unit, digits)
 
 
 def tilt_words(tilt: float | str) -> str:

@@ -1,0 +1,79 @@
+"""Objects that show themselves briefly: in at most 15 lines of text, and as one table in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from math import floor, log10
+from textwrap import shorten
+
+#: Name, value with its unit, and what is to be known of it.
+Fact = tuple[str, str, str]
+#: Lines of text, the title's and the line of what is left out included, and characters of a line, at most.
+LINES, WIDTH = 15, 100
+_TABLE = "border-collapse:collapse;max-width:46em;font-size:14px;line-height:1.35"
+_CELL = "text-align:left;vertical-align:top;padding:2px 14px 2px 0;border:0"
+#: Numbers are never broken; words of a remark are, rather than that the table is wider than the screen.
+_WHOLE, _BROKEN = "white-space:nowrap;font-variant-numeric:tabular-nums", "overflow-wrap:anywhere;opacity:0.75"
+
+
+class Shown:
+    """What has a short text and a table of its own, from a title and facts."""
+
+    __slots__ = ()
+
+    def _shown(self) -> tuple[str, Sequence[Fact]]:
+        """Title, whose first line is bold, and facts in the order of their weight."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        title, facts = self._shown()
+        return as_text(title, facts)
+
+    def _repr_html_(self) -> str:
+        title, facts = self._shown()
+        return as_html(title, facts)
+
+
+def as_text(title: str, facts: Sequence[Fact]) -> str:
+    """A title and facts in columns; what is more than fits is counted."""
+    head = [shorten(line, WIDTH, placeholder=" ...") for line in title.splitlines()[:2]]
+    room = LINES - len(head)
+    shown = facts if len(facts) <= room else facts[: room - 1]
+    names = max((len(name) for name, _, _ in shown), default=0)
+    values = max((len(value) for _, value, remark in shown if remark), default=0)
+    gap = "  " if values else ""
+    lines = [f"  {name:{names}}  {value:{values}}{gap}{remark}".rstrip() for name, value, remark in shown]
+    lines += [f"  and {len(facts) - len(shown)} more"] if len(shown) < len(facts) else []
+    return "\n".join([*head, *(line if len(line) <= WIDTH else f"{line[: WIDTH - 4]} ..." for line in lines)])
+
+
+def as_html(title: str, facts: Sequence[Fact]) -> str:
+    """A table that needs nothing else; on a narrow screen its cells become narrower, and none is cut off."""
+    first, _, rest = title.partition("\n")
+    head = f"<strong>{escape(first)}</strong>{f'<br>{escape(rest)}' if rest else ''}"
+    rows = "".join(f"<tr>{_cells(*fact)}</tr>" for fact in facts)
+    return f'<table style="{_TABLE}"><caption style="text-align:left;padding:4px 0">{head}</caption><tbody>{rows}</tbody></table>'
+
+
+def _cells(name: str, value: str, remark: str) -> str:
+    told = f'<td style="{_CELL};{_WHOLE}">{escape(value)}</td>' if value else ""
+    wide = "" if value else ' colspan="2"'
+    return f'<td style="{_CELL}">{escape(name)}</td>{told}<td style="{_CELL};{_BROKEN}"{wide}>{escape(remark)}</td>'
+
+
+def number(value: float | None, unit: str = "", digits: int = 5) -> str:
+    """Significant digits and unit; a dash for what is not there."""
+    if value is None:
+        return "-"
+    text = f"{value + 0.0:.{digits}g}"
+    return f"{text} {unit}" if unit else text
+
+
+def number_within(value: float, error: float, unit: str) -> str:
+    """A number down to the first digit of its absolute error, and never more than five digits."""
+    digits = 5
+    if value != 0.0 and error > 0.0:
+        digits = min(digits, max(1, floor(log10(abs(value))) - floor(log10(error)) + 1))
+    places = digits - 1 - floor(log10(abs(value))) if value != 0.0 else 0
+    return f"{round(value, places):.0f} {unit}" if places <= 0 and abs(value) < 1e5 else number(value, unit, digits)

@@ -1,0 +1,75 @@
+"""What a run says in short: ``repr`` and table of a Result, K with its error first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from raceway.framework.shown import Fact, number, number_within
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.pipeline.result import Result
+
+
+def facts(result: Result) -> list[Fact]:
+    """Name, value with unit, remark."""
+    return [*_identified(result), *_equilibrium(result), *_computed(result)]
+
+
+def _identified(result: Result) -> list[Fact]:
+    found = result.identification
+    if found is None:
+        return []
+    k, c, z = found.equivalent_stiffness, found.equivalent_damping, found.dynamic_stiffness
+    total, damping_error = result.error["total"], result.equivalent_damping_error
+    tilt = result.model.scene.supports.tilt
+    held = f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
+    return [
+        _within(
+            "stiffness K", k, result.equivalent_stiffness_error, 1e-6, "N/µm", f"{60.0 * found.frequency_hz:g} r/min, {held}"
+        ),
+        _within("damping C", c, damping_error, 1.0, "N s/m", "Im Z / w"),
+        ("|Z|", number(1e-6 * abs(z), "N/µm"), "force over displacement of the 1x line"),
+        ("orbit", f"{_small(found.orbit_major)} x {_small(found.orbit_minor)} µm", "semi-axes of the 1x line"),
+        ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated"),
+    ]
+
+
+def _within(name: str, value: float, error: float | None, scale: float, unit: str, remark: str) -> Fact:
+    """A number with its error; what is smaller than its error is no number."""
+    if error is None:
+        return name, number(scale * value, unit), remark
+    told = number(scale * error, unit, 2)
+    if abs(value) < error:
+        return name, "not resolved", f"below its error of {told}; {remark}"
+    return name, number_within(scale * value, scale * error, unit), f"+- {told}; {remark}"
+
+
+def _small(metres: float) -> str:
+    """Micrometres; rounding noise of a straight line or a circle is 0."""
+    return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
+
+
+def _equilibrium(result: Result) -> list[Fact]:
+    k, moved, loads = result.stiffness, result.displacement, result.ball_loads
+    return [
+        ("tangent kxx, kyy", f"{1e-6 * k[0, 0]:.5g}, {1e-6 * k[1, 1]:.5g} N/µm", "static, all other motions held"),
+        ("displacement x", number(1e6 * moved[0], "µm"), "static, axial"),
+        ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
+    ]
+
+
+def _computed(result: Result) -> list[Fact]:
+    scene, cost, count = result.model.scene, result.cost, len(result.warnings)
+    bearing: Tables = scene.source["bearing"]
+    kind = f"{scene.bodies.name} bodies, {scene.contact.kind}, {scene.integrator.kind}"
+    steps = f"{cost['steps']} steps" if cost["steps"] else "static"
+    rows: list[Fact] = [
+        ("bearing", str(bearing.get("preset") or "own geometry"), kind),
+        ("cost", number(cost["wall_s"], "s", 3), f"{steps}; of it {cost['compile_s']:.2g} s compiling"),
+    ]
+    if count:
+        rows.append((f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0]))
+    return rows
