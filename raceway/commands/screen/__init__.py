@@ -4,6 +4,7 @@ text          sections, tables, numbers with units
 result        one run
 plan          what a scene needs
 kept          the caches
+damping       what a rotor model should know of a dry bearing's damping
 """
 
 from raceway.commands.screen.kept import cache_screen

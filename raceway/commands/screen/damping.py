@@ -1,0 +1,48 @@
+"""What a rotor model should know of a dry bearing's damping, in one sentence for all screens and files."""
+
+from __future__ import annotations
+
+from raceway.storage.tables import ReadTables
+
+#: Damping over stiffness by the rule of thumb of rotor programs [s]: ROSS 2.3 takes c = 1.25e-5 s k for a ball bearing without a
+#: given damping (``ross.BallBearingElement``), the middle of its "typical range" of 0.25e-5 to 2.5e-5 s.
+RULE_OF_THUMB_S = 1.25e-5
+#: Part of the rule's damping below which a damping is next to nothing: a twentieth of the lower end of the typical range.
+_NOTHING = 1e-2
+
+
+def dry_damping_note(content: ReadTables) -> str | None:
+    """The sentence for one run.
+
+    Parameters
+    ----------
+    content : of result.json
+
+    Returns
+    -------
+    None where the scene gives contacts or rotor a damping, where nothing is identified, or where C is not small.
+    """
+    found, scene = content["identification"], content["scene"]
+    if found is None or scene["contact"]["damping"] or scene["rotor"]["damping"]:
+        return None
+    error, damping = found["equivalent_damping_error"], found["equivalent_damping"]
+    resolved = error is None or abs(damping) > error
+    return dry_damping_words(damping if resolved else None, found["equivalent_stiffness"])
+
+
+def dry_damping_words(damping: float | None, stiffness: float, also: str = "") -> str | None:
+    """The sentence for C [N s/m], None where it is not resolved, and K [N/m] of a bearing without damping of its own.
+
+    Parameters
+    ----------
+    also : remedies beside the scene's key, for instance "or give --damping C"
+    """
+    rule = RULE_OF_THUMB_S * abs(stiffness)
+    if damping is not None and abs(damping) > _NOTHING * rule:
+        return None
+    told = "is not resolved" if damping is None else "is 0" if damping == 0.0 else f"is {damping:.2g} N s/m"
+    remedy = f"set contact.damping{', ' if also else ''}{also}"
+    return (
+        f"C {told}: a dry bearing damps next to nothing, where the rule of thumb of rotor programs, 1.25e-5 s times K, gives "
+        f"{rule:.2g} N s/m. For a damping from lubricant and seats: {remedy}"
+    )
