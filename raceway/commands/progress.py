@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
@@ -10,6 +12,8 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 _PATIENCE_S = 1.0
+#: What a function of the package takes as ``progress``: True for a bar on a terminal, or what is called with what, done, total.
+Progress = bool | Callable[[str, int, int], object] | None
 
 
 class ProgressBar:
@@ -79,3 +83,18 @@ class ProgressBar:
         with self._lock:
             if self._bar is not None and not self._over.is_set():
                 self._bar.start()
+
+
+@contextmanager
+def telling(progress: Progress, remaining: bool = False) -> Iterator[Callable[[str, int, int], object]]:
+    """What is called with the progress of a study.
+
+    Parameters
+    ----------
+    progress : True for a bar where standard error is a terminal, None or False for silence, or what is called itself
+    """
+    if progress is True:
+        with ProgressBar("starting", remaining=remaining) as bar:
+            yield bar
+    else:
+        yield progress or (lambda _what, _done, _total: None)

@@ -1,4 +1,8 @@
-"""Tables of numbers from CSV files: a header line and finite numbers below it, read in parts of some megabytes."""
+"""Tables of numbers from CSV files: a header line and finite numbers below it, read in parts of some megabytes.
+
+Commas, semicolons or tabs stand between the columns, whichever the header has; where it is no comma, a comma in a number is its
+decimal sign.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +29,15 @@ _GAP = 5.0
 
 @attrs.frozen(eq=False)
 class NumberTable:
-    """``header``: the columns' names; ``values`` (n, k); ``lines`` (n,): the number of each row's line in the file."""
+    """``header``: the columns' names; ``values`` (n, k); ``lines`` (n,): the number of each row's line in the file.
+
+    ``word``: what the number of a row counts, for messages.
+    """
 
     header: list[str]
     values: np.ndarray
     lines: np.ndarray
+    word: str = "line"
 
     def refuse_uneven(self, time: np.ndarray) -> None:
         """``ValueError`` where the times (n,) [s] of the rows do not grow, or leave a gap."""
@@ -40,9 +48,9 @@ class NumberTable:
         for place in np.flatnonzero((steps <= 0.0) | (steps > _GAP * usual))[:1]:
             line, before, after = self.lines[place + 1], time[place], time[place + 1]
             if after <= before:
-                raise ValueError(f"line {line}: time must grow, {after:g} s follows {before:g} s")
+                raise ValueError(f"{self.word} {line}: time must grow, {after:g} s follows {before:g} s")
             gap = f"a gap of {after - before:.3g} s where samples are usually {usual:.3g} s apart"
-            raise ValueError(f"line {line}: {gap}: cut the record there")
+            raise ValueError(f"{self.word} {line}: {gap}: cut the record there")
 
 
 def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTable:
@@ -63,17 +71,21 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
 
     size_of(path, LARGEST)
     try:
-        with open(path, encoding="utf-8-sig") as stream:
-            line, header = _header(stream)
+        with open(path, encoding=_encoding(path)) as stream:
+            line, header, sign = _header(stream)
             if not header:
                 raise ValueError("is empty: a header line and samples are needed")
             judge(header)
             most = _lines_of(path)
             values, lines = np.empty((most, len(header))), np.empty(most, dtype=np.int64)
             count = 0
+            points = False
             for rows, numbers in _parts(stream, line):
+                if sign != ",":
+                    points = points or any("." in text for text in rows)
+                    rows = _with_points(rows, numbers, points)
                 end = count + len(rows)
-                values[count:end], lines[count:end] = _values(rows, numbers, len(header)), numbers
+                values[count:end], lines[count:end] = _values(rows, numbers, len(header), sign), numbers
                 count = end
     except (UnicodeDecodeError, csv.Error):
         raise ValueError("cannot be read: it is not a text file of comma-separated values") from None
@@ -86,14 +98,50 @@ def _lines_of(path: Path) -> int:
         return 1 + sum(part.count(b"\n") + part.count(b"\r") for part in iter(lambda: stream.read(_PART), b""))
 
 
-def _header(stream: TextIO) -> tuple[int, list[str]]:
-    """Number and words of the first line that is not empty."""
+def _encoding(path: Path) -> str:
+    """UTF-8, unless the first line is text in Windows' Western letters alone: spreadsheets write a unit's micro sign so."""
+    with open(path, "rb") as stream:
+        first = stream.readline(_SHOWN * 2**8)
+    try:
+        first.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = first.decode("cp1252", errors="replace").strip()
+        if text.isprintable() and "\ufffd" not in text:
+            return "cp1252"
+    return "utf-8-sig"
+
+
+def _header(stream: TextIO) -> tuple[int, list[str], str]:
+    """Number and words of the first line that is not empty, and the sign between them."""
     number = 0
     while text := stream.readline():
         number += 1
         if text.strip():
-            return number, [word.strip() for word in next(csv.reader([text]))]
-    return number, []
+            sign = _sign(text)
+            return number, [word.strip() for word in next(csv.reader([text], delimiter=sign))], sign
+    return number, [], ","
+
+
+def _sign(header: str) -> str:
+    """Tab, semicolon or comma, the first of them that stands outside quotes."""
+    bare = "".join(header.split('"')[::2])
+    return next((sign for sign in "\t;" if sign in bare.strip()), ",")
+
+
+def _with_points(rows: list[str], numbers: np.ndarray, points: bool) -> list[str]:
+    """Decimal commas as points.
+
+    Parameters
+    ----------
+    points : whether the file has decimal points, beside which a comma says nothing
+    """
+    for text, number in zip(rows, numbers, strict=True):
+        if points and "," in text:
+            shown = text.strip()[:_SHOWN]
+            raise ValueError(
+                f"line {number}: commas and points in the file's numbers ({shown}): write one decimal sign only"
+            )
+    return [text.replace(",", ".") for text in rows]
 
 
 def _parts(stream: TextIO, line: int) -> Iterator[tuple[list[str], np.ndarray]]:
@@ -110,23 +158,23 @@ def _parts(stream: TextIO, line: int) -> Iterator[tuple[list[str], np.ndarray]]:
             yield filled, numbers
 
 
-def _values(rows: list[str], numbers: np.ndarray, width: int) -> np.ndarray:
+def _values(rows: list[str], numbers: np.ndarray, width: int, sign: str) -> np.ndarray:
     """(n, width) of lines of text; numpy's reader does not say which line it stumbles over."""
     import numpy as np
 
     try:
-        values = np.loadtxt(rows, delimiter=",", comments=None, quotechar='"', ndmin=2)
+        values = np.loadtxt(rows, delimiter=sign, comments=None, quotechar='"', ndmin=2)
         if values.shape == (len(rows), width) and np.isfinite(values).all():
             return values
     except ValueError:
         pass
-    return np.array([_row(text, number, width) for text, number in zip(rows, numbers, strict=True)])
+    return np.array([_row(text, number, width, sign) for text, number in zip(rows, numbers, strict=True)])
 
 
-def _row(text: str, number: int, width: int) -> list[float]:
+def _row(text: str, number: int, width: int, sign: str) -> list[float]:
     shown = text.strip()[:_SHOWN]
     try:
-        values = [float(word) for word in next(csv.reader([text]))]
+        values = [float(word) for word in next(csv.reader([text], delimiter=sign))]
     except ValueError:
         values = []
     if len(values) != width:

@@ -135,7 +135,7 @@ FILES = {
     "no such file": (None, "no such file"),
     "empty": ("", "is empty"),
     "no text": (b"\xff\xfe\x00\x80binary", "cannot be read"),
-    "not a CSV": ("%PDF-1.4\nstream\n", "unknown column '%pdf-1.4'"),
+    "not a CSV": ("%PDF-1.4\nstream\n", "unknown column '%PDF-1.4'"),
     "no header": (GOOD.partition("\n")[2], "line 1 must name the columns, for instance time_s,y_um,z_um,key"),
     "unit that is not known": (GOOD.replace("y_um", "y_mil"), "line 1: unknown column 'y_mil' (did you mean"),
     "no z": ("\n".join(line.replace(",2.0", "").replace(",z_um", "") for line in GOOD.splitlines()), "no column for z"),

@@ -1,16 +1,17 @@
-"""The axes of a study: ``KEY=a,b,c`` or ``KEY=start:stop:count``, checked before anything is run."""
+"""The axes of a study: ``KEY=a,b,c``, ``KEY=start:stop:count``, or keys with their values; checked before anything is run."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.scene.file import parse_value
+from raceway.scene.given import tidy
 from raceway.storage.tables import Tables
 
 MOST_POINTS = 10_000
@@ -47,11 +48,14 @@ def shown(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def parse_axes(texts: Iterable[str], option: str = "--vary", most: int = MOST_POINTS) -> tuple[Axis, ...]:
-    """The axes of the texts of an option.
+def parse_axes(
+    given: Iterable[str] | Mapping[str, Any], option: str = "--vary", most: int = MOST_POINTS
+) -> tuple[Axis, ...]:
+    """The axes of the texts of an option, or of a mapping.
 
     Parameters
     ----------
+    given : texts ``KEY=...``; or key -> values: a list, an array (n,), one value, or the text "a,b,c" or "start:stop:count"
     most : points of all axes together
 
     Raises
@@ -61,9 +65,10 @@ def parse_axes(texts: Iterable[str], option: str = "--vary", most: int = MOST_PO
     """
     axes: list[Axis] = []
     mistakes: list[Mistake] = []
-    for text in texts:
+    pairs = given.items() if isinstance(given, Mapping) else ((text, None) for text in given)
+    for text, values in pairs:
         try:
-            axis = parse_axis(text, option, most)
+            axis = parse_axis(text, option, most) if values is None else axis_of(text, values, option, most)
         except SceneError as error:
             mistakes += error.mistakes
             continue
@@ -105,7 +110,33 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
     ranges = [item for item in items if ":" in item and isinstance(parse_value(item), str) and item[0] not in "\"'"]
     if ranges and len(items) > 1:
         raise SceneError.at(key, values, "mixes a list and a range: give one of them")
-    found = _range(key, items[0], most) if ranges else [parse_value(item) for item in items]
+    return _axis(key, _range(key, items[0], most) if ranges else [parse_value(item) for item in items])
+
+
+def axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
+    """One axis of a mapping.
+
+    Parameters
+    ----------
+    values : a list, an array (n,), one value, or the text "a,b,c" or "start:stop:count"
+
+    Raises
+    ------
+    SceneError
+        Naming the axis and the rule.
+    """
+    if isinstance(values, str):
+        return parse_axis(f"{key}={values}", option, most)
+    found = tidy(values)
+    if not isinstance(found, list):
+        found = [found]
+    if not found:
+        raise SceneError.at(key, None, "has no values: give at least one")
+    return _axis(key, found)
+
+
+def _axis(key: str, found: Sequence[Any]) -> Axis:
+    """An axis whose values are all different."""
     names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in found]
     for place, name in enumerate(names):
         if name in names[:place]:

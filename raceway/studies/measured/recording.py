@@ -1,7 +1,6 @@
-"""A record of a rig's sensors, as a CSV file.
+"""A record of a rig's two sensors: what is needed of its columns, and the CSV file that the rig's study writes.
 
-The first line names the columns: a quantity and its unit, ``time_s``, ``y_um``, ``z_um``, and ``key`` (the voltage of a once-
-per-turn probe, in any unit) or ``speed_rpm``, or both.
+``heads`` says how columns may be named, ``signals`` what they may stand in.
 """
 
 from __future__ import annotations
@@ -13,20 +12,10 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.framework.options import nearest
 from raceway.storage.files import write_whole
-from raceway.storage.number_table import NumberTable, read_numbers
+from raceway.studies.measured.heads import IGNORE
+from raceway.studies.measured.signals import Signals, read_signals
 
-_UNITS = {
-    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
-    "y": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
-    "z": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
-    "speed": {"rpm": math.pi / 30.0, "hz": 2.0 * math.pi, "rad_s": 1.0},
-}
-#: Columns by name: quantity and factor to SI.
-COLUMNS = {f"{name}_{unit}": (name, factor) for name, units in _UNITS.items() for unit, factor in units.items()}
-COLUMNS["key"] = ("key", 1.0)
-_LEAST = 32
 #: Samples that may lie at one end of the range beyond those of a sine of the same resolution, of all.
 _AT_THE_END = 0.02
 
@@ -53,24 +42,47 @@ class Recording:
 
 
 def read_recording(path: Path) -> Recording:
-    """A record from its file.
+    """A record from its CSV file.
 
     Raises
     ------
     SceneError
         What is wrong with the file, with the line.
     """
-    table = _table(path)
-    names = _names(table.header)
-    if len(table.values) < _LEAST:
-        raise _wrong(path, f"{len(table.values)} samples; at least {_LEAST} are needed")
-    columns = {name: table.values[:, place] * factor for place, (name, factor) in enumerate(names)}
-    try:
-        table.refuse_uneven(columns["time"])
-    except ValueError as why:
-        raise _wrong(path, str(why)) from None
+    return recording_of(read_signals(path))
+
+
+def recording_of(signals: Signals) -> Recording:
+    """The record that a bearing in a rig is identified from.
+
+    Raises
+    ------
+    SceneError
+        Signals that were read well and that K and C cannot be identified from: what they are, why, and what to do.
+    """
+    columns, source = signals.columns, signals.source
+    force = [name for name in columns if name.startswith("force")]
+    if force:
+        raise SceneError.at(
+            source, None,
+            f"was read ({signals.told()}), but K and C cannot be identified from a force and a displacement yet: what excites the rig "
+            "of the scene is its unbalance. Give a record of both displacements and the mark under the unbalance (a force that is "
+            f'recorded beside them is left out with --map "HEAD={IGNORE}"), or compute the scene under the measured force, with '
+            '[excitation] kind = "measured", and compare the displacements',
+        )  # fmt: skip
+    if missing := [name for name in ("y", "z") if name not in columns]:
+        raise SceneError.at(
+            source, None,
+            f"no column for {', '.join(missing)}. It was read ({signals.told()}), but K and C of a bearing in a rig are identified from "
+            "its orbit: record y and z together, or name the column that holds the other axis with --map",
+        )  # fmt: skip
+    if not {"key", "speed"} & set(columns):
+        raise SceneError.at(
+            source, None,
+            f"{signals.where}no speed: a column `key` (once-per-turn probe) or `speed_rpm` is needed; it was read ({signals.told()})",
+        )  # fmt: skip
     for name in ("y", "z"):
-        _refuse_clipped(path, name, columns[name])
+        _refuse_clipped(source, name, columns[name])
     return Recording(columns["time"], columns["y"], columns["z"], columns.get("key"), columns.get("speed"))
 
 
@@ -96,53 +108,7 @@ def write_recording(recording: Recording, path: Path) -> Path:
     return write_whole(("\n".join(lines) + "\n").encode(), path)
 
 
-def _wrong(path: Path, message: str) -> SceneError:
-    return SceneError.at(str(path), None, message)
-
-
-def _table(path: Path) -> NumberTable:
-    """The file's table; ``SceneError`` says what is wrong with it."""
-    try:
-        return read_numbers(path, _names)
-    except FileNotFoundError:
-        near = sorted(p.name for p in path.parent.glob("*.csv")) if path.parent.is_dir() else []
-        raise _wrong(path, f"no such file{nearest(path.name, near)}") from None
-    except OSError as why:
-        raise _wrong(path, f"cannot be read: {why.strerror or why}") from None
-    except ValueError as why:
-        raise _wrong(path, str(why)) from None
-
-
-def _names(header: list[str]) -> list[tuple[str, float]]:
-    """Quantity and factor of each column; ``ValueError`` for columns that are unknown or missing."""
-    header = [word.lower() for word in header]
-    example = "for instance time_s,y_um,z_um,key"
-    if all(_is_number(word) for word in header):
-        raise ValueError(f"line 1 must name the columns, {example}")
-    for word in header:
-        if word not in COLUMNS:
-            hint = nearest(word, COLUMNS) if len(word) < 30 else ""
-            raise ValueError(f"line 1: unknown column {word[:40]!r}{hint}; known: {', '.join(COLUMNS)} ({example})")
-    names = [COLUMNS[word] for word in header]
-    given = [name for name, _ in names]
-    if twice := sorted({name for name in given if given.count(name) > 1}):
-        raise ValueError(f"line 1: {', '.join(twice)} stands there twice")
-    if missing := [name for name in ("time", "y", "z") if name not in given]:
-        raise ValueError(f"line 1: no column for {', '.join(missing)}; needed: time, y and z, {example}")
-    if not {"key", "speed"} & set(given):
-        raise ValueError("line 1: no speed: a column `key` (once-per-turn probe) or `speed_rpm` is needed")
-    return names
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
-
-
-def _refuse_clipped(path: Path, name: str, signal: np.ndarray) -> None:
+def _refuse_clipped(source: str, name: str, signal: np.ndarray) -> None:
     """A signal that stays at the end of its range was cut off there: its 1x line is that of another motion.
 
     Notes
@@ -158,4 +124,6 @@ def _refuse_clipped(path: Path, name: str, signal: np.ndarray) -> None:
         there = float((signal == end).mean())
         if there > 2.0 * usual + _AT_THE_END:
             text = f"{100.0 * there:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} um: the signal is cut off"
-            raise _wrong(path, f"{text} there. Take a larger range of the sensor or of its amplifier, and record again")
+            raise SceneError.at(
+                source, None, f"{text} there. Take a larger range of the sensor or of its amplifier, and record again"
+            )

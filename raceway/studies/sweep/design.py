@@ -6,13 +6,15 @@ import csv
 import itertools
 import json
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.scene.file import parse_value, read_toml
+from raceway.scene.given import tidy
 from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of
 from raceway.studies.many.axes import Axis, parse_axes, shown
@@ -130,15 +132,26 @@ def _few(values: Sequence[object]) -> str:
     return f"{shown(values[0])}, {shown(values[1])}, ..., {shown(values[-1])} ({len(values)} values)"
 
 
-def grid(texts: Iterable[str]) -> Design:
-    """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``.
+def grid(given: Iterable[str] | Mapping[str, Any]) -> Design:
+    """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``, or of keys with their values.
 
     Raises
     ------
     SceneError
         With every mistake in them.
     """
-    return Design(axes=parse_axes(texts, "--grid", MOST_POINTS))
+    return Design(axes=parse_axes(given, "--grid", MOST_POINTS))
+
+
+def listed_points(points: Iterable[Mapping[str, Any]]) -> Design:
+    """A list of points, each a mapping of the same keys to their values.
+
+    Raises
+    ------
+    SceneError
+        No points, or other keys in one of them.
+    """
+    return _listed("points", tidy(list(points)))
 
 
 def point_list(path: Path) -> Design:
@@ -224,7 +237,7 @@ def _text(path: Path) -> str:
         raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
 
 
-def _listed(path: Path, points: object) -> Design:
+def _listed(path: Path | str, points: object) -> Design:
     if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
         raise SceneError.at(str(path), None, "must hold a list of points, each with keys of the scene and their values")
     points = [dict(_dotted(point)) for point in points]

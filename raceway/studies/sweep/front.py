@@ -1,0 +1,152 @@
+"""One scene at many points, for Python and the command line alike: ``raceway.sweep``."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.commands.progress import telling
+from raceway.errors import ConvergenceError, PluginError
+from raceway.framework.registry import Registry, registry_with
+from raceway.scene.given import plain_tables
+from raceway.storage.files import writable
+from raceway.storage.tables import ReadTables, Tables
+from raceway.studies.sweep.dataset import dataset
+from raceway.studies.sweep.design import Design, grid, listed_points
+from raceway.studies.sweep.engine import Sweep, prepare
+from raceway.studies.sweep.engine import sweep as compute
+from raceway.studies.sweep.store import Store
+
+if TYPE_CHECKING:
+    import xarray
+
+    from raceway.commands.progress import Progress
+    from raceway.framework.contracts import Executor
+
+#: Values of the axes by key, or a list of points.
+Axes = Mapping[str, Any] | Iterable[Mapping[str, Any]] | Design
+
+
+def sweep(
+    scene: Any,
+    axes: Axes,
+    *,
+    executor: str | Executor = "serial",
+    workers: int | None = None,
+    store: str | Path | None = None,
+    resume: bool = False,
+    retry_failed: bool = False,
+    plugins: Iterable[str | Path] = (),
+    progress: Progress = None,
+) -> xarray.Dataset:
+    """Compute a scene at every point of a grid or a list.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    axes : key of the scene -> its values (array (n,), list, or the text "start:stop:count"), all combinations of which are computed;
+        or a list of points, each key -> value
+    executor : "serial", "processes", "joblib", "dask" or a plug-in's name, or an executor
+    workers : processes of these, by default 2
+    store : folder in which every finished point is kept; None: a temporary one, removed when the results are loaded
+    resume : go on with a store that is there: compute what is not finished;  retry_failed : failed points again, too
+    plugins : files of one-off plug-ins, which the workers load, too
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+
+    Returns
+    -------
+    xarray.Dataset
+        ``equivalent_stiffness`` [N/m], ``equivalent_damping`` [N s/m], ``stiffness`` (..., 5, 5), ``p0`` [Pa] and others over the
+        keys of ``axes``, units in their ``attrs``; ``status`` says which points failed, their values are NaN
+
+    Raises
+    ------
+    SceneError
+        A mistake in the scene or in a value of an axis; nothing has been computed.
+    PluginError
+        An executor that is not known or cannot work.
+    ConvergenceError
+        Every point failed.
+    RacewayError
+        A store that cannot be written, or that holds another sweep.
+
+    Notes
+    -----
+    Worker processes import the program that calls: outside notebooks it keeps what it does below ``if __name__ == "__main__":``.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.sweep({"bearing": {"preset": "B7206C"}}, {"load.axial": [400.0, 1000.0]})
+    >>> (1e-6 * found.stiffness.sel(dof="y", dof2="y")).round(1).values.tolist()  # kyy [N/um]
+    [170.7, 235.5]
+    """
+    registry, files = registry_with(plugins), tuple(Path(file) for file in plugins)
+    chosen = executor_of(executor, {"workers": workers}, registry)
+    tables, points = plain_tables(scene, registry=registry), design_of(axes)
+    with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as told:
+        folder = Path(temporary) / "sweep" if store is None else writable(Path(store))
+        prepared = prepared_sweep(tables, points, folder, files, resume or retry_failed)
+        with compute(prepared, chosen, retry_failed, told) as done:
+            refuse_all_failed(done)
+            return dataset(done, registry)
+
+
+def prepared_sweep(
+    tables: ReadTables, points: Design, folder: Path, plugins: tuple[Path, ...], resume: bool
+) -> Sweep:
+    """A sweep that was looked over; options that a change of kind leaves out are warned of."""
+    prepared = prepare(tables, points, folder, plugins, resume)
+    for note in prepared.survey.notes:
+        warnings.warn(note, stacklevel=3)
+    return prepared
+
+
+def design_of(axes: Axes) -> Design:
+    """The points of a mapping of axes, or of a list of points."""
+    if isinstance(axes, Design):
+        return axes
+    return grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
+
+
+def executor_of(name: str | Executor, given: ReadTables, registry: Registry) -> Executor:
+    """An executor by its name, with the options that are given and that it has.
+
+    Raises
+    ------
+    PluginError
+        A name that is not known, or an option that it does not have.
+    """
+    options: Tables = {key: value for key, value in given.items() if value is not None}
+    if not isinstance(name, str):
+        if options:
+            raise PluginError(f"{', '.join(options)}: an executor that is made already has its own")
+        return name
+    plugin = registry.find("executor", name).plugin
+    known = {field.name for field in attrs.fields(plugin)}
+    for key in options:
+        if key not in known:
+            raise PluginError(f"executor '{name}' has no --{key}: leave it out, or choose another --executor")
+    try:
+        return plugin(**options)
+    except ValueError as why:
+        raise PluginError(f"executor '{name}': {why}") from None
+
+
+def refuse_all_failed(store: Store) -> None:
+    """A sweep without any result is none.
+
+    Raises
+    ------
+    ConvergenceError
+        With the first point's reason.
+    """
+    states = store.status()
+    if states["failed"] == states["total"]:
+        reason = next(row["reason"] for row in store.rows())
+        raise ConvergenceError(f"all {states['total']} points failed; the first: {reason}")
