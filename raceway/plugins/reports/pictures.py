@@ -70,6 +70,23 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
+def given_axes(axes: Axes | None, width: float = 6.4, height: float = 4.8) -> Axes:
+    """The axes that a caller gave, or new ones of a figure [inch] that notebooks and ``pyplot.show`` display.
+
+    Raises
+    ------
+    RacewayError
+        Where matplotlib is not installed.
+    """
+    if axes is not None:
+        return axes
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        raise RacewayError(f"plots need matplotlib, which is not installed: {extra('pictures')}") from None
+    return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
+
+
 def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
     """Write a figure as PNG, whole or not at all.
 

@@ -59,12 +59,12 @@ def compare(
     kept = folder / "compare-rows.jsonl"
     with show_progress() as progress:
         from raceway.pipeline.result import write_json
+        from raceway.studies.compare.front import compare as study
         from raceway.studies.compare.study import StudyInterrupt
-        from raceway.studies.compare.study import compare as study
 
         stopped = None
         try:
-            comparison = study(tables, list(vary), registry, progress, kept)
+            comparison = study(tables, vary, kept=kept, progress=progress)
         except StudyInterrupt as stop:
             if not stop.partial.rows:
                 raise

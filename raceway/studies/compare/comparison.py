@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import attrs
 
+from raceway.commands.notebook import few_lines, html_table
 from raceway.errors import RacewayError
 from raceway.storage.tables import Tables
 from raceway.studies.compare.explain import explain
 from raceway.studies.compare.findings import QUANTITIES, Findings, Row
 from raceway.studies.many.axes import Axis, shown
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
 
-@attrs.frozen(eq=False, slots=False)
+
+@attrs.frozen(eq=False, slots=False, repr=False)
 class Comparison(Findings):
     """Findings with words, table and picture; ``fault``: why finished runs could not be kept."""
 
@@ -35,6 +41,47 @@ class Comparison(Findings):
             "trends": self.trends,
             "words": self.words,
         }
+
+    def to_xarray(self) -> Dataset:
+        """The numbers over the keys that were varied, NaN where a run gave none.
+
+        Returns
+        -------
+        xarray.Dataset
+            equivalent_stiffness and its error, dynamic_stiffness |Z| [N/m] and status, a dimension for each key
+
+        Raises
+        ------
+        RacewayError
+            xarray is missing.
+        """
+        from raceway.studies.compare.labelled import labelled
+
+        return labelled(self)
+
+    def plot(self, quantity: str = "equivalent_stiffness", ax: Axes | None = None) -> Axes:
+        """Draw K or |Z| [N/um] over the axis of numbers with most values; without one, a dot for each run.
+
+        Parameters
+        ----------
+        quantity : "equivalent_stiffness" or "dynamic_stiffness"
+        ax : matplotlib axes; new ones without
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing.
+        """
+        from raceway.studies.compare.picture import draw_on
+
+        return draw_on(self.to_dict(), quantity, ax)
+
+    def __repr__(self) -> str:
+        done = sum(not row.failed for row in self.rows)
+        return few_lines(f"Comparison: {done} of {len(self.rows)} runs finished", [self.title, *self.words])
+
+    def _repr_html_(self) -> str:
+        return html_table(self.title, self.table(), self.words)
 
     def table(self) -> list[dict[str, str]]:
         """One row a run, as short text for a screen; why a run is in doubt is said in the words."""

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.framework.options import between, option
-from raceway.plugins.reports.pictures import new_figure, save_figure
+from raceway.plugins.reports.pictures import given_axes, new_figure, save_figure
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 _COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b")
 _LINES = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)))
@@ -76,6 +77,26 @@ def draw(result: Tables) -> Figure:
     figure.suptitle(f"K(w) and |Z| over {along}: {result['title']}", fontsize=13)
     _legend(figure, styles, any(map(in_doubt, result["rows"])))
     return figure
+
+
+def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
+    """One quantity [N/um] of a comparison on axes."""
+    known = {axis["key"]: axis["values"] for axis in result["axes"]}
+    varied = [key for key, values in known.items() if len(values) > 1]
+    along = max((key for key in varied if all(map(_is_number, known[key]))), key=lambda key: len(known[key]), default=None)
+    panel = given_axes(axes, 8.0, 5.0)
+    if along is None:
+        _dots_on(panel, result["rows"], quantity)
+        panel.set_yticks(range(len(result["rows"])), _names(result["rows"], varied))
+        panel.set_ylim(len(result["rows"]) - 0.5, -0.5)
+        return panel
+    styles = {key: [_text(value) for value in known[key]] for key in varied if key != along}
+    _curves(panel, result["rows"], quantity, along, styles, _limits(result["rows"]))
+    panel.set_xlabel(along)
+    panel.set_ylabel(f"{_LABELS[quantity]}  [N/um]")
+    if handles := _handles(styles, any(map(in_doubt, result["rows"]))):
+        panel.legend(handles=handles, frameon=False, fontsize=9)
+    return panel
 
 
 def value_of(row: Tables, quantity: str) -> float | None:
@@ -140,7 +161,13 @@ def _look(places: list[int]) -> Tables:
 
 
 def _legend(figure: Figure, styles: dict[str, list[str]], doubt: bool) -> None:
-    """One legend for the figure: an entry for each value of each styled axis, in the trait that shows it."""
+    """One legend for the figure."""
+    if handles := _handles(styles, doubt):
+        figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)), frameon=False, fontsize=10.5)
+
+
+def _handles(styles: dict[str, list[str]], doubt: bool) -> list[Line2D]:
+    """An entry for each value of each styled axis, in the trait that shows it."""
     from matplotlib.lines import Line2D
 
     handles = []
@@ -153,34 +180,38 @@ def _legend(figure: Figure, styles: dict[str, list[str]], doubt: bool) -> None:
             handles.append(Line2D([], [], label=f"{key} = {value}", **look))
     if doubt:
         handles.append(Line2D([], [], linestyle="", marker="x", color="#555f6b", label="in doubt: not in the effects"))
-    if handles:
-        figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)), frameon=False, fontsize=10.5)
+    return handles
 
 
 def _dots(result: Tables, varied: list[str]) -> Figure:
     """A dot for each run, where no axis has numbers: one line a combination, K(w) and |Z| side by side."""
     rows = result["rows"]
-    names = [
-        ", ".join(f"{key.rpartition('.')[2]} = {_text(row['point'][key])}" for key in varied) or "the scene" for row in rows
-    ]
     figure = new_figure(12.8, 2.2 + 0.32 * len(rows))
     panels = figure.subplots(1, 2, sharey=True)
-    for (quantity, label), panel in zip(_LABELS.items(), panels, strict=True):
-        for place, row in enumerate(rows):
-            value = value_of(row, quantity)
-            if value is not None:
-                panel.plot([value], [place], "x" if in_doubt(row) else "o", color=_COLOURS[0], markersize=8)
-            else:
-                panel.annotate(
-                    row["result"].get("status", "no value"), (0.02, place), xycoords=("axes fraction", "data"), va="center"
-                )
-        panel.set_xlabel(f"{label}  [N/um]")
-        panel.grid(True, color="#e3e7eb", linewidth=0.8)
-        panel.spines[["top", "right"]].set_visible(False)
-    panels[0].set_yticks(range(len(rows)), names)
+    for quantity, panel in zip(_LABELS, panels, strict=True):
+        _dots_on(panel, rows, quantity)
+    panels[0].set_yticks(range(len(rows)), _names(rows, varied))
     panels[0].set_ylim(len(rows) - 0.5, -0.5)
     figure.suptitle(f"K(w) and |Z|: {result['title']}", fontsize=13)
     return figure
+
+
+def _dots_on(panel: Axes, rows: list[Tables], quantity: str) -> None:
+    for place, row in enumerate(rows):
+        value = value_of(row, quantity)
+        if value is not None:
+            panel.plot([value], [place], "x" if in_doubt(row) else "o", color=_COLOURS[0], markersize=8)
+        else:
+            words = row["result"].get("status", "no value")
+            panel.annotate(words, (0.02, place), xycoords=("axes fraction", "data"), va="center")
+    panel.set_xlabel(f"{_LABELS[quantity]}  [N/um]")
+    panel.grid(True, color="#e3e7eb", linewidth=0.8)
+    panel.spines[["top", "right"]].set_visible(False)
+
+
+def _names(rows: list[Tables], varied: list[str]) -> list[str]:
+    words = (", ".join(f"{key.rpartition('.')[2]} = {_text(row['point'][key])}" for key in varied) for row in rows)
+    return [word or "the scene" for word in words]
 
 
 def _by_interaction(keys: list[str], along: str, effects: list[Tables]) -> list[str]:

@@ -5,9 +5,9 @@ Only ``raceway.pipeline.run.run`` is called.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
@@ -36,7 +36,7 @@ class StudyInterrupt(KeyboardInterrupt):
 
 def compare(
     scene_tables: ReadTables,
-    vary: Iterable[str],
+    vary: Iterable[str] | Mapping[str, Any],
     registry: Registry | None = None,
     on_progress: OnProgress | None = None,
     store: Path | None = None,
@@ -46,7 +46,7 @@ def compare(
     Parameters
     ----------
     scene_tables : plain tables of a TOML scene
-    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``
+    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values
     on_progress : called as ``on_progress(what, done, total)`` after each run; an exception stops the study
     store : file that finished runs are kept in and taken from
 

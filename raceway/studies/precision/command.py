@@ -76,10 +76,18 @@ def precision(given: PrecisionOptions) -> int:
     tell_faults(registry)
     kept = folder / "precision-rows.jsonl"
     with show_progress() as progress:
-        from raceway.studies.precision.study import precision as study
+        from raceway.studies.precision.front import precision as study
 
         with keeping("rows", kept):
-            found = study(tables, given.vary, given.reference, given.repeats, given.limit, kept, registry, progress)
+            found = study(
+                tables,
+                given.vary,
+                reference=given.reference,
+                repeats=given.repeats,
+                limit_s=given.limit,
+                kept=kept,
+                progress=progress,
+            )
     content, files = found.to_dict(), list[str]()
     failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
     if failed is None:

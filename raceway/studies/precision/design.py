@@ -13,8 +13,9 @@ models            what changes the physics, one at a time: law, discretisation, 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import product
+from typing import Any
 
 import attrs
 
@@ -83,7 +84,7 @@ def is_numerical(key: str) -> bool:
     return key.partition(".")[0] in NUMERICAL
 
 
-def make_design(tables: ReadTables, vary: Iterable[str], limit_s: float, registry: Registry) -> Design:
+def make_design(tables: ReadTables, vary: Iterable[str] | Mapping[str, Any], limit_s: float, registry: Registry) -> Design:
     """The settings of a study.
 
     Parameters
@@ -96,9 +97,9 @@ def make_design(tables: ReadTables, vary: Iterable[str], limit_s: float, registr
     SceneError
         A mistake in the scene or in an axis.
     """
-    texts, notes = list(vary), list[str]()
-    if texts:
-        axes = parse_axes(texts)
+    given, notes = vary if isinstance(vary, Mapping) else list(vary), list[str]()
+    if given:
+        axes = parse_axes(given)
         title = refuse_mistakes(tables, axes, registry)
         wanted = [("axes", point) for point in points(axes)]
     else:
@@ -110,7 +111,7 @@ def make_design(tables: ReadTables, vary: Iterable[str], limit_s: float, registr
         setting = setting_at(tables, family, values, registry, notes)
         if setting.scene is not None and setting.predicted_s > limit_s:
             left_out.append((family, values, f"predicted {setting.predicted_s:.3g} s, above the limit of {limit_s:g} s"))
-        elif setting.scene is None and not texts:
+        elif setting.scene is None and not given:
             left_out.append((family, values, setting.reason))
         elif all(setting.tables != other.tables for other in settings):
             settings.append(setting)

@@ -150,9 +150,17 @@ def _words(setting: Tables) -> str:
 
 
 def draw(result: Tables) -> Figure:
-    """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front."""
+    """The figure of a study."""
     figure = new_figure(12.8, 8.6)
-    panel = figure.add_subplot()
+    draw_on(panel := figure.add_subplot(), result)
+    figure.suptitle(f"Error against run time: {result['title']}", fontsize=13)
+    if panel.get_legend_handles_labels()[1]:
+        figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    return figure
+
+
+def draw_on(panel: Axes, result: Tables) -> None:
+    """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front."""
     bound = result["reference"]["error"]
     # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
     least = bound / 10.0 if bound else _LEAST
@@ -182,10 +190,6 @@ def draw(result: Tables) -> Figure:
     panel.grid(True, which="major", color="#e3e7eb", linewidth=0.8)
     panel.set_axisbelow(True)
     panel.spines[["top", "right"]].set_visible(False)
-    figure.suptitle(f"Error against run time: {result['title']}", fontsize=13)
-    if base or other:
-        figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    return figure
 
 
 def _front(panel: Axes, result: Tables, least: float) -> None:

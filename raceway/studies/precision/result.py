@@ -5,13 +5,20 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import attrs
 
+from raceway.commands.notebook import few_lines, html_table
 from raceway.errors import RacewayError
+from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
 from raceway.studies.precision.reference import Reference, distance, main_size, minus
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
 
 THRESHOLDS = (0.01, 0.001, 0.0001)
 #: A reference counts as exact for rows whose error is this many times its bound.
@@ -23,7 +30,7 @@ LADDERS = {"integrator.steps_per_turn": True, "mesh.element_size": False}
 Row = Tables
 
 
-@attrs.frozen(eq=False, slots=False)
+@attrs.frozen(eq=False, slots=False, repr=False)
 class Precision:
     """Findings of a precision study.
 
@@ -193,6 +200,44 @@ class Precision:
             "left_out": [{"family": f, "setting": v, "why": why} for f, v, why in self.left_out],
             "words": self.words,
         }
+
+    def to_xarray(self) -> Dataset:
+        """Error, time [s] and size of Z [N/m] of every setting, over ``setting``, its words.
+
+        Raises
+        ------
+        RacewayError
+            xarray is missing.
+        """
+        from raceway.studies.precision.labelled import labelled
+
+        return labelled(self)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw relative error over the run's time [s], with the front of what no other setting beats.
+
+        Parameters
+        ----------
+        ax : matplotlib axes; new ones without
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing.
+        """
+        from raceway.studies.precision.picture import draw_on
+
+        panel = given_axes(ax, 9.0, 6.0)
+        draw_on(panel, self.to_dict())
+        panel.legend(frameon=False, fontsize=8)
+        return panel
+
+    def __repr__(self) -> str:
+        known = sum(row["error"] is not None for row in self.judged)
+        return few_lines(f"Precision: {known} of {len(self.rows)} settings with a known error", [self.title, *self.words])
+
+    def _repr_html_(self) -> str:
+        return html_table(self.title, self.table(), [*self.words, "* on the front; ~ known to the reference's bound only"])
 
     def table(self) -> list[dict[str, str]]:
         """One line a row, as short text for a screen."""

@@ -7,13 +7,14 @@ finished, ``result`` judges.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.file import parse_change
+from raceway.scene.given import tidy
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.measured_run import measured_once
 from raceway.studies.many.row_store import RowStore
@@ -31,8 +32,8 @@ LIMIT_S = 30.0
 
 def precision(
     tables: ReadTables,
-    vary: Iterable[str] = (),
-    reference: Iterable[str] = (),
+    vary: Iterable[str] | Mapping[str, Any] = (),
+    reference: Iterable[str] | Mapping[str, Any] = (),
     repeats: int = REPEATS,
     limit_s: float = LIMIT_S,
     store: Path | None = None,
@@ -44,8 +45,8 @@ def precision(
     Parameters
     ----------
     tables : plain tables of a TOML scene
-    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``, whose product is run; the default design without them
-    reference : changes ``KEY=VALUE`` that make the reference; found by itself without them
+    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values, whose product is run; the default design without them
+    reference : changes ``KEY=VALUE``, or keys with values, that make the reference; found by itself without them
     repeats : runs of each setting
     limit_s : settings predicted to take longer are left out [s]
     store : file that finished rows are kept in and taken from
@@ -86,9 +87,9 @@ def precision(
     return Precision(design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault)
 
 
-def _given(settings: tuple[Setting, ...], changes: Iterable[str], registry: Registry) -> Tables:
+def _given(settings: tuple[Setting, ...], changes: Iterable[str] | Mapping[str, Any], registry: Registry) -> Tables:
     """The reference that the user names, checked with the first setting that can run."""
-    given = dict(parse_change(text) for text in changes)
+    given = tidy(changes) if isinstance(changes, Mapping) else dict(parse_change(text) for text in changes)
     first = next((setting for setting in settings if setting.scene is not None), None)
     if given and first is not None:
         found = setting_at(first.tables, "reference", given, registry)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-import attrs
 import click
 
 from raceway.commands.console import warn
@@ -23,14 +22,12 @@ from raceway.commands.frame import (
     show_progress,
 )
 from raceway.commands.inputs import changed_tables, has_netcdf, slug, tell_faults
-from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.framework.contracts import Executor
-    from raceway.framework.registry import Registry
     from raceway.studies.sweep import Design, Store
 
 
@@ -82,23 +79,22 @@ def sweep(given: SweepOptions) -> int:
       raceway sweep examples/b7206.toml --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200,2000
       raceway sweep examples/steady_orbit.toml --list points.csv --executor joblib --workers 4
     """
-    from raceway.studies.sweep import prepare
     from raceway.studies.sweep import sweep as study
+    from raceway.studies.sweep.front import executor_of, prepared_sweep
     from raceway.studies.sweep.store import exists
 
     registry = registry_with(given.plugins)
     points = _design(given.axes, given.listed, given.design)
-    chosen = _executor(registry, given.executor, {"workers": given.workers, "scheduler": given.scheduler})
+    chosen = executor_of(given.executor, {"workers": given.workers, "scheduler": given.scheduler}, registry)
     tables, mistakes = changed_tables(given.scene, given.changes, registry)
     if mistakes:
         raise SceneError(mistakes)
     folder = writable(given.out or RESULTS / f"{slug(str(tables['title']))}-sweep")
     tell_faults(registry)
-    if (given.resume or given.retry_failed) and not exists(folder):
+    resume = given.resume or given.retry_failed
+    if resume and not exists(folder):
         warn(f"`{folder}` holds no sweep to go on with: it is begun anew", label="")
-    prepared = prepare(tables, points, folder, given.plugins, given.resume or given.retry_failed)
-    for note in prepared.survey.notes:
-        warn(note)
+    prepared = prepared_sweep(tables, points, folder, resume, given.plugins)
     stopped: BaseException | None = None
     with show_progress(remaining=True, waiting=f"waiting for {given.scheduler}" if given.scheduler else None) as progress:
         from raceway.studies.sweep import open_store
@@ -116,6 +112,7 @@ def sweep(given: SweepOptions) -> int:
 def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | None) -> int:
     """Write the data set, then the tables or JSON; then what stopped the sweep."""
     from raceway.studies.sweep.dataset import TABLE, write_csv, write_netcdf
+    from raceway.studies.sweep.front import all_failed
 
     files = [str(store.path / "points.sqlite")]
     failed = attempt(lambda: [write_netcdf(store)], files) if has_netcdf() else None
@@ -124,9 +121,8 @@ def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | No
     states = store.status()
     if isinstance(stopped, RacewayError):
         failed = stopped
-    elif failed is None and states["failed"] == states["total"]:
-        reason = next(row["reason"] for row in store.rows())
-        failed = ConvergenceError(f"all {states['total']} points failed; the first: {reason}")
+    elif failed is None:
+        failed = all_failed(store)
     content = {
         "title": store.title,
         "store": str(store.path),
@@ -158,17 +154,3 @@ def _design(axes: Sequence[str], listed: Path | None, design: Path | None) -> De
     if listed is not None:
         return point_list(listed)
     return design_file(design) if design is not None else grid(axes)
-
-
-def _executor(registry: Registry, name: str, given: Tables) -> Executor:
-    """An executor of that name, with the options that are given and that it has."""
-    plugin = registry.find("executor", name).plugin
-    options = {key: value for key, value in given.items() if value is not None}
-    known = {field.name for field in attrs.fields(plugin)}
-    for key in options:
-        if key not in known:
-            raise PluginError(f"executor '{name}' has no --{key}: leave it out, or choose another --executor")
-    try:
-        return plugin(**options)
-    except ValueError as why:
-        raise PluginError(f"executor '{name}': {why}") from None

@@ -137,13 +137,13 @@ def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
         values = next(a.values for a in design.axes if a.key == key) if design.axes else [p[key] for p in design.listed]
         unit, words = ("", "") if scene is None else key_facts(scene, key)
         dim = key if design.axes else "point"
-        found[key] = ((dim,), _labels(values), {"units": unit or "1", "long_name": f"{key}: {words}" if words else key})
+        found[key] = ((dim,), axis_labels(values), {"units": unit or "1", "long_name": f"{key}: {words}" if words else key})
     if not design.axes:
         found["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
     return found
 
 
-def _labels(values: Sequence[object]) -> np.ndarray:
+def axis_labels(values: Sequence[object]) -> np.ndarray:
     """Numbers as numbers; anything else as text."""
     if all(is_number(value) for value in values):
         return np.array(values)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.commands.progress import telling
-from raceway.errors import ConvergenceError, PluginError
+from raceway.errors import ConvergenceError, PluginError, SceneError
 from raceway.framework.registry import Registry, registry_with
 from raceway.scene.given import plain_tables
 from raceway.storage.files import writable
@@ -28,6 +28,12 @@ if TYPE_CHECKING:
     from raceway.commands.progress import Progress
     from raceway.framework.contracts import Executor
 
+SPEED = "excitation.speed_rpm"
+_FROM_ZERO = (
+    "A force that turns has a speed; K(n) from 0 r/min is the tangent, swept over the speed of the ring: raceway sweep SCENE "
+    "--set identifier.kind=tangent --grid kinematics.spin_speed_rpm=0:20000:21 --out STORE, then for rotor programs raceway export "
+    "STORE --from tangent --ross bearing.toml"
+)
 #: Values of the axes by key, or a list of points.
 Axes = Mapping[str, Any] | Iterable[Mapping[str, Any]] | Design
 
@@ -86,25 +92,42 @@ def sweep(
     >>> (1e-6 * found.stiffness.sel(dof="y", dof2="y")).round(1).values.tolist()  # kyy [N/um]
     [170.7, 235.5]
     """
-    registry, files = registry_with(plugins), tuple(Path(file) for file in plugins)
-    chosen = executor_of(executor, {"workers": workers}, registry)
-    tables, points = plain_tables(scene, registry=registry), design_of(axes)
     with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as told:
         folder = Path(temporary) / "sweep" if store is None else writable(Path(store))
-        prepared = prepared_sweep(tables, points, folder, files, resume or retry_failed)
-        with compute(prepared, chosen, retry_failed, told) as done:
-            refuse_all_failed(done)
-            return dataset(done, registry)
+        chosen = executor_of(executor, {"workers": workers}, registry_with(plugins))
+        prepared = prepared_sweep(scene, axes, folder, resume or retry_failed, plugins)
+        with compute(prepared, chosen, retry_failed, told) as found:
+            if (failed := all_failed(found)) is not None:
+                raise failed
+            return dataset(found, registry_with(plugins))
 
 
-def prepared_sweep(
-    tables: ReadTables, points: Design, folder: Path, plugins: tuple[Path, ...], resume: bool
-) -> Sweep:
-    """A sweep that was looked over; options that a change of kind leaves out are warned of."""
-    prepared = prepare(tables, points, folder, plugins, resume)
+def prepared_sweep(scene: Any, axes: Axes, store: Path, resume: bool = False, plugins: Iterable[str | Path] = ()) -> Sweep:
+    """A sweep that was looked over, nothing computed; options that a change of kind leaves out are warned of.
+
+    Raises
+    ------
+    SceneError, PluginError, RacewayError
+        As ``sweep``.
+    """
+    files = tuple(Path(file) for file in plugins)
+    tables = plain_tables(scene, registry=registry_with(files))
+    try:
+        prepared = prepare(tables, design_of(axes), store, files, resume)
+    except SceneError as error:
+        raise with_static_remedy(error) from None
     for note in prepared.survey.notes:
-        warnings.warn(note, stacklevel=3)
+        warnings.warn(note, stacklevel=2)
     return prepared
+
+
+def with_static_remedy(error: SceneError) -> SceneError:
+    """The same mistakes; who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had."""
+    mistakes = [
+        attrs.evolve(one, message=f"{one.message}. {_FROM_ZERO}") if one.path == SPEED and one.value == 0 else one
+        for one in error.mistakes
+    ]
+    return SceneError(mistakes)
 
 
 def design_of(axes: Axes) -> Design:
@@ -138,15 +161,10 @@ def executor_of(name: str | Executor, given: ReadTables, registry: Registry) -> 
         raise PluginError(f"executor '{name}': {why}") from None
 
 
-def refuse_all_failed(store: Store) -> None:
-    """A sweep without any result is none.
-
-    Raises
-    ------
-    ConvergenceError
-        With the first point's reason.
-    """
+def all_failed(store: Store) -> ConvergenceError | None:
+    """A sweep without any result is none: the error, with the first point's reason."""
     states = store.status()
-    if states["failed"] == states["total"]:
-        reason = next(row["reason"] for row in store.rows())
-        raise ConvergenceError(f"all {states['total']} points failed; the first: {reason}")
+    if states["failed"] < states["total"]:
+        return None
+    reason = next(row["reason"] for row in store.rows())
+    return ConvergenceError(f"all {states['total']} points failed; the first: {reason}")

@@ -1,0 +1,50 @@
+"""A precision study as a labelled data set."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from raceway.errors import RacewayError, extra
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from raceway.studies.precision.result import Precision
+
+
+def labelled(found: Precision) -> Dataset:
+    """Error, time and value of every setting.
+
+    Raises
+    ------
+    RacewayError
+        xarray is missing.
+    """
+    try:
+        import xarray
+    except ImportError as why:
+        raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
+    content = found.to_dict()
+    about = {
+        "value": ("N/m", "size of Z, or of the tangent where nothing is identified"),
+        "error": ("1", "relative error against the reference of the row's model"),
+        "own_error": ("1", "relative error that the run estimates itself"),
+        "time_s": ("s", "of the fastest repeat, compiling apart"),
+    }
+    rows = content["rows"]
+    variables = {
+        name: (
+            "setting",
+            np.array([np.nan if row[name] is None else row[name] for row in rows], dtype=float),
+            {"units": unit, "long_name": words},
+        )
+        for name, (unit, words) in about.items()
+    }
+    names = np.array([text["setting"].lstrip("* ") for text in found.table()], dtype=object)
+    more = {
+        "family": ("setting", np.array([row["family"] for row in rows], dtype=object)),
+        "status": ("setting", np.array([row["status"] for row in rows], dtype=object)),
+    }
+    return xarray.Dataset({**variables, **more}, {"setting": names}, {"title": found.title})
