@@ -11,6 +11,10 @@ RULE_OF_THUMB_S = 1.25e-5
 _NOTHING = 1e-2
 
 
+#: What to do in the scene.
+_REMEDY = "give contact.damping (N s/m, each contact) accordingly"
+
+
 def dry_damping_note(content: ReadTables) -> str | None:
     """The sentence for one run.
 
@@ -20,29 +24,23 @@ def dry_damping_note(content: ReadTables) -> str | None:
 
     Returns
     -------
-    None where the scene gives contacts or rotor a damping, where nothing is identified, or where C is not small.
+    None where nothing is identified, or where C is not far below the rule of thumb.
     """
-    found, scene = content["identification"], content["scene"]
-    if found is None or scene["contact"]["damping"] or scene["rotor"]["damping"]:
+    found = content["identification"]
+    if found is None:
         return None
     error, damping = found["equivalent_damping_error"], found["equivalent_damping"]
     resolved = error is None or abs(damping) > error
     return dry_damping_words(damping if resolved else None, found["equivalent_stiffness"])
 
 
-def dry_damping_words(damping: float | None, stiffness: float, also: str = "") -> str | None:
-    """The sentence for C [N s/m], None where it is not resolved, and K [N/m] of a bearing without damping of its own.
-
-    Parameters
-    ----------
-    also : remedies beside the scene's key, for instance "or give --damping C"
-    """
+def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _REMEDY) -> str | None:
+    """The sentence for C [N s/m], None where it is not resolved, and K [N/m]; None where C is not far below the rule of thumb."""
     rule = RULE_OF_THUMB_S * abs(stiffness)
     if damping is not None and abs(damping) > _NOTHING * rule:
         return None
     told = "is not resolved" if damping is None else "is 0" if damping == 0.0 else f"is {damping:.2g} N s/m"
-    remedy = f"set contact.damping{', ' if also else ''}{also}"
     return (
         f"C {told}: a dry bearing damps next to nothing, where the rule of thumb of rotor programs, 1.25e-5 s times K, gives "
-        f"{rule:.2g} N s/m. For a damping from lubricant and seats: {remedy}"
+        f"{rule:.2g} N s/m. Lubricant, cage and seats damp more: {remedy}"
     )

@@ -16,9 +16,10 @@ import math
 import attrs
 import numpy as np
 
+from raceway.commands.screen.damping import dry_damping_words
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.studies.many.axes import shown
-from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent
+from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent, tilt_note
 from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
@@ -90,8 +91,9 @@ def coefficients(selection: Selection, source: str | None = None, unresolved: fl
         refuse_without_motion(selection)
         made = rotating if source == "rotating" else directions
         stiffness, damping, resolved, definition, notes = made(selection)
+    known = resolved[..., 0, 0] & resolved[..., 1, 1]
     damping, told = _without_noise(damping, resolved, unresolved)
-    notes += told
+    notes += [*told, *tilt_note(selection), *_dry(source, stiffness, damping, known, unresolved)]
     axial = reduced(selection)[..., 0, 0] if "stiffness" in selection.dataset else np.zeros(stiffness.shape[:-2])
     axial = axial[..., 0] if axial.ndim > stiffness.ndim - 2 else axial
     speed, frequency, stiffness, damping, axial = _table(selection, stiffness, damping, axial)
@@ -114,6 +116,21 @@ def _without_noise(damping: np.ndarray, resolved: np.ndarray, instead: float) ->
         return out, []
     given = f"cyy = czz = {instead:g} N s/m stands there, as given" if instead else "0 stands there"
     return out, [f"damping is not resolved at {int((~known).sum())} of {known.size} points, smaller than its error: {given}"]
+
+
+def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, known: np.ndarray, unresolved: float) -> list[str]:
+    """That a dry bearing damps next to nothing; not to who gives a damping where there is none."""
+    if unresolved:
+        return []
+    largest = float(np.max(damping[..., 0, 0][known])) if known.any() else 0.0 if source == "tangent" else None
+    contact = (
+        ""
+        if source == "tangent"
+        else "give contact.damping (N s/m, each contact) accordingly, or, where C is not resolved, "
+    )
+    remedy = f"{contact}--damping C (in Python damping=C)"
+    told = dry_damping_words(largest, float(np.max(stiffness[..., 0, 0])), remedy)
+    return [] if told is None else [told]
 
 
 def _default_source(selection: Selection) -> str:

@@ -9,10 +9,9 @@ import click
 
 from raceway.commands.console import warn
 from raceway.commands.frame import PATH, attempt, common, record, show
-from raceway.commands.inputs import slug
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
-from raceway.studies.sweep.store_command import at_option, head, selection_of, store_argument, told
+from raceway.studies.sweep.store_command import at_option, store_argument
 
 
 class ExportOptions(NamedTuple):
@@ -25,6 +24,7 @@ class ExportOptions(NamedTuple):
     damping: float
     ross_version: str | None
     node: int
+    tag: str | None
     as_json: bool
 
 
@@ -47,6 +47,7 @@ class ExportOptions(NamedTuple):
 @click.option(
     "--node", type=click.IntRange(min=0), default=0, show_default=True, help="Of the rotor, where the bearing stands."
 )
+@click.option("--tag", metavar="NAME", help="The element's name in ROSS [the bearing's].")
 @common
 @record(ExportOptions)
 def export(given: ExportOptions) -> int:
@@ -59,60 +60,32 @@ def export(given: ExportOptions) -> int:
     \b
     Example:
       raceway export raceway-out/B7206C-sweep --ross bearing.toml --at load.axial=1000
+    \b
+    K(n) from 0 r/min on, the tangent of the equilibrium:
+      raceway sweep examples/b7206.toml --set identifier.kind=tangent \\
+          --grid kinematics.spin_speed_rpm=0:20000:21 --out raceway-out/from-rest
+      raceway export raceway-out/from-rest --from tangent --ross bearing.toml
     """
-    from raceway.studies.ross.coefficients import coefficients
-    from raceway.studies.ross.file import check_name, installed_generation, ross_file
+    from raceway.studies.ross.file import check_name, installed_generation
+    from raceway.studies.ross.front import export_ross
 
     check_name(given.ross)
     writable(given.ross.parent)
-    selection = selection_of(given.store, given.at)
-    found = installed_generation()
-    generation = int(given.ross_version) if given.ross_version else found or 3
-    if given.ross_version is None and found is None:
+    if given.ross_version is None and installed_generation() is None:
         warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
-    table = coefficients(selection, given.source, given.damping)
-    file = ross_file(table, generation, slug(selection.title), given.node, head(selection))
+    found = export_ross(
+        given.store,
+        at=given.at,
+        source=given.source,
+        damping=given.damping,
+        ross_version=given.ross_version,
+        node=given.node,
+        tag=given.tag,
+    )
     files: list[str] = []
-    failed = attempt(lambda: [file.write(given.ross)], files)
-    content: Tables = {
-        "store": str(given.store),
-        "ross": generation,
-        "source": table.source,
-        "definition": table.definition,
-        "speed": None if table.speed is None else table.speed.tolist(),
-        "frequency": None if table.frequency is None else table.frequency.tolist(),
-        "coefficients": {name: values.tolist() for name, values in table.columns().items()},
-        "notes": list(file.notes),
-        "files": files,
-    }
-    from raceway.commands.screen.text import rows_table
+    failed = attempt(lambda: [found.write(given.ross)], files)
+    content: Tables = {"store": str(given.store), **found.to_dict(), "files": files}
+    from raceway.studies.ross.screen import export_screen
 
-    show(content, given.as_json, failed, lambda: told(export_words(content), rows_table(export_rows(content))))
+    show(content, given.as_json, failed, lambda: export_screen(content, files))
     return 0
-
-
-def export_rows(content: Tables) -> list[Tables]:
-    """One row a point of a table over one axis; the ends of a table over two."""
-    import numpy as np
-
-    axes = {name: content[name] for name in ("speed", "frequency") if content[name] is not None}
-    columns = {name: np.array(values) for name, values in content["coefficients"].items()}
-    largest = {letter: max(np.max(np.abs(v)) for name, v in columns.items() if name[0] == letter) for letter in "kc"}
-    # Cross terms of an isotropic bearing are rounding: columns of it say nothing.
-    shown = [name for name, values in columns.items() if np.max(np.abs(values)) > 1e-9 * largest[name[0]]]
-    shape = tuple(len(values) for values in axes.values())
-    rows = []
-    for place in np.ndindex(shape):
-        if len(shape) == 2 and any(0 < k < size - 1 for k, size in zip(place, shape, strict=True)):
-            continue
-        row: Tables = {f"{name} (rad/s)": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
-        for name in shown:
-            scale, unit = (1e-6, "N/µm") if name[0] == "k" else (1.0, "N s/m")
-            row[f"{name} ({unit})"] = float(columns[name][place]) * scale
-        rows.append(row)
-    return rows
-
-
-def export_words(content: Tables) -> list[str]:
-    """Definition, assumptions, losses, file."""
-    return [f"for ROSS {content['ross']}", *content["notes"], *(f"written: {name}" for name in content["files"])]

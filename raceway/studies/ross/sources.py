@@ -169,14 +169,33 @@ def tangent(selection: Selection) -> Found:
     return radial, none, none.astype(bool), f"tangent of the equilibrium, {_tilt_words(selection)}", notes
 
 
-def reduced(selection: Selection) -> np.ndarray:
-    """(..., 3, 3) tangent over x, y, z with the tilts as supported."""
+def reduced(selection: Selection, tilt: float | str | None = None) -> np.ndarray:
+    """(..., 3, 3) tangent over x, y, z with the tilts as supported, or as given."""
     matrix = np.array(selection.dataset["stiffness"].values, dtype=float)
-    tilt = selection.value("supports.tilt", "locked")
+    tilt = selection.value("supports.tilt", "locked") if tilt is None else tilt
     if tilt == "locked":
         return matrix[..., :3, :3]
     tilts = matrix[..., 3:, 3:] + (0.0 if tilt == "free" else float(tilt)) * np.eye(2)
     return matrix[..., :3, :3] - matrix[..., :3, 3:] @ np.linalg.solve(tilts, matrix[..., 3:, :3])
+
+
+def tilt_note(selection: Selection) -> list[str]:
+    """How the tilt is held in the numbers, and what it is worth."""
+    if "stiffness" not in selection.dataset:
+        return []
+    try:
+        locked, free = (reduced(selection, tilt)[..., 1, 1] for tilt in ("locked", "free"))
+    except np.linalg.LinAlgError:  # nothing resists a tilt: there is no free one
+        return []
+    return [
+        f"{_tilt_words(selection)} in these numbers: the tangent kyy is {_micro_range(locked)} with the tilt locked and "
+        f"{_micro_range(free)} with it free; supports.tilt = locked is for a stiff rotor, free for a compliant shaft"
+    ]
+
+
+def _micro_range(stiffness: np.ndarray) -> str:
+    low, high = (f"{1e-6 * float(end):.4g}" for end in (np.min(stiffness), np.max(stiffness)))
+    return f"{low} N/µm" if low == high else f"{low} to {high} N/µm"
 
 
 def _tilt_words(selection: Selection) -> str:

@@ -1,0 +1,109 @@
+"""A sweep's coefficients for the rotor program ROSS, for Python and the command line alike: ``raceway.export_ross``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from raceway.commands.inputs import slug
+from raceway.errors import RacewayError, SceneError
+from raceway.scene.given import tidy
+from raceway.studies.ross.coefficients import coefficients
+from raceway.studies.ross.file import GENERATIONS, check_name, installed_generation, ross_file
+from raceway.studies.ross.table import RossTable
+from raceway.studies.sweep.selection import parse_at, select
+from raceway.studies.sweep.store import open_store
+from raceway.studies.sweep.store_command import head
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from raceway.studies.sweep.selection import Selection
+
+
+def export_ross(
+    data: Any,
+    path: str | Path | None = None,
+    *,
+    at: Mapping[str, Any] | Iterable[str] = (),
+    source: str | None = None,
+    damping: float = 0.0,
+    ross_version: int | str | None = None,
+    node: int = 0,
+    tag: str | None = None,
+) -> RossTable:
+    """Linearised coefficients kyy, kyz, kzy, kzz, cyy ... of a swept bearing, for ROSS.
+
+    Parameters
+    ----------
+    data : what ``raceway.sweep`` gave (xarray.Dataset), or the folder of its store; at least 5 speeds
+    path : .toml or .json file that ROSS reads; None: nothing is written
+    at : key -> value of every other axis of the sweep, for instance ``{"load.axial": 1000}``
+    source : "rotating", "directions" or "tangent"; by default what the sweep's excitation gives
+    damping : cyy and czz [N s/m] where the sweep's own is smaller than its error
+    ross_version : 2 or 3; None: of the ROSS that is installed, else 3
+    node : of the rotor, where the bearing stands
+    tag : the element's name; None: of the bearing's preset
+
+    Returns
+    -------
+    RossTable
+        ``coefficients`` [N/m, N s/m, rad/s], ``notes``, ``write(path)``, and ``element()``, the ross.BearingElement
+
+    Raises
+    ------
+    SceneError
+        Axes that are to be chosen first, too few speeds, or a value that the sweep does not have.
+    RacewayError
+        A bearing that such coefficients do not describe, points without result, a file that cannot be written.
+
+    Examples
+    --------
+    The stiffness from standstill on, as tangent of the equilibrium:
+
+    >>> import raceway as rw
+    >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+    >>> found = rw.export_ross(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}))
+    >>> found.tag, (1e-6 * found.coefficients.stiffness[:, 0, 0]).round(1).tolist()  # kyy [N/um]
+    ('B7206C', [238.2, 237.8, 236.0, 230.9, 219.2])
+    """
+    if path is not None:
+        check_name(Path(path))
+    found = select(data_of(data), tidy(at) if isinstance(at, Mapping) else parse_at(at))
+    table = coefficients(found, source, damping)
+    name = slug(tag if tag is not None else name_of(found))
+    made = RossTable(table, ross_file(table, _generation(ross_version), name, node, head(found)))
+    if path is not None:
+        made.write(path)
+    return made
+
+
+def data_of(data: Any) -> Dataset:
+    """The labelled results of a sweep, as such or in the folder of its store.
+
+    Raises
+    ------
+    RacewayError
+        Something else, or a folder without a store.
+    """
+    if isinstance(data, str | Path):
+        with open_store(data) as store:
+            return store.to_xarray()
+    if hasattr(data, "data_vars") and "scene" in data.attrs:
+        return data
+    raise RacewayError(f"{type(data).__name__} is no sweep: give what raceway.sweep returned, or the folder of its store")
+
+
+def name_of(found: Selection) -> str:
+    """The bearing's name: its preset, or the first line of the scene's title where it has none."""
+    preset = found.value("bearing.preset")
+    return str(preset) if preset else found.title.partition("\n")[0]
+
+
+def _generation(given: int | str | None) -> int:
+    if given is None:
+        return installed_generation() or GENERATIONS[-1]
+    if str(given) not in {str(one) for one in GENERATIONS}:
+        raise SceneError.at("ross_version", given, f"must be one of {', '.join(map(str, GENERATIONS))}")
+    return int(given)

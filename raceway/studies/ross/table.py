@@ -1,0 +1,156 @@
+"""A bearing's coefficients for ROSS, as an object: numbers, notes, the file, and the element itself."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.commands.notebook import few_lines, html_table
+from raceway.errors import RacewayError, extra
+from raceway.plugins.reports.pictures import given_axes
+from raceway.storage.tables import Tables
+from raceway.studies.ross.coefficients import Coefficients
+from raceway.studies.ross.file import NAMES, RossFile
+from raceway.studies.ross.reading import through_points
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
+
+_RPM = 30.0 / np.pi
+
+
+@attrs.frozen(eq=False, repr=False)
+class RossTable:
+    """Coefficients of one bearing for ROSS.
+
+    Attributes
+    ----------
+    coefficients : ``speed``, ``frequency`` (n,) [rad/s], ``stiffness`` (..., 2, 2) [N/m], ``damping`` (..., 2, 2) [N s/m] over y, z
+    file : what is written for ROSS
+    names : our coefficient -> ROSS's, whose X, Y, Z are y, z, x here
+    """
+
+    coefficients: Coefficients
+    file: RossFile
+
+    @property
+    def names(self) -> dict[str, str]:
+        return dict(NAMES)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the reader of the numbers has to know, a sentence each."""
+        return self.file.notes
+
+    @property
+    def tag(self) -> str:
+        return self.file.tag
+
+    def write(self, path: str | Path) -> Path:
+        """Write the TOML or JSON file that ``ross.BearingElement.load`` reads, by the ending.
+
+        Raises
+        ------
+        RacewayError
+            Another ending, or a folder that cannot be written.
+        """
+        return self.file.write(Path(path))
+
+    def element(self, node: int | None = None) -> Any:
+        """The ``ross.BearingElement``, which passes through the points of the table in ROSS 2, too.
+
+        Parameters
+        ----------
+        node : of the rotor; by default the table's own
+
+        Raises
+        ------
+        RacewayError
+            ROSS is missing.
+        """
+        try:
+            from ross import BearingElement
+        except ImportError as why:
+            raise RacewayError(f"an element needs ROSS: {extra('ross')} ({why})") from None
+        given = self.file if node is None else attrs.evolve(self.file, content={**self.file.content, "n": node})
+        with tempfile.TemporaryDirectory(prefix="raceway-ross-") as folder:
+            return through_points(BearingElement.load(given.write(Path(folder) / "bearing.toml")))
+
+    def to_dict(self) -> Tables:
+        """The numbers by our names, and the notes, as plain tables."""
+        found = self.coefficients
+        return {
+            "ross": self.file.generation,
+            "tag": self.tag,
+            "source": found.source,
+            "definition": found.definition,
+            "speed": None if found.speed is None else found.speed.tolist(),
+            "frequency": None if found.frequency is None else found.frequency.tolist(),
+            "coefficients": {name: values.tolist() for name, values in found.columns().items()},
+            "notes": list(self.notes),
+        }
+
+    def to_xarray(self) -> Dataset:
+        """The nine coefficients [N/m, N s/m] over ``speed`` and ``frequency`` [rad/s].
+
+        Raises
+        ------
+        RacewayError
+            xarray is missing.
+        """
+        try:
+            import xarray
+        except ImportError as why:
+            raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
+        axes = self._axes()
+        variables = {
+            name: (tuple(axes), values, {"units": "N/m" if name[0] == "k" else "N s/m"})
+            for name, values in self.coefficients.columns().items()
+        }
+        coordinates = {name: (name, values, {"units": "rad/s"}) for name, values in axes.items()}
+        return xarray.Dataset(
+            variables, coordinates, {"definition": self.coefficients.definition, "notes": "\n".join(self.notes)}
+        )
+
+    def plot(self, names: tuple[str, ...] = ("kyy", "kzz"), ax: Axes | None = None) -> Axes:
+        """Draw coefficients over the speed [r/min]; of a table over both, over the frequency at its first speed.
+
+        Parameters
+        ----------
+        names : of stiffnesses [N/um], or of dampings [N s/m]
+        ax : matplotlib axes; new ones without
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing.
+        """
+        panel, columns = given_axes(ax), self.coefficients.columns()
+        name, values = list(self._axes().items())[-1]
+        stiff = all(one[0] == "k" for one in names)
+        for one in names:
+            column = columns[one] if columns[one].ndim == 1 else columns[one][0]
+            panel.plot(_RPM * values, column * (1e-6 if one[0] == "k" else 1.0), marker="o", label=one)
+        panel.set_xlabel(f"{name} [r/min]")
+        panel.set_ylabel("[N/µm]" if stiff else "[N s/m]")
+        panel.legend(frameon=False)
+        return panel
+
+    def _axes(self) -> dict[str, np.ndarray]:
+        given = {"speed": self.coefficients.speed, "frequency": self.coefficients.frequency}
+        return {name: values for name, values in given.items() if values is not None}
+
+    def __repr__(self) -> str:
+        over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())
+        return few_lines(f"RossTable '{self.tag}' for ROSS {self.file.generation}: {over}", self.notes)
+
+    def _repr_html_(self) -> str:
+        from raceway.studies.ross.screen import point_rows
+
+        rows, constant = point_rows(self.to_dict())
+        return html_table(f"{self.tag}, for ROSS {self.file.generation}", rows, [*constant, *self.notes])
