@@ -28,14 +28,7 @@ from rich.console import Console
 from rich.table import Table
 from scipy.optimize import brentq
 
-from raceway import scene_from_dict
-from raceway.pipeline.run import run
-from raceway.plugins.executors.serial import Serial
-from raceway.studies.ross.coefficients import Coefficients, coefficients
-from raceway.studies.ross.file import NAMES, RossFile, ross_file
-from raceway.studies.ross.reading import through_points
-from raceway.studies.sweep import grid, prepare, sweep
-from raceway.studies.sweep.selection import select
+import raceway as rw
 
 AXIAL = 1000.0  # N
 #: Of the sweep [N]: small, so that the coefficients are those of small motions.
@@ -80,50 +73,36 @@ def import_ross() -> Any:
             os.dup2(old, stream)
 
 
-def swept(folder: Path) -> Coefficients:
-    """The coefficients over speed, as ``raceway export`` takes them from a store."""
-    plan = prepare(bearing(), grid([f"excitation.speed_rpm={SPEEDS}"]), folder / "sweep")
-    with sweep(plan, Serial()) as store:
-        return coefficients(select(store.to_xarray(), {}))
+def swept(generation: int) -> Any:
+    """The coefficients over speed, for one generation of ROSS."""
+    return rw.export_ross(rw.sweep(bearing(), {"excitation.speed_rpm": SPEEDS}), ross_version=generation)
 
 
-def grid_at_points(ross: Any, folder: Path) -> float:
+def grid_at_points() -> float:
     """A table over speed and frequency, which ROSS 3 takes: largest relative difference of kxx at its points."""
-    axes = ["kinematics.spin_speed_rpm=4000:24000:5", "excitation.speed_rpm=4000:24000:6"]
-    with sweep(prepare(bearing(), grid(axes), folder / "both"), Serial()) as store:
-        table = coefficients(select(store.to_xarray(), {}))
-    element = ross.BearingElement.load(ross_file(table, 3, "both", 0, ()).write(folder / "both.json"))
+    axes = {"kinematics.spin_speed_rpm": "4000:24000:5", "excitation.speed_rpm": "4000:24000:6"}
+    found = rw.export_ross(rw.sweep(bearing(), axes), ross_version=3)
+    element, table = found.element(), found.coefficients
     assert table.speed is not None and table.frequency is not None
     read = [[element.K(frequency=f, speed=w)[0, 0] for f in table.frequency] for w in table.speed]
     return float(np.max(np.abs(np.array(read) / table.stiffness[..., 0, 0] - 1.0)))
 
 
-def loaded(ross: Any, file: RossFile, path: Path) -> Any:
-    """The file, read by ROSS, passing through its points."""
-    return through_points(ross.BearingElement.load(file.write(path)))
-
-
-def at_points(element: Any, table: Coefficients) -> dict[str, float]:
+def at_points(element: Any, found: Any) -> dict[str, float]:
     """Largest relative difference of ROSS's coefficients from ours at the points of the table."""
+    table = found.coefficients
     assert table.speed is not None
     places = {"x": 0, "y": 1, "z": 2}
-    found = {}
-    for ours, theirs in NAMES.items():
+    differences = {}
+    for ours, theirs in found.names.items():
         matrices = np.array([(element.K if theirs[0] == "k" else element.C)(w) for w in table.speed])
         values, wanted = matrices[:, places[theirs[1]], places[theirs[2]]], table.columns()[ours]
         scale = np.max(np.abs(table.columns()[f"{ours[0]}yy"]))
-        found[ours] = float(np.max(np.abs(values - wanted)) / scale)
-    return found
+        differences[ours] = float(np.max(np.abs(values - wanted)) / scale)
+    return differences
 
 
-def with_n(ross: Any, element: Any, node: int) -> Any:
-    """The same bearing at another node."""
-    arguments = {name: getattr(element, name) for name in NAMES.values()}
-    axis = "speed" if getattr(element, "speed", None) is not None else "frequency"
-    return through_points(ross.BearingElement(n=node, **arguments, **{axis: getattr(element, axis)}))
-
-
-def rigid_rotor(ross: Any, element: Any) -> tuple[float, float]:
+def rigid_rotor(ross: Any, found: Any) -> tuple[float, float]:
     """Critical speed [rad/s] by ROSS and by the closed form, for a symmetric rotor that does not bend.
 
     Notes
@@ -136,7 +115,8 @@ def rigid_rotor(ross: Any, element: Any) -> tuple[float, float]:
     mass = RIGID_MASS - sum(float(part.m) for part in shaft)
     # Inertias of a disc that keep the other rigid mode above this one.
     disc = ross.DiskElement(n=2, m=mass, Id=0.02 * mass * 0.1**2, Ip=0.04 * mass * 0.1**2)
-    rotor = ross.Rotor(shaft, [disc], [with_n(ross, element, 0), with_n(ross, element, 4)])
+    rotor = ross.Rotor(shaft, [disc], [found.element(0), found.element(4)])
+    element = found.element()
     closed = brentq(lambda w: RIGID_MASS * w**2 - 2.0 * float(element.K(w)[0, 0]), 100.0, 3200.0, xtol=1e-9)
     total = float(np.asarray(rotor.M(0))[0 :: rotor.number_dof, 0 :: rotor.number_dof].sum())
     assert abs(total / RIGID_MASS - 1.0) < 1e-9, total
@@ -173,9 +153,9 @@ def force_on(rotor: Any, motion: np.ndarray, speed: float) -> float:
     return float(np.max(np.abs(dynamic @ motion)))
 
 
-def compared(ross: Any, element: Any, speeds: np.ndarray) -> list[dict[str, float]]:
+def compared(ross: Any, found: Any, speeds: np.ndarray) -> list[dict[str, float]]:
     """Unbalance response with our table and with ROSS's closed formula for ball bearings."""
-    ours = rig_rotor(ross, lambda node: with_n(ross, element, node))
+    element, ours = found.element(), rig_rotor(ross, found.element)
     formula = rig_rotor(
         ross, lambda node: ross.BallBearingElement(n=node, n_balls=12, d_balls=9.525e-3, fs=AXIAL, alpha=np.radians(15.0))
     )
@@ -209,7 +189,7 @@ def fixed_point(ross: Any, axial: float, most: int = 60, tolerance: float = 1e-9
     for _ in range(most):
         excitation = {**bearing()["excitation"], "force": force}
         scene = bearing(load={"axial": axial}, excitation=excitation, integrator={"kind": "quasi_static"})
-        found = run(scene_from_dict(scene)).identification
+        found = rw.run(scene).identification
         assert found is not None
         k, c = found.equivalent_stiffness, found.equivalent_damping
         rotor = rig_rotor(ross, lambda node, k=k, c=c: ross.BearingElement(n=node, kxx=k, cxx=c, kzz=1e8))
@@ -227,22 +207,18 @@ def fixed_point(ross: Any, axial: float, most: int = 60, tolerance: float = 1e-9
 def study(ross: Any, folder: Path) -> dict[str, Any]:
     """All numbers."""
     generation = 3 if int(ross.__version__.partition(".")[0]) >= 3 else 2
-    table = swept(folder)
-    assert table.speed is not None
-    path = folder / "bearing.toml"
-    file = ross_file(table, generation, "B7206C", 0, ())
-    element = loaded(ross, file, path)
-    by_itself = ross.BearingElement.load(path)
-    critical, closed = rigid_rotor(ross, element)
+    table = swept(generation)
+    by_itself = ross.BearingElement.load(table.write(folder / "bearing.toml"))
+    critical, closed = rigid_rotor(ross, table)
     return {
         "ross": ross.__version__,
-        "notes": list(file.notes),
-        "at_points": at_points(element, table),
+        "notes": list(table.notes),
+        "at_points": at_points(table.element(), table),
         "at_points_by_itself": at_points(by_itself, table),
-        "grid_at_points": grid_at_points(ross, folder) if generation == 3 else None,
+        "grid_at_points": grid_at_points() if generation == 3 else None,
         "critical": critical,
         "critical_closed": closed,
-        "response": compared(ross, element, table.speed[1:8]),
+        "response": compared(ross, table, table.coefficients.speed[1:8]),
         "fixed_point": {str(axial): fixed_point(ross, axial) for axial in (1000.0, 400.0)},
     }
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _PATIENCE_S = 1.0
 #: What a function of the package takes as ``progress``: True for a bar on a terminal, or what is called with what, done, total.
-Progress = bool | Callable[[str, int, int], object] | None
+ShowProgress = bool | Callable[[str, int, int], None] | None
 
 
 class ProgressBar:
@@ -86,7 +86,7 @@ class ProgressBar:
 
 
 @contextmanager
-def telling(progress: Progress, remaining: bool = False) -> Iterator[Callable[[str, int, int], object]]:
+def telling(progress: ShowProgress, remaining: bool = False) -> Iterator[Callable[[str, int, int], None]]:
     """What is called with the progress of a study.
 
     Parameters

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from raceway.commands.progress import Progress, telling
+from raceway.commands.progress import ShowProgress, telling
 from raceway.framework.registry import registry_with
 from raceway.pipeline.result import write_json
 from raceway.scene.given import plain_tables
@@ -26,7 +26,7 @@ def compare(
     out: str | Path | None = None,
     kept: str | Path | None = None,
     plugins: Iterable[str | Path] = (),
-    progress: Progress = None,
+    progress: ShowProgress = None,
 ) -> Comparison:
     """Vary some keys of a scene, all else the same, and say which of them causes what.
 

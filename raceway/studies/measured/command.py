@@ -32,6 +32,7 @@ class IdentifyOptions(NamedTuple):
     scene: Path
     slow_roll: Path | None
     run_out: str | None
+    columns: tuple[str, ...]
     changes: tuple[str, ...]
     out: Path | None
     pictures: bool
@@ -50,6 +51,10 @@ class IdentifyOptions(NamedTuple):
     help="Signals at a low speed, whose run-out is subtracted.",
 )  # fmt: skip
 @click.option("--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [um] and angle from the mark [deg].")
+@click.option(
+    "--map", "columns", multiple=True, metavar='"HEAD=NAME"',
+    help='A column by its head: "X [um]=y_um", or =ignore; repeat for more.',
+)  # fmt: skip
 @set_keys
 @out_option(f"{RESULTS}/SIGNALS")
 @click.option("--pictures", is_flag=True, help="Also draw signals, spectrum and orbits as PNG.")
@@ -59,20 +64,23 @@ class IdentifyOptions(NamedTuple):
 def identify(given: IdentifyOptions) -> int:
     """Identify a bearing's K and C, with their uncertainty, from the signals of a sensor beside it.
 
-    SIGNALS is a CSV file whose first line names its columns: time_s, y_um, z_um and key (once-per-turn probe) or speed_rpm.
-    Samples may be uneven and the speed may change by some per cent. Writes identify.json.
+    SIGNALS is a CSV file whose first line names its columns: time_s, y_um, z_um and key (once-per-turn probe) or speed_rpm,
+    or as other programs do, Time (s), X [um], Y [um]; semicolons, tabs and decimal commas are read. Samples may be uneven
+    and the speed may change by some per cent. Writes identify.json.
 
     \b
     Example:
       raceway study rig examples/test_rig.toml --out rig
       raceway identify rig/signals-13000rpm-400N.csv --scene examples/test_rig.toml \\
           --set load.axial=400 --slow-roll rig/slow-roll-13000rpm-400N.csv
+      raceway identify orbit.csv --scene examples/test_rig.toml --map "Ch 1=y_um" --map "Ch 2=z_um"
     """
     from raceway.scene.file import rig_of
 
     registry = registry_with(given.plugins)
     loaded = load(given.scene, given.changes, registry)
-    own, vector = rig_of(loaded), _vector(given.run_out)
+    rig_of(loaded)
+    vector, columns = _vector(given.run_out), _columns(given.columns)
     if vector is not None and given.slow_roll is not None:
         raise SceneError.at("--run-out", given.run_out, "the slow roll tells it already: leave one of them out")
     changed = loaded.title.partition("\n")[1:]
@@ -81,19 +89,31 @@ def identify(given: IdentifyOptions) -> int:
     tell_faults(registry)
     with show_progress() as progress:
         from raceway.pipeline.result import write_json
-        from raceway.studies.measured.from_files import from_files
+        from raceway.studies.measured.front import CONTENT
+        from raceway.studies.measured.front import identify as study
 
-        found = from_files(given.signals, loaded, own, registry, given.slow_roll, vector, progress)
-    content, files = {"title": loaded.title, "file": str(given.signals), **found.to_dict()}, list[str]()
-    failed = attempt(lambda: [write_json(content, folder / "identify.json")], files)
+        found = study(given.signals, loaded, slow_roll=given.slow_roll, run_out=vector, columns=columns, progress=progress)
+    content, files = found.to_dict(), list[str]()
+    failed = attempt(lambda: [write_json(content, folder / CONTENT)], files)
     if pictures and failed is None:
         from raceway.studies.measured.figures import write_figures
 
-        failed = attempt(lambda: write_figures(found, folder), files)
+        failed = attempt(lambda: write_figures(found.found, folder), files)
     from raceway.studies.rig.screen import identify_screen
 
     show(content, given.as_json, failed, lambda: identify_screen(content, files))
     return 0
+
+
+def _columns(texts: tuple[str, ...]) -> dict[str, str]:
+    """Head -> name from ``HEAD=NAME``; a head may have an equals sign, a name has none."""
+    found = {}
+    for text in texts:
+        head, sign, name = text.rpartition("=")
+        if not sign or not head.strip() or not name.strip():
+            raise SceneError.at("--map", text, 'must have the form "HEAD=NAME", for instance "X [um]=y_um"')
+        found[head.strip()] = name.strip()
+    return found
 
 
 def _vector(text: str | None) -> tuple[float, float] | None:

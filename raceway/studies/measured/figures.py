@@ -48,6 +48,13 @@ def signals(found: Found) -> Figure:
 
 
 def spectrum(found: Found) -> Figure:
+    """Amplitude of y + j z over orders, as a figure."""
+    figure = new_figure(8.0, 3.4)
+    draw_spectrum(found, figure.subplots())
+    return figure
+
+
+def draw_spectrum(found: Found, axes: Axes) -> None:
     """Amplitude of y + j z over orders, forward to the right and backward to the left."""
     record, angle, turns = found.turning.recording, found.turning.angle, found.turning.turns
     per_turn = 32
@@ -57,19 +64,22 @@ def spectrum(found: Found) -> Figure:
     order = np.fft.fftfreq(len(plane), 1.0 / per_turn)
     shown = np.flatnonzero(np.abs(order) <= _ORDERS_SHOWN)
     shown = shown[np.argsort(order[shown])]
-    figure = new_figure(8.0, 3.4)
-    axes = figure.subplots()
     axes.semilogy(order[shown], _MICRO * np.maximum(lines[shown], 1e-14), color=_Y, linewidth=0.9)
     axes.set_xticks(range(-int(_ORDERS_SHOWN), int(_ORDERS_SHOWN) + 1))
     _label(axes, "order (positive: turning with the shaft)", "amplitude [µm]")
-    return figure
 
 
 def orbits(found: Found) -> Figure:
+    """The orbits, as a figure."""
+    figure = new_figure(5.6, 5.4)
+    draw_orbits(found, figure.subplots())
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    return figure
+
+
+def draw_orbits(found: Found, axes: Axes) -> None:
     """The track that the sensor sees, its 1x line with and without run-out, and the bearing's own motion."""
     record, state = found.turning.recording, found.state
-    figure = new_figure(5.6, 5.4)
-    axes = figure.subplots()
     shown = slice(0, min(len(record.time), 1500))
     plane = record.plane - record.plane.mean()
     axes.plot(_MICRO * plane[shown].real, _MICRO * plane[shown].imag, color="#d3dae1", linewidth=0.5, label="as measured")
@@ -85,8 +95,6 @@ def orbits(found: Found) -> Figure:
         axes.plot(curve.real, curve.imag, color=colour, linestyle=style, label=f"{name}, {_MICRO * abs(line):.3g} µm")
     axes.set_aspect("equal")
     _label(axes, "y [µm]", "z [µm]")
-    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    return figure
 
 
 def _label(axes: Axes, x: str, y: str) -> None:

@@ -1,4 +1,4 @@
-"""``identify`` from files: the record, and the slow roll or the run-out that is known."""
+"""``identify`` from records, in files or in memory: the record, and the slow roll or the run-out that is known."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from raceway.framework.registry import Registry
 from raceway.scene.rig import Rig
 from raceway.scene.tables import Scene
 from raceway.studies.measured.identify import Found, identify
-from raceway.studies.measured.recording import read_recording
+from raceway.studies.measured.recording import recording_of
 from raceway.studies.measured.run_out import given, slow_roll
+from raceway.studies.measured.signals import Signals, read_signals
 from raceway.studies.shaft.bearing import bearing
 
 OnProgress = Callable[[str, int, int], None]
@@ -26,16 +27,30 @@ def from_files(
     run_out: tuple[float, float] | None = None,
     on_progress: OnProgress | None = None,
 ) -> Found:
-    """K and C from a record's file.
+    """``from_signals`` of a record's file and the file of a slow roll."""
+    still = None if slow is None else read_signals(slow)
+    return from_signals(read_signals(signals), scene, rig, registry, still, run_out, on_progress)
+
+
+def from_signals(
+    signals: Signals,
+    scene: Scene,
+    rig: Rig,
+    registry: Registry,
+    slow: Signals | None = None,
+    run_out: tuple[float, float] | None = None,
+    on_progress: OnProgress | None = None,
+) -> Found:
+    """K and C from a record.
 
     Parameters
     ----------
-    slow : file of a slow roll;  run_out : instead of it, its amplitude [m] and angle from the mark [deg]
+    slow : a slow roll;  run_out : instead of it, its amplitude [m] and angle from the mark [deg]
 
     Raises
     ------
     SceneError
-        What is wrong with a file or the scene.
+        What is wrong with a record or the scene.
     ConvergenceError
         Signals that no bearing of the scene's kind gives.
     """
@@ -50,15 +65,13 @@ def from_files(
             scene.load.axial,
             "must be the axial load of the measurement, greater than 0: add --set load.axial=...",
         )
-    tell("reading signals", 0)
-    recording = read_recording(signals)
+    recording = recording_of(signals)
     roll = None
     if slow is not None:
-        still = read_recording(slow)
         try:
-            roll = slow_roll(still)
+            roll = slow_roll(recording_of(slow))
         except RacewayError as why:
-            raise SceneError.at(str(slow), None, str(why)) from None
+            raise why if isinstance(why, SceneError) else SceneError.at(slow.source, None, str(why)) from None
     tell("bearing at rest", 1)
     held = bearing(scene, scene.load.axial, registry)
     tell("identifying", 2)
@@ -68,4 +81,4 @@ def from_files(
     except RacewayError as why:
         if why.exit_code != 2 or isinstance(why, SceneError):
             raise
-        raise SceneError.at(str(signals), None, str(why)) from None
+        raise SceneError.at(signals.source, None, str(why)) from None

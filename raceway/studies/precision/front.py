@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from raceway.commands.progress import Progress, telling
+from raceway.commands.progress import ShowProgress, telling
 from raceway.framework.registry import registry_with
 from raceway.scene.given import plain_tables
 from raceway.storage.files import writable
@@ -29,7 +29,7 @@ def precision(
     out: str | Path | None = None,
     kept: str | Path | None = None,
     plugins: Iterable[str | Path] = (),
-    progress: Progress = None,
+    progress: ShowProgress = None,
 ) -> Precision:
     """Run a scene with many settings: what each costs, and how far it is from a reference with a known bound.
 

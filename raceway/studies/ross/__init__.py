@@ -4,5 +4,6 @@ sources        2x2 matrices over y, z: rotating force, fixed directions, tangent
 coefficients   kyy, kyz, ..., cyy, ... over speed and frequency, from a sweep
 file           a file that ROSS reads
 reading        interpolation by ROSS 2
-command        ``raceway export``
+table          all of it as an object: the element, the file
+front          ``raceway.export_ross``;  command: ``raceway export``;  screen: what it prints
 """

@@ -66,7 +66,7 @@ class RossTable:
 
         Parameters
         ----------
-        node : of the rotor; by default the table's own
+        node : of the rotor, which the element's tag then names, for a rotor on several; by default the table's own
 
         Raises
         ------
@@ -77,7 +77,8 @@ class RossTable:
             from ross import BearingElement
         except ImportError as why:
             raise RacewayError(f"an element needs ROSS: {extra('ross')} ({why})") from None
-        given = self.file if node is None else attrs.evolve(self.file, content={**self.file.content, "n": node})
+        at = {} if node is None else {"n": node, "tag": f"{self.tag}, node {node}"}
+        given = attrs.evolve(self.file, content={**self.file.content, **at})
         with tempfile.TemporaryDirectory(prefix="raceway-ross-") as folder:
             return through_points(BearingElement.load(given.write(Path(folder) / "bearing.toml")))
 

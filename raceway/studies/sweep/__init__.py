@@ -4,7 +4,7 @@ design      the points: a grid or a list;  survey: mistakes, plug-ins and files 
 work        one chain of points, computed wherever an executor wants it;  variables: what is kept of a point
 store       states and values on disk;  dataset: the store as xarray data set, NetCDF and CSV
 engine      from a design to a finished store, through ``raceway.studies.many.engine``
-command     ``raceway sweep``;  store_command: ``raceway plot``;  screen: what a sweep prints
+front       ``raceway.sweep``;  command: ``raceway sweep``;  store_command: ``raceway plot``;  screen: what a sweep prints
 selection   the part of a store that is drawn or exported;  plotting: how it is laid out;  picture: drawn
 
 Names below are imported when they are first used: the commands stand here, and ``raceway --help`` loads no solver.

@@ -25,7 +25,7 @@ from raceway.studies.sweep.store import Store
 if TYPE_CHECKING:
     import xarray
 
-    from raceway.commands.progress import Progress
+    from raceway.commands.progress import ShowProgress
     from raceway.framework.contracts import Executor
 
 SPEED = "excitation.speed_rpm"
@@ -48,7 +48,7 @@ def sweep(
     resume: bool = False,
     retry_failed: bool = False,
     plugins: Iterable[str | Path] = (),
-    progress: Progress = None,
+    progress: ShowProgress = None,
 ) -> xarray.Dataset:
     """Compute a scene at every point of a grid or a list.
 

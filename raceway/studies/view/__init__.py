@@ -7,6 +7,7 @@ scene         the bearing, drawn by pyvista
 contacts      the most loaded ball in section
 animation     a turn as a GIF
 page          the page with WebGL
+front         ``raceway.view``;  view: its answer
 study         the files of one result;  command: ``raceway view``
 mesh_command  ``raceway mesh``;  mesh_picture, mesh_screen: its picture and table
 """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -19,17 +18,12 @@ from raceway.commands.frame import (
     show_progress,
 )
 from raceway.commands.inputs import load, slug, tell_faults
-from raceway.errors import RacewayError, SceneError, extra
-from raceway.framework.duties import traits_of
 from raceway.framework.registry import registry_with
-from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
-
-    from raceway.scene.tables import Scene
 
 
 class ViewOptions(NamedTuple):
@@ -69,29 +63,14 @@ def view(given: ViewOptions) -> int:
     registry = registry_with(given.plugins)
     loaded = load(given.scene, given.changes, registry)
     folder = writable(given.out or RESULTS / slug(loaded.title))
-    for package in ("pyvista", "matplotlib"):
-        if find_spec(package) is None:
-            raise RacewayError(f"pictures need {package}: {extra('view')}")
-    refuse_pictures()
-    if given.animate and loaded.excitation is None:
-        raise SceneError.at("excitation", None, "is missing, so that nothing moves: add the table, or leave out --animate")
     tell_faults(registry)
     with show_progress() as progress:
-        from raceway.pipeline.run import run
-        from raceway.studies.view.study import Wanted, draw
+        from raceway.studies.view.front import view as study
 
-        result = run(loaded, registry, progress)
-        mesh = _mesh(loaded, folder) if traits_of(loaded).every_node else None
-        content = draw(result, folder, Wanted(given.page, given.frames if given.animate else 0, mesh), progress)
+        found = study(loaded, folder, page=given.page, animate=given.animate, frames=given.frames, progress=progress)
+    content = found.to_dict()
     show(content, given.as_json, None, lambda: _screen(content))
     return 0
-
-
-def _mesh(scene: Scene, folder: Path) -> Path:
-    from raceway.bodies.meshing import mesh_scene
-    from raceway.studies.view.mesh_picture import draw
-
-    return draw(mesh_scene(scene), f"{scene.title}\nthe mesh", folder / "mesh.png")
 
 
 def _screen(content: Tables) -> RenderableType:

@@ -1,0 +1,87 @@
+"""The answer of ``raceway.view``: pictures, in memory and as files."""
+
+from __future__ import annotations
+
+import base64
+import io
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import attrs
+
+from raceway.commands.notebook import few_lines
+from raceway.errors import SceneError
+from raceway.plugins.reports.pictures import given_axes
+from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@attrs.frozen(eq=False, repr=False)
+class View:
+    """Pictures of one bearing.
+
+    Attributes
+    ----------
+    content : what is shown: the largest load [N] and pressure [Pa], the exaggeration of an animation, warnings
+    pictures : name -> content of the file
+    """
+
+    content: Tables
+    pictures: dict[str, bytes]
+
+    @property
+    def files(self) -> list[Path]:
+        """What was written; empty where no folder was given."""
+        return [Path(name) for name in self.content["files"]]
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write all pictures into a folder.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return [write_whole(content, Path(folder) / name) for name, content in self.pictures.items()]
+
+    def to_dict(self) -> Tables:
+        """What is shown, as plain tables; the pictures by their files."""
+        return dict(self.content)
+
+    def plot(self, name: str = "bearing.png", ax: Axes | None = None) -> Axes:
+        """Put one picture on matplotlib axes.
+
+        Parameters
+        ----------
+        name : of a PNG file among ``pictures``
+        ax : axes; new ones without
+
+        Raises
+        ------
+        SceneError
+            No such picture.
+        """
+        known = [one for one in self.pictures if one.endswith(".png")]
+        if name not in known:
+            raise SceneError.at("name", name, f"must be one of {', '.join(known)}")
+        from matplotlib.image import imread
+
+        axes = given_axes(ax, 8.0, 6.0)
+        axes.imshow(imread(io.BytesIO(self.pictures[name])))
+        axes.set_axis_off()
+        return axes
+
+    def __repr__(self) -> str:
+        where = [f"written: {path}" for path in self.files] or ["in memory: save(folder) writes them"]
+        return few_lines(f"View: {', '.join(self.pictures)}", [self.content["title"], *where])
+
+    def _repr_html_(self) -> str:
+        image = base64.b64encode(self.pictures["bearing.png"]).decode()
+        words = escape(repr(self)).replace("\n", "<br>")
+        return (
+            f'<img style="max-width:100%" alt="the bearing cut open" src="data:image/png;base64,{image}"/><div>{words}</div>'
+        )
