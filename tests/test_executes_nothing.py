@@ -70,6 +70,7 @@ def traps(tmp_path):
     return tmp_path
 
 
+@pytest.mark.needs("gmsh")
 @pytest.mark.parametrize("command", ["check", "plan"])
 @pytest.mark.parametrize("kind", ["step", "brep", "geo"])
 def test_check_and_plan_execute_nothing(traps, command, kind):
@@ -88,6 +89,7 @@ def test_the_watch_sees_a_process_and_a_file(tmp_path):
     assert "WATCHED os.mkdir" in found.stderr and "WATCHED open" in found.stderr
 
 
+@pytest.mark.needs("gmsh")
 @pytest.mark.parametrize("suffix", [".step", ".brep"])
 def test_meshing_reads_no_options_beside_a_file(traps, suffix):
     mesh = Gmsh(inner_ring=str(traps / f"part{suffix}"), scale=1e-3, element_size=2e-3).mesh(BEARING)["inner_ring"]
@@ -95,6 +97,7 @@ def test_meshing_reads_no_options_beside_a_file(traps, suffix):
     assert not list(traps.glob("PWNED*"))
 
 
+@pytest.mark.needs("gmsh")
 @pytest.mark.parametrize("command", ["run", "mesh"])
 def test_a_script_is_executed_on_an_explicit_word_only(traps, command):
     refused = invoke(command, traps / "geo.toml", "--out", traps / "out")
@@ -105,6 +108,7 @@ def test_a_script_is_executed_on_an_explicit_word_only(traps, command):
     assert not list(traps.glob("PWNED*"))
 
 
+@pytest.mark.needs("gmsh")
 def test_a_script_that_is_allowed_is_meshed_in_a_child(traps):
     allowed = ["--execute", traps / "part.geo", "--set", "mesh.method=as_written"]
     done = raceway("mesh", traps / "geo.toml", "--out", traps / "out", *allowed, "--json")
@@ -114,6 +118,7 @@ def test_a_script_that_is_allowed_is_meshed_in_a_child(traps):
     assert body["elements"] == 4 * 2 * 8
 
 
+@pytest.mark.needs("gmsh")
 def test_named_surfaces_of_a_script_come_back_from_the_child(tmp_path):
     (tmp_path / "ring.geo").write_text(RING_SCRIPT)
     path = str(tmp_path / "ring.geo")
@@ -124,6 +129,7 @@ def test_named_surfaces_of_a_script_come_back_from_the_child(tmp_path):
     assert len(ring.nodes("outside")) == 5 * 9
 
 
+@pytest.mark.needs("gmsh")
 def test_a_script_gives_the_same_mesh_as_its_solid(tmp_path):
     (tmp_path / "box.geo").write_text('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 10, 8, 6};\n')
     path = str(tmp_path / "box.geo")
@@ -134,6 +140,7 @@ def test_a_script_gives_the_same_mesh_as_its_solid(tmp_path):
     assert np.allclose(script.points, solid.points, atol=1e-15)
 
 
+@pytest.mark.needs("gmsh")
 def test_a_script_that_does_not_end_is_stopped_with_all_it_started(tmp_path, monkeypatch):
     monkeypatch.setattr(_geo, "LIMIT_S", 3.0)
     (tmp_path / "endless.geo").write_text(f'SystemCall "echo $$ > {tmp_path}/pid; exec sleep 1000";\n')
@@ -151,6 +158,7 @@ def test_a_script_that_does_not_end_is_stopped_with_all_it_started(tmp_path, mon
         pytest.fail("the process that the script started still lives")
 
 
+@pytest.mark.needs("gmsh")
 @pytest.mark.parametrize(
     ("text", "words"),
     [

@@ -23,6 +23,7 @@ def test_mesh_counts_and_files(tmp_path):
     assert sorted(map(str, tmp_path.iterdir())) == sorted(content["files"])
 
 
+@pytest.mark.needs("pyvista")
 def test_the_picture_needs_no_display(tmp_path, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     found = invoke("mesh", MINIMAL, *COARSE, "--out", tmp_path, "--picture")
@@ -46,6 +47,7 @@ def test_sizes_that_cannot_be_meshed_are_refused(tmp_path):
     assert "element_size" in found.output
 
 
+@pytest.mark.needs("pyvista")
 def test_a_picture_without_a_display_is_silent(tmp_path):
     words = ("mesh", MINIMAL, *COARSE, "--out", tmp_path, "--picture")
     found = raceway(*words, DISPLAY="", PYTHONWARNINGS="always")

@@ -11,6 +11,8 @@ from importlib.metadata import distribution, requires
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import raceway
 
@@ -34,6 +36,21 @@ def test_the_base_installation_draws_and_meshes_nothing():
     base = [line for line in requires("raceway") or [] if "extra ==" not in line]
     heavy = {"matplotlib", "pyvista", "gmsh", "meshio", "xarray", "dask", "pyamg", "trame"}
     assert not {re.split(r"[<>=!~ \[;]", line)[0].lower() for line in base} & heavy
+
+
+def test_every_version_of_the_constraints_is_one_that_the_project_allows():
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pins = {}
+    for line in lines:
+        if not line.startswith("#"):
+            found = re.fullmatch(r"([a-z0-9-]+)==([0-9][\w.]*)( ; .*)?", line)
+            assert found, f"not NAME==VERSION: {line}"
+            pins[found[1]] = found[2]
+    extras = PROJECT["optional-dependencies"]
+    asked = [Requirement(text) for name in extras if name != "ross" for text in (*PROJECT["dependencies"], *extras[name])]
+    for requirement in asked:
+        if requirement.name != "raceway":
+            assert requirement.specifier.contains(pins[canonicalize_name(requirement.name)]), requirement
 
 
 @pytest.fixture(scope="module")

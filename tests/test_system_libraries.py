@@ -5,22 +5,16 @@ import re
 import pytest
 
 from raceway.plugins.system_libraries import DEBIAN
+from tests.hidden_libraries import hide
 from validation.command_line import EXAMPLES, raceway
 
 ROOT = EXAMPLES.parent
-#: What dlopen finds first, and cannot load: a file without content.
-LIBRARIES = ("libEGL", "libGL", "libGLU", "libGLX", "libOpenGL", "libOSMesa")
 
 
 @pytest.fixture
 def bare(tmp_path):
     """The environment of a machine without libraries for drawing."""
-    folder = tmp_path / "libraries"
-    folder.mkdir()
-    for name in LIBRARIES:
-        for end in (".so", ".so.0", ".so.1", ".so.8"):
-            (folder / f"{name}{end}").touch()
-    return {"LD_LIBRARY_PATH": str(folder), "DISPLAY": ""}
+    return hide(tmp_path)
 
 
 def told(done, package):

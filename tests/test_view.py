@@ -122,6 +122,7 @@ def test_rings_without_dimensions_are_drawn_and_told(result):
     assert len(drawn.rings()) == 4
 
 
+@pytest.mark.needs("pyvista")
 def test_the_command_draws_without_a_display_and_in_silence(tmp_path):
     found = raceway(
         "view",
@@ -167,6 +168,7 @@ def test_an_animation_that_the_page_has_no_room_for_lies_beside_it(tmp_path, res
         assert ("lies beside it" in html) is not inside and len(html.encode()) < 5e6
 
 
+@pytest.mark.needs("pyvista")
 def test_what_does_not_move_is_not_animated(tmp_path):
     scene = tmp_path / "still.toml"
     scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n')

@@ -71,6 +71,7 @@ def test_formats_without_meshio_name_the_extra(tmp_path, monkeypatch):
         Vtu().write(tmp_path / "x.vtu", block())
 
 
+@pytest.mark.needs("ccx")
 @pytest.mark.parametrize("formulation", ["one_point", "full", "incompatible"])
 def test_calculix_computes_with_what_is_written(formulation, tmp_path):
     said, found, exact = squeezed(formulation, tmp_path)
@@ -179,12 +180,14 @@ def solids(tmp_path_factory):
     return folder
 
 
+@pytest.mark.needs("gmsh")
 def test_a_step_block_becomes_transfinite_hexahedra_in_metres(solids):
     mesh = Gmsh(inner_ring=str(solids / "box.step"), element_size=2e-3).mesh(BEARING)["inner_ring"]
     assert mesh.volume() == pytest.approx(480e-9, rel=1e-9)
     assert sum(mesh.facet_areas(name).sum() for name in mesh.facet_sets) == pytest.approx(376e-6, rel=1e-9)
 
 
+@pytest.mark.needs("gmsh")
 def test_a_step_ball_needs_subdivision(solids):
     path = str(solids / "ball.step")
     with pytest.raises(
@@ -196,6 +199,7 @@ def test_a_step_ball_needs_subdivision(solids):
     assert mesh.volume() == pytest.approx(4.0 / 3.0 * np.pi * 64e-9, rel=0.05)
 
 
+@pytest.mark.needs("gmsh")
 @pytest.mark.parametrize(
     ("size", "words"),
     [(7e-3, "larger than the smallest extent of 'box.step', 0.006 m"), (1e-6, r"4\.8e\+11 elements and take .* GiB")],
@@ -205,6 +209,7 @@ def test_sizes_that_gmsh_shall_not_try(solids, size, words):
         Gmsh(inner_ring=str(solids / "box.step"), element_size=size).mesh(BEARING)
 
 
+@pytest.mark.needs("gmsh")
 def test_step_files_that_are_none(solids, tmp_path):
     (tmp_path / "bad.step").write_text("nothing of the kind")
     for name, words in (("bad.step", "not a STEP file"), ("gone.step", "does not exist"), ("x.iges", "reads .step")):
@@ -212,6 +217,7 @@ def test_step_files_that_are_none(solids, tmp_path):
             Gmsh(ball=str(tmp_path / name)).mesh(BEARING)
 
 
+@pytest.mark.needs("gmsh")
 def test_damaged_step_files_are_told_in_one_message(tmp_path, capfd):
     (tmp_path / "cut.step").write_text("ISO-10303-21; nothing more")
     with pytest.raises(MeshError, match=r"cut.step' cannot be meshed: Could not read"):
@@ -220,6 +226,7 @@ def test_damaged_step_files_are_told_in_one_message(tmp_path, capfd):
     assert said.out == "" and said.err == ""  # the reader's own complaints would spoil --json
 
 
+@pytest.mark.needs("gmsh")
 def test_without_gmsh_the_extra_is_named(solids, monkeypatch):
     monkeypatch.setitem(sys.modules, "gmsh", None)
     with pytest.raises(MeshError, match=r"pip install '.\[gmsh\]'"):

@@ -125,6 +125,7 @@ def test_balls_of_another_size_are_warned_of_once(tmp_path):
     assert len(found) == 1
 
 
+@pytest.mark.needs("gmsh")
 @pytest.mark.parametrize(
     ("solid", "method", "size", "low", "high"),
     # Transfinite volumes are counted exactly; tetrahedra fill a solid as they please, fewer than three a cube of the size.
