@@ -8,6 +8,7 @@ contacts      the most loaded ball in section
 animation     a turn as a GIF
 page          the page with WebGL
 front         ``raceway.view``;  view: its answer
+fields        displacement and stress fields of elastic bodies
 study         the files of one result;  command: ``raceway view``
 mesh_command  ``raceway mesh``;  mesh_picture, mesh_screen: its picture and table
 """

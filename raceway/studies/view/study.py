@@ -16,6 +16,7 @@ from raceway.studies.many.page import Page
 from raceway.studies.view.animation import animate
 from raceway.studies.view.bearing import Bearing, State
 from raceway.studies.view.contacts import contacts
+from raceway.studies.view.fields import write_fields
 from raceway.studies.view.page import view_page
 from raceway.studies.view.scene import overview
 from raceway.studies.view.states import at_peak, at_rest, last_turn
@@ -68,6 +69,12 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         pictures["orbit.gif"] = path, "the turning load, ball loads and orbit", told
     if wanted.mesh is not None:
         pictures[wanted.mesh.name] = wanted.mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away"
+    fields: list[Path] = []
+    if result.model.traits.every_node:
+        on_progress("drawing stress.png", len(pictures), 0)
+        (*fields, path) = write_fields(result, folder)
+        told = "von Mises stress at the elements' centres, in the plane of the axis and the most loaded ball, at rest"
+        pictures["stress.png"] = path, "stress in a section of rings and ball", told
     if wanted.page:
         text = {
             "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown), "notes": _notes(bearing)
@@ -83,7 +90,7 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         "exaggeration": None if turn is None else turn.factor,
         "assumed": list(bearing.assumed),
         "warnings": list(result.warnings),
-        "files": [str(path) for path, _, _ in pictures.values()],
+        "files": [str(path) for path in (*(path for path, _, _ in pictures.values()), *fields)],
     }
 
 

@@ -1,0 +1,51 @@
+"""Fields of elastic bodies as files: stresses against forces, files that ParaView reads."""
+
+import numpy as np
+import pytest
+
+from raceway import scene_from_dict
+from raceway.pipeline.run import run
+from raceway.scene.file import read_toml
+from raceway.studies.view.fields import Fields, write_fields
+from validation.command_line import EXAMPLES
+
+
+@pytest.fixture(scope="module")
+def result():
+    tables = read_toml(EXAMPLES / "b7206_elastic_coarse.toml")
+    tables["bodies"]["formulation"] = "one_point"
+    return run(scene_from_dict(tables))
+
+
+def test_a_balls_mean_stress_is_that_of_the_forces_on_it(result):
+    fields, assembly = Fields.of(result), result.model.bearing.bearing.system.assembly
+    most = int(np.argmax(result.equilibrium.contact_force[: result.model.system.ball_count]))
+    operator, begin, end = assembly.bodies[2 + most].operator, *assembly.starts[2 + most : 4 + most]
+    force = operator.internal_force(fields.displacement[begin:end]).reshape(-1, 3)
+    # Integral of stress = sum of f x (virial); exact for one point an element: its hourglass forces do no work on linear fields.
+    wanted = force.T @ operator.points
+    volume = operator.element_masses.sum(axis=1) / operator.density
+    xx, yy, zz, xy, yz, zx = volume @ fields.stress[fields.body == 2 + most]
+    found = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+    assert found == pytest.approx(wanted, abs=1e-8 * np.abs(wanted).max())
+    assert np.abs(wanted).max() > 0.5 * result.equilibrium.contact_force.max() * 0.5 * 9.525e-3
+
+
+def test_von_mises_and_shear_of_uniaxial_and_pure_shear_stress():
+    stress = np.array([[3.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 2.0, 0.0, 0.0]])
+    none = np.zeros((0, 3))
+    fields = Fields(none, none, none, none, stress)
+    assert fields.von_mises == pytest.approx([3.0, 2.0 * np.sqrt(3.0)], rel=1e-14)
+    assert fields.largest_shear == pytest.approx([1.5, 2.0], rel=1e-14)
+
+
+def test_the_files_hold_the_fields(result, tmp_path):
+    import pyvista
+
+    fields = Fields.of(result)
+    vtu, png = write_fields(result, tmp_path)
+    grid = pyvista.read(vtu)
+    assert grid.n_cells == len(fields.cells) and set(np.unique(grid.cell_data["body"])) == set(range(14))
+    assert np.array_equal(grid.cell_data["von Mises stress [Pa]"], fields.von_mises)
+    assert np.array_equal(grid.point_data["displacement [m]"], fields.displacement)
+    assert png.read_bytes().startswith(b"\x89PNG")
