@@ -72,7 +72,7 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
     fields: list[Path] = []
     if result.model.traits.every_node:
         on_progress("drawing stress.png", len(pictures), 0)
-        (*fields, path) = write_fields(result, folder)
+        *fields, path = write_fields(result, folder)
         told = "von Mises stress at the elements' centres, in the plane of the axis and the most loaded ball, at rest"
         pictures["stress.png"] = path, "stress in a section of rings and ball", told
     if wanted.page:
