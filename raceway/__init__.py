@@ -21,6 +21,28 @@ Imports run one way, from the top of this list to its bottom; contact_laws, inte
 Plug-ins, built in or foreign, are found by the registry alone.
 
 Names below are imported when they are first used, so that ``import raceway`` stays light.
+
+For plug-ins, beside options and their rules:
+
+hookimpl       decorator of a function that hands plug-ins in, named after its hook
+jit            makes a function a kernel of one signature
+LAW            signature of a contact law: (gap [m], gap_rate [m/s], params, state_old, state_new, dt [s], force [N], d_gap, d_rate)
+FORCE          signature of an excitation: (t [s], params, out (5,) [N, N m])
+
+Examples
+--------
+>>> import raceway as rw
+>>> result = rw.run("examples/b7206.toml")
+>>> round(result.equivalent_stiffness * 1e-6, 1)  # K [N/um]
+233.9
+
+>>> from raceway import FORCE, hookimpl, jit
+>>> @jit(FORCE)
+... def turning(t, params, out):
+...     out[1], out[2] = params[0] * math.cos(params[1] * t), params[0] * math.sin(params[1] * t)
+>>> @hookimpl
+... def raceway_excitations():
+...     return []
 """
 
 from __future__ import annotations
@@ -30,31 +52,33 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-_PUBLIC = {
-    "run": "raceway.front.run",
-    "plan": "raceway.front.plan",
-    "check": "raceway.front.check",
-    "evolve": "raceway.front.evolve",
-    "compare": "raceway.studies.compare.front",
-    "sweep": "raceway.studies.sweep.front",
-    "precision": "raceway.studies.precision.front",
-    "identify": "raceway.studies.measured.front",
-    "export_ross": "raceway.studies.ross.front",
-    "view": "raceway.studies.view.front",
-    "hookimpl": "raceway.framework.hookspecs",
-    "load_scene": "raceway.scene.file",
-    "scene_from_dict": "raceway.scene.file",
-    "Scene": "raceway.scene.tables",
-    "make_plan": "raceway.planning.plan",
-    "build_model": "raceway.bodies.model",
-    "Result": "raceway.pipeline.result",
-    "option": "raceway.framework.options",
-    "RacewayError": "raceway.errors",
-    "SceneError": "raceway.errors",
-    "PluginError": "raceway.errors",
-    "ConvergenceError": "raceway.errors",
-    "StabilityError": "raceway.errors",
+_MODULES = {
+    "raceway.front.run": "run",
+    "raceway.front.plan": "plan ScenePlan",
+    "raceway.front.check": "check Check",
+    "raceway.front.evolve": "evolve",
+    "raceway.studies.compare.front": "compare",
+    "raceway.studies.sweep.front": "sweep",
+    "raceway.studies.precision.front": "precision",
+    "raceway.studies.measured.front": "identify",
+    "raceway.studies.ross.front": "export_ross",
+    "raceway.studies.view.front": "view",
+    "raceway.scene.tables": "Scene",
+    "raceway.scene.file": "load_scene scene_from_dict",
+    "raceway.planning.plan": "make_plan",
+    "raceway.bodies.model": "build_model",
+    "raceway.pipeline.result": "Result",
+    "raceway.framework.hookspecs": "hookimpl",
+    "raceway.core.jit": "jit",
+    "raceway.core.signatures": "LAW FORCE",
+    "raceway.framework.options": (
+        "option positive at_least above between inside length finite one_of word_or optional worded"
+    ),
+    "raceway.errors": (
+        "RacewayError SceneError Mistake PluginError MeshError ConvergenceError StabilityError BeyondPlanError"
+    ),
 }
+_PUBLIC = {name: module for module, names in _MODULES.items() for name in names.split()}
 __all__ = sorted(_PUBLIC)
 
 

@@ -20,6 +20,15 @@ class RacewayError(Exception):
     ----------
     state : the last good arrays of a run, by name
     files : what the command line has written of it, path by name
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> try:
+    ...     rw.run({"bearing": {"preset": "B7206G"}})
+    ... except rw.RacewayError as error:
+    ...     print(type(error).__name__, error.exit_code)
+    SceneError 2
     """
 
     exit_code = 2
@@ -37,7 +46,14 @@ def extra(name: str) -> str:
 
 @attrs.frozen
 class Mistake:
-    """One thing wrong in a scene: where, what stood there, the rule, and the way out."""
+    """One thing wrong in a scene: where, what stood there in the key's unit, the rule, and the way out.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> print(rw.Mistake("rotor.mass", -1.0, "must be at least 0"))
+    `rotor.mass` = -1.0: must be at least 0
+    """
 
     path: str
     value: Any
@@ -59,6 +75,15 @@ class SceneError(RacewayError):
     Parameters
     ----------
     mistakes : sequence of Mistake
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> try:
+    ...     rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "rotor": {"mass": -1}})
+    ... except rw.SceneError as error:
+    ...     print(error.mistakes[0].path)
+    rotor.mass
     """
 
     def __init__(self, mistakes: Sequence[Mistake]) -> None:
@@ -71,11 +96,28 @@ class SceneError(RacewayError):
 
 
 class PluginError(RacewayError):
-    """A plug-in that cannot be loaded or that breaks its contract."""
+    """A plug-in that cannot be loaded or that breaks its contract.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> try:
+    ...     rw.check("examples/b7206.toml", plugins=["no_such_law.py"])
+    ... except rw.PluginError as error:
+    ...     print("no_such_law.py" in str(error))
+    True
+    """
 
 
 class MeshError(RacewayError):
-    """A mesh that cannot be read, built or used; ``mistake`` names the key of the scene where one is to blame."""
+    """A mesh that cannot be read, built or used; ``mistake`` names the key of the scene where one is to blame.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.MeshError.at("mesh.file", "ring.inp", "has no hexahedra").mistake.path
+    'mesh.file'
+    """
 
     mistake: Mistake | None = None
 
@@ -88,16 +130,40 @@ class MeshError(RacewayError):
 
 
 class ConvergenceError(RacewayError):
-    """A solver that found no solution; ``state`` holds the last good arrays."""
+    """A solver that found no solution; ``state`` holds the last good arrays.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> try:
+    ...     rw.run({"bearing": {"preset": "B7206C"}})  # nothing seats the balls
+    ... except rw.ConvergenceError as error:
+    ...     print(error.exit_code)
+    1
+    """
 
     exit_code = 1
 
 
 class BeyondPlanError(RacewayError):
-    """A run that was stopped because it took many times its plan; no search takes it for a solution that was not found."""
+    """A run that was stopped because it took many times its plan; no search takes it for a solution that was not found.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.BeyondPlanError("stopped after 20 s", {"time_s": 0.01}).state
+    {'time_s': 0.01}
+    """
 
     exit_code = 1
 
 
 class StabilityError(ConvergenceError):
-    """A step above the stable limit, or a motion that grew without bound."""
+    """A step above the stable limit, or a motion that grew without bound.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> issubclass(rw.StabilityError, rw.ConvergenceError)
+    True
+    """

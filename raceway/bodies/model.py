@@ -227,6 +227,13 @@ def build_model(scene: Scene, plan: Plan) -> Model:
         A law that builds parameters of a wrong shape, or bodies that build no bearing.
     ConvergenceError
         No equilibrium under the axial load whose displacement is to be held.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = rw.Scene.from_toml("examples/b7206.toml")
+    >>> round(rw.build_model(scene, rw.make_plan(scene)).mass_used, 2)  # of ring and rotor [kg]
+    2.06
     """
     bearing = bodies(scene, "build", plan)
     if not isinstance(bearing, Bearing):

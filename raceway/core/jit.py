@@ -277,6 +277,19 @@ def jit(
 
     Division by zero gives an infinity or NaN, as in numpy, and is not an exception: an exception cannot leave a function
     pointer, and its check keeps loops from being vectorised.
+
+    Examples
+    --------
+    A linear spring; gaps [m] are negative where bodies overlap, forces are in N:
+
+    >>> from raceway import LAW, jit
+    >>> @jit(LAW)
+    ... def spring(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    ...     for i in range(gap.size):
+    ...         touching = gap[i] < 0.0
+    ...         force[i] = -params[i, 0] * gap[i] if touching else 0.0
+    ...         d_gap[i] = -params[i, 0] if touching else 0.0
+    ...         d_rate[i] = 0.0
     """
     options: dict[str, Any] = {"nopython": True, "error_model": "numpy"}
     if not allocates and hasattr(numba.core.registry.cpu_target.options, "_nrt"):  # an option that numba does not promise

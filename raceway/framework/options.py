@@ -38,6 +38,16 @@ def option(
     rule : validator, called as ``rule(None, attribute, value)``
     path : the value names a file, relative to the folder of the scene file
     no_list : what to tell who gives a list or a table where one value is wanted
+
+    Examples
+    --------
+    >>> import attrs
+    >>> from raceway import option, positive
+    >>> @attrs.frozen
+    ... class Law:
+    ...     stiffness: float = option(1e9, unit="N/m", help="of the spring", rule=positive())
+    >>> Law().stiffness
+    1000000000.0
     """
     metadata = {"unit": unit, "help": help, "rule": getattr(rule, "words", ""), "path": path, "no_list": no_list}
     return attrs.field(default=default, validator=rule or (lambda *_: None), metadata=metadata)
@@ -61,7 +71,23 @@ def _rule(words: str, test: Callable[[Any], bool], **facts: object) -> Rule:
 
 
 def worded(check: Rule, words: str, facts: ReadTables | None = None) -> Rule:
-    """A rule of one's own with what ``--help``, the documents and the JSON schema say of it."""
+    """A rule of one's own with what ``--help``, the documents and the JSON schema say of it.
+
+    Parameters
+    ----------
+    check : called as ``check(None, attribute, value)``, value in the unit of the option; raises ValueError with the whole sentence
+    words : what follows "must be"
+    facts : keywords of the JSON schema, such as ``{"minimum": 0}``
+
+    Examples
+    --------
+    >>> from raceway import worded
+    >>> def even(_instance, _attribute, value):
+    ...     if value % 2:
+    ...         raise ValueError("must be even")
+    >>> worded(even, "even").words
+    'even'
+    """
     # Functions take attributes, but their type has none.
     check.words = words  # type: ignore[attr-defined]
     check.facts = dict(facts or {})  # type: ignore[attr-defined]
@@ -69,37 +95,116 @@ def worded(check: Rule, words: str, facts: ReadTables | None = None) -> Rule:
 
 
 def positive() -> Rule:
+    """Rule: greater than 0, in the unit of the option.
+
+    Examples
+    --------
+    >>> from raceway import positive
+    >>> positive()(None, None, -1.0)
+    Traceback (most recent call last):
+        ...
+    ValueError: must be greater than 0
+    """
     return _rule("greater than 0", lambda v: v > 0, exclusiveMinimum=0)
 
 
 def at_least(low: float) -> Rule:
+    """Rule: ``low`` or more, in the unit of the option.
+
+    Examples
+    --------
+    >>> from raceway import at_least
+    >>> at_least(0.0)(None, None, -1.0)
+    Traceback (most recent call last):
+        ...
+    ValueError: must be at least 0
+    """
     return _rule(f"at least {low:g}", lambda v: v >= low, minimum=low)
 
 
 def above(low: float) -> Rule:
+    """Rule: more than ``low``, in the unit of the option.
+
+    Examples
+    --------
+    >>> from raceway import above
+    >>> above(1.0)(None, None, 1.0)
+    Traceback (most recent call last):
+        ...
+    ValueError: must be greater than 1
+    """
     return _rule(f"greater than {low:g}", lambda v: v > low, exclusiveMinimum=low)
 
 
 def between(low: float, high: float) -> Rule:
+    """Rule: from ``low`` to ``high``, both included, in the unit of the option.
+
+    Examples
+    --------
+    >>> from raceway import between
+    >>> between(0.0, 1.0)(None, None, 1.5)
+    Traceback (most recent call last):
+        ...
+    ValueError: must be from 0 to 1
+    """
     return _rule(f"from {low:g} to {high:g}", lambda v: low <= v <= high, minimum=low, maximum=high)
 
 
 def inside(low: float, high: float) -> Rule:
+    """Rule: between ``low`` and ``high``, none of them included, in the unit of the option.
+
+    Examples
+    --------
+    >>> from raceway import inside
+    >>> inside(0.5, 1.0)(None, None, 0.5)
+    Traceback (most recent call last):
+        ...
+    ValueError: must be greater than 0.5 and less than 1
+    """
     return _rule(
         f"greater than {low:g} and less than {high:g}", lambda v: low < v < high, exclusiveMinimum=low, exclusiveMaximum=high
     )
 
 
 def length() -> Rule:
-    """Of a bearing [m]; squares and cubes of such numbers are numbers, too."""
+    """Rule: a length of a bearing [m]; squares and cubes of such numbers are numbers, too.
+
+    Examples
+    --------
+    >>> from raceway import length
+    >>> length()(None, None, 0.0)
+    Traceback (most recent call last):
+        ...
+    ValueError: must be greater than 0 and less than 1000
+    """
     return inside(0.0, 1e3)
 
 
 def finite() -> Rule:
+    """Rule: any number that is finite, in the unit of the option.
+
+    Examples
+    --------
+    >>> from raceway import finite
+    >>> finite()(None, None, float("inf"))
+    Traceback (most recent call last):
+        ...
+    ValueError: must be a finite number: a finite number
+    """
     return _rule("a finite number", lambda v: True)
 
 
 def one_of(*choices: str) -> Rule:
+    """Rule: one of a few words.
+
+    Examples
+    --------
+    >>> from raceway import one_of
+    >>> one_of("locked", "free")(None, None, "fre")
+    Traceback (most recent call last):
+        ...
+    ValueError: must be one of 'locked', 'free' (did you mean 'free'?)
+    """
     listed = ", ".join(repr(c) for c in choices)
 
     def check(_instance: object, _attribute: object, value: str) -> None:
@@ -110,7 +215,13 @@ def one_of(*choices: str) -> Rule:
 
 
 def word_or(rule: Rule, *choices: str) -> Rule:
-    """A number that obeys ``rule``, or one of a few words."""
+    """Rule: a number that obeys ``rule``, in the unit of the option, or one of a few words.
+
+    Examples
+    --------
+    >>> from raceway import positive, word_or
+    >>> word_or(positive(), "auto")(None, None, "auto")
+    """
     listed = ", ".join(repr(c) for c in choices)
     number = getattr(rule, "words", "a number")
 
@@ -125,6 +236,14 @@ def word_or(rule: Rule, *choices: str) -> Rule:
 
 
 def optional(rule: Rule) -> Rule:
+    """Rule: None, or what obeys ``rule``, in the unit of the option.
+
+    Examples
+    --------
+    >>> from raceway import optional, positive
+    >>> optional(positive())(None, None, None)
+    """
+
     def check(instance: object, attribute: object, value: object) -> None:
         if value is not None:
             rule(instance, attribute, value)

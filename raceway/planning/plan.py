@@ -68,6 +68,7 @@ class Plan:
         return any(one.part == part for one in self.kept)
 
     def to_dict(self) -> Tables:
+        """Content of the table ``plan`` of result.json."""
         return {
             "kept": [attrs.asdict(p) for p in self.kept],
             "left_out": [attrs.asdict(p) for p in self.left_out],
@@ -92,6 +93,12 @@ def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | No
     ------
     SceneError
         For combinations that cannot run, each with the reason and the remedy.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.make_plan(rw.Scene.from_toml("examples/b7206.toml")).time_step_s  # [s]
+    1.388888888888889e-05
     """
     refuse_what_cannot_run(scene)
     parts = Decisions(force)

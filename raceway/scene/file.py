@@ -122,10 +122,22 @@ def _text(path: Path) -> str:
 def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry | None = None) -> Scene:
     """A scene from a file, with ``key.path=value`` changes.
 
+    Parameters
+    ----------
+    path : of a TOML file
+    changes : such as ``"load.axial=400"``, values in the keys' units or as text with one
+    registry : plug-ins that the scene may use; None: those of this process
+
     Raises
     ------
     SceneError
         With every mistake that was found.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.load_scene("examples/b7206.toml", ["load.axial=0.4 kN"]).load.axial
+    400.0
     """
     given = Given(read_toml(path), Path(path).stem, Path(path).parent).changed(*changes)
     return given.scene(registry or default_registry())
@@ -249,6 +261,8 @@ def scene_from_dict(
 
     Parameters
     ----------
+    tables : by name, values in the keys' units or as text with one
+    registry : plug-ins that the scene may use; None: those of this process
     known_parts : of scenes that were read before with the same registry, by the tables they stood in; the parts that this
         scene shares with them are taken from there, and its own are added
 
@@ -256,6 +270,12 @@ def scene_from_dict(
     ------
     SceneError
         With every mistake that was found.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}}).load.axial  # [N]
+    400.0
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []

@@ -331,8 +331,8 @@ class Scene(Shown):
         Examples
         --------
         >>> import raceway as rw
-        >>> rw.Scene.from_toml('[bearing]\npreset = "B7206C"').bearing.ball_count
-        15
+        >>> rw.Scene.from_toml('bearing.preset = "B7206C"').bearing.ball_count
+        12
         """
         from raceway.scene.given import as_scene
 
