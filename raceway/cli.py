@@ -28,6 +28,7 @@ from raceway.commands.frame import (
     show_progress,
 )
 from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults
+from raceway.commands.new_scene import new_scene
 from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
 from raceway.commands.reports import chosen_reports, write_reports
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
@@ -212,7 +213,7 @@ def _keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
 
 _COMMANDS = (
     *(compare, verify, precision, stability, sweep, study, plot, export, identify, view, mesh),
-    *(plugins, check_plugin, new_plugin, schema, cache),
+    *(new_scene, plugins, check_plugin, new_plugin, schema, cache),
 )
 for _command in _COMMANDS:
     main.add_command(_command)

@@ -111,9 +111,7 @@ def test_the_title_says_each_change_once():
 
 def test_files_stay_where_the_scene_says(tmp_path, monkeypatch):
     (tmp_path / "inside").mkdir()
-    (tmp_path / "inside" / "force.csv").write_text(
-        "t,Fy,Fz\n" + "".join(f"{k * 1e-4},{k % 7},0\n" for k in range(50))
-    )
+    (tmp_path / "inside" / "force.csv").write_text("t,Fy,Fz\n" + "".join(f"{k * 1e-4},{k % 7},0\n" for k in range(50)))
     tables = '[bearing]\npreset = "B7206C"\n[excitation]\nkind = "measured"\nspeed_rpm = 6000\nfile = "force.csv"\n'
     (tmp_path / "inside" / "scene.toml").write_text(tables)
     scene = rw.Scene.from_toml(tmp_path / "inside" / "scene.toml")

@@ -10,6 +10,7 @@ notebook       how answers of many runs show themselves
 reports        reports that ``raceway run`` writes beside result.json
 failure        files of a run that failed
 cache          ``raceway cache``
+new_scene      ``raceway new-scene``
 plugins        ``raceway plugins``, ``check-plugin``, ``new-plugin``, ``schema``;  plugin_screen: what they print
 screen         tables of a run, a plan and the caches
 """

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
+from raceway import LAW, ConvergenceError
 from raceway.bodies.basis import Basis, call_plugin, changing_speed, excitation, linear_parts, make_basis
 from raceway.bodies.model import Bearing, Told
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
-from raceway.core.signatures import LAW
-from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.framework.probe import probe_excitation, probe_law

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from raceway import LAW, jit
 from raceway.core.contact.damping import add_damping
-from raceway.core.jit import jit
 from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE, SHIFT
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, DAMPING, TILT_ARM, place, ring_force, ring_tangent
-from raceway.core.signatures import LAW, SYSTEM
+from raceway.core.signatures import SYSTEM
 
 _EXPONENT = 10.0 / 9.0
 _ITERATIONS = 80

@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway import option
-from raceway.errors import Mistake
+from raceway import Mistake, option, positive
 from raceway.framework.contracts import Cost, Traits
-from raceway.framework.options import positive
 from raceway.planning.wall_time import START_S, Times, compiled_motion
 
 if TYPE_CHECKING:

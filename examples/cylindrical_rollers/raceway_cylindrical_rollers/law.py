@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway import PluginError, option
-from raceway.framework.options import optional, positive
+from raceway import PluginError, option, optional, positive
 
 if TYPE_CHECKING:
     import numpy as np

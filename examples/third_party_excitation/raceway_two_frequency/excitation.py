@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway import option
-from raceway.framework.options import at_least, between, finite, one_of, positive
+from raceway import at_least, between, finite, one_of, option, positive
 
 if TYPE_CHECKING:
     import numpy as np

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from raceway.core.jit import jit
-from raceway.core.signatures import LAW
+from raceway import LAW, jit
 
 
 @jit(LAW)

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway import option
-from raceway.framework.options import at_least, inside, optional, positive
+from raceway import at_least, inside, option, optional, positive
 
 if TYPE_CHECKING:
     import numpy as np
