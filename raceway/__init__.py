@@ -1,10 +1,10 @@
 """Dynamic stiffness of rolling bearings under axial load and rotor unbalance, with the error and cost of every number.
 
 cli            the command line: ``raceway``
+front          what ``import raceway`` offers for one scene: run, plan, check, evolve
 commands       what all commands share: options, progress, screens, how a command ends
 studies        many runs made into one answer, a folder a study, each with its command
 testing        conformance suites for plug-ins; the scaffold of a new one
-front          what ``import raceway`` offers for one scene: run, plan, check, evolve
 pipeline       one run: equilibrium, motion, identification, error, result
 bodies         rings and balls: rigid, condensed or elastic; from scene and plan to a model
 planning       what a scene needs, what is left out, what it will cost

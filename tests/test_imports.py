@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 
 import pytest
 
@@ -19,8 +20,13 @@ except SystemExit as end:
 sys.stderr.write(json.dumps(sorted({{name.partition(".")[0] for name in sys.modules}})))
 """
 
+#: What reading a scene needs not either.
+HEAVIER = (*HEAVY, "numpy", "pandas", "xarray", "pluggy", "attrs", "click", "rich")
+
 LIGHT = {
     "import": "import raceway; raceway.load_scene; raceway.RacewayError",
+    "scene": f"import raceway as rw; rw.Scene.from_toml({ARTICLE!r}).with_(load={{'axial': '1 kN'}}); rw.positive",
+    "check and plan": f"import raceway as rw; rw.check({ARTICLE!r}); rw.plan({ARTICLE!r})",
     "help": "from raceway.cli import main; main(['--help'])",
     "help of a command": "from raceway.cli import main; main(['run', '--help'])",
     "check": f"from raceway.cli import main; main(['check', {ARTICLE!r}])",
@@ -38,6 +44,26 @@ def test_heavy_packages_stay_out(case):
     loaded = set(json.loads(found.stderr))
     assert "raceway" in loaded
     assert not loaded & set(HEAVY)
+
+
+def test_the_import_alone_loads_nothing_else():
+    found = python("-c", LOOK.format(code="import raceway as rw; dir(rw)"))
+    assert found.returncode == 0, found.stderr
+    assert not set(json.loads(found.stderr)) & set(HEAVIER)
+
+
+def least_seconds(*words, runs=9):
+    """Wall time of a process, the least of several: what others do on the machine only adds."""
+    taken = []
+    for _ in range(runs):
+        begun = time.perf_counter()
+        assert python(*words).returncode == 0
+        taken.append(time.perf_counter() - begun)
+    return min(taken)
+
+
+def test_the_import_takes_a_tenth_of_a_second_at_most():
+    assert least_seconds("-c", "import raceway") - least_seconds("-c", "pass") <= 0.1
 
 
 def test_a_run_without_pictures_loads_no_package_for_pictures_or_meshes(tmp_path):

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from raceway.commands.progress import telling
 from raceway.framework.registry import default_registry
 from raceway.pipeline.allowance import PATIENCE
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run as compute
-from raceway.pipeline.simulate import OnProgress
 from raceway.scene.given import as_scene
 from raceway.storage.files import writable
+
+if TYPE_CHECKING:
+    from raceway.commands.progress import ShowProgress
 
 
 def run(
     scene: Any,
     *,
-    progress: OnProgress | None = None,
+    progress: ShowProgress = None,
     patience: float = PATIENCE,
     plugins: Iterable[str | Path] = (),
     out: str | Path | None = None,
@@ -28,7 +31,8 @@ def run(
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables
-    progress : called as ``progress(what, done, total)`` between chunks of steps; an exception stops the run
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)`` between chunks of steps; an exception
+        stops the run
     patience : times the planned time, of processor time, after which a run is stopped; ``inf``: never
     plugins : files of one-off plug-ins that the scene uses
     out : folder in which result.json is written; None: nothing is written
@@ -55,7 +59,8 @@ def run(
     """
     read = as_scene(scene, plugins=plugins)
     folder = None if out is None else writable(Path(out))
-    result = compute(read, default_registry(), progress, patience=patience)
+    with telling(progress) as told:
+        result = compute(read, default_registry(), told, patience=patience)
     if folder is not None:
         result.save(folder)
     return result

@@ -14,6 +14,7 @@ from raceway.plugins.reports import drawing
 from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from raceway.framework.higher_types import Result
