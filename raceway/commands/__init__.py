@@ -6,7 +6,6 @@ console        messages and exit codes
 interrupt      Ctrl-C, SIGTERM and SIGHUP
 streams        standard streams that are closed, or know ASCII only
 progress       the bar on standard error
-notebook       how answers of many runs show themselves
 reports        reports that ``raceway run`` writes beside result.json
 failure        files of a run that failed
 cache          ``raceway cache``

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import attrs
 
-from raceway.commands.notebook import few_lines, html_table
 from raceway.errors import RacewayError
+from raceway.framework.shown import Fact, Shown, number_within
 from raceway.storage.tables import Tables
 from raceway.studies.compare.explain import explain
 from raceway.studies.compare.findings import QUANTITIES, Findings, Row
@@ -21,8 +21,16 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
-class Comparison(Findings):
-    """Findings with words, table and picture; ``fault``: why finished runs could not be kept."""
+class Comparison(Shown, Findings):
+    """One scene with some keys varied: the numbers, their effects, and both in words.
+
+    Attributes
+    ----------
+    title : of the scene;  axes : keys that were varied, with their values
+    rows : one a run, ``point`` and ``result`` (content of result.json, or status and reason), the last axis running fastest
+    effects, trends : of each key and of two together on K and |Z|;  words : all of it in sentences
+    fault : why finished runs could not be kept
+    """
 
     fault: RacewayError | None = None
 
@@ -76,12 +84,11 @@ class Comparison(Findings):
 
         return draw_on(self.to_dict(), quantity, ax)
 
-    def __repr__(self) -> str:
-        done = sum(not row.failed for row in self.rows)
-        return few_lines(f"Comparison: {done} of {len(self.rows)} runs finished", [self.title, *self.words])
-
-    def _repr_html_(self) -> str:
-        return html_table(self.title, self.table(), self.words)
+    def _shown(self) -> tuple[str, list[Fact]]:
+        names = _short_names(self.axes)
+        runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_k_of(row)) for row in self.rows]
+        short = [("in short", "", text) for text in self.words]
+        return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*short[:4], *runs, *short[4:]]
 
     def table(self) -> list[dict[str, str]]:
         """One row a run, as short text for a screen; why a run is in doubt is said in the words."""
@@ -99,6 +106,19 @@ class Comparison(Findings):
         from raceway.studies.compare.picture import ComparisonPicture
 
         return ComparisonPicture().write(self.to_dict(), folder)
+
+
+def _k_of(row: Row) -> tuple[str, str]:
+    """K with its error, and what is to be known of it."""
+    k, z = (row.value(quantity) for quantity in QUANTITIES)
+    if k is None:
+        return "-", row.doubt or ""
+    error = 1e-6 * row.error * (z or 0.0)
+    doubt = f"; in doubt: {row.doubt}" if row.doubt else ""
+    return (
+        f"K {number_within(1e-6 * k, error, 'N/µm')}",
+        f"{f'+- {error:.2g} N/µm' if row.estimated else 'error not known'}{doubt}",
+    )
 
 
 def _screen_row(row: Row, names: dict[str, str], noted: bool) -> dict[str, str]:

@@ -17,9 +17,9 @@ from raceway.scene.file import scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row
-from raceway.studies.many.axes import Axis, parse_axes, points
+from raceway.studies.many.axes import Axis, points
 from raceway.studies.many.engine import Item, local, work_through
-from raceway.studies.many.points import refuse_mistakes, tables_at
+from raceway.studies.many.points import axes_of, refuse_mistakes, tables_at
 from raceway.studies.many.row_store import RowStore, row_key, tables_key
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def compare(
     A point that is refused or that fails is kept with its reason, and the study goes on.
     """
     registry = registry or default_registry()
-    axes = parse_axes(vary)
+    axes = axes_of(vary, scene_tables, registry)
     notes: list[str] = []
     title = refuse_mistakes(scene_tables, axes, registry)
     kept, places = RowStore(store), list(points(axes))

@@ -5,14 +5,18 @@ Swapping a plug-in's kind leaves out the options that only the other kind knows.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import Any
+
 import attrs
 
 from raceway.errors import PluginError, SceneError
 from raceway.framework.registry import Registry
-from raceway.scene.file import PLUGIN_TABLES, scene_from_dict, with_value
+from raceway.scene.file import PLUGIN_TABLES, numbers_only, scene_from_dict, value_at, with_value
 from raceway.scene.tables import TABLES
+from raceway.scene.units import is_quantity
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.many.axes import Axis, shown
+from raceway.studies.many.axes import Axis, parse_axes, shown
 
 
 def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: list[str] | None = None) -> Tables:
@@ -30,6 +34,25 @@ def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: 
                     notes.append(note)
         changed = with_value(changed, key, value)
     return changed
+
+
+def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tables:
+    """A point whose values with a unit as text are numbers in the unit of their key."""
+    texts = [key for key, value in point.items() if isinstance(value, str) and is_quantity(value)]
+    if not texts:
+        return dict(point)
+    changed = numbers_only(tables_at(tables, point, registry), registry)
+    return {**point, **{key: value_at(changed, key) for key in texts}}
+
+
+def axes_of(given: Iterable[str] | Mapping[str, Any], tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
+    """``parse_axes`` with values in the units of the scene's keys."""
+    return tuple(in_units(axis, tables, registry) for axis in parse_axes(given))
+
+
+def in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
+    """An axis whose values with a unit as text are numbers in the unit of the key."""
+    return Axis(axis.key, tuple(numbers_at(tables, {axis.key: value}, registry)[axis.key] for value in axis.values))
 
 
 def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registry) -> list[str]:

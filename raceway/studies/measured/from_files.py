@@ -32,6 +32,19 @@ def from_files(
     return from_signals(read_signals(signals), scene, rig, registry, still, run_out, on_progress)
 
 
+def refuse_no_load(scene: Scene) -> None:
+    """A bearing that nothing seats has no stiffness to compare with.
+
+    Raises
+    ------
+    SceneError
+        Naming the key.
+    """
+    if scene.load.axial <= 0.0:
+        message = "must be the axial load of the measurement, greater than 0: add --set load.axial=..."
+        raise SceneError.at("load.axial", scene.load.axial, message)
+
+
 def from_signals(
     signals: Signals,
     scene: Scene,
@@ -59,12 +72,7 @@ def from_signals(
         if on_progress is not None:
             on_progress(what, done, 3)
 
-    if scene.load.axial <= 0.0:
-        raise SceneError.at(
-            "load.axial",
-            scene.load.axial,
-            "must be the axial load of the measurement, greater than 0: add --set load.axial=...",
-        )
+    refuse_no_load(scene)
     recording = recording_of(signals)
     roll = None
     if slow is not None:

@@ -13,7 +13,7 @@ from raceway.pipeline.result import write_json
 from raceway.scene.file import rig_of
 from raceway.scene.given import as_scene
 from raceway.storage.files import writable
-from raceway.studies.measured.from_files import from_signals
+from raceway.studies.measured.from_files import from_signals, refuse_no_load
 from raceway.studies.measured.identified import Identified
 from raceway.studies.measured.signals import signals_of
 
@@ -65,19 +65,26 @@ def identify(
     >>> angle = 2.0 * np.pi * 200.0 * (time := np.arange(0.0, 0.1, 5e-5))
     >>> signals = {
     ...     "time_s": time,
-    ...     "y_um": 100.0 * np.cos(angle),
-    ...     "z_um": 100.0 * np.sin(angle),
-    ...     "key": np.cos(angle) > 0.98,
+    ...     "y_um": 15.0 * np.cos(angle),
+    ...     "z_um": 15.0 * np.sin(angle),
+    ...     "speed_rpm": 12000.0 + 0.0 * time,
     ... }
-    >>> rig = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "rig": {}}
+    >>> rig = {
+    ...     "bearing": {"preset": "B7206C"},
+    ...     "load": {"axial": 1000.0},
+    ...     "rig": {},  # a shaft of 426 mm with a disc, see ``raceway schema``
+    ...     "integrator": {"kind": "quasi_static"},
+    ... }
     >>> found = rw.identify(signals, rig)
-    >>> found.equivalent_stiffness  # [N/m]
+    >>> round(1e-6 * found.equivalent_stiffness)  # K [N/um]
+    84
     """
     if run_out is not None and slow_roll is not None:
         raise SceneError.at("run_out", run_out, "the slow roll tells it already: leave one of them out")
     registry = registry_with(plugins)
     read = as_scene(scene, plugins=plugins)
     rig = rig_of(read)
+    refuse_no_load(read)
     folder = None if out is None else writable(Path(out))
     with telling(progress) as told:
         told("reading signals", 0, 3)

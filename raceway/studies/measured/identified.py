@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.commands.notebook import few_lines, html_table
 from raceway.errors import RacewayError, SceneError, extra
+from raceway.framework.shown import Fact, Shown, number, number_within
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.measured.identify import Found
@@ -22,7 +22,7 @@ _PLOTS = ("orbits", "spectrum")
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
-class Identified:
+class Identified(Shown):
     """A bearing's dynamic stiffness as identified from signals, at their speed, the tilt as in the rig.
 
     Attributes
@@ -128,31 +128,20 @@ class Identified:
             axes.legend(frameon=False, fontsize=8)
         return axes
 
-    def _rows(self) -> list[dict[str, str]]:
-        """Quantity, value, half-width at 95 % and unit."""
-        k, c = self._numbers, self.equivalent_damping
-        rows = [
-            {"quantity": "K", "value": f"{1e-6 * k['equivalent_stiffness']:.5g}", "+- at 95 %": f"{1e-6 * k['equivalent_stiffness_error']:.2g}", "unit": "N/µm"},
-        ]  # fmt: skip
+    def _shown(self) -> tuple[str, list[Fact]]:
+        k, c, locked = self._numbers, self.equivalent_damping, self._numbers["tilt_locked"]
+        facts = [_within("K", k["equivalent_stiffness"], k["equivalent_stiffness_error"], "tilt as in the rig")]
         if c is not None:
             wide = k["equivalent_damping_error"]
-            rows.append(
-                {"quantity": "C", "value": f"{c:.4g}" if abs(c) > wide else "not resolved", "+- at 95 %": f"{wide:.2g}", "unit": "N s/m"}
-            )  # fmt: skip
-        locked = k["tilt_locked"]
-        rows.append(
-            {
-                "quantity": "K, tilt locked",
-                "value": f"{1e-6 * locked['equivalent_stiffness']:.5g}",
-                "+- at 95 %": f"{1e-6 * locked['equivalent_stiffness_error']:.2g}",
-                "unit": "N/µm",
-            }
-        )
-        return rows
+            value = number(c, "N s/m", 4) if abs(c) > wide else "not resolved"
+            facts.append(("C", value, f"+- {number(wide, 'N s/m', 2)} at 95 %"))
+        facts.append(_within("K, tilt locked", locked["equivalent_stiffness"], locked["equivalent_stiffness_error"], ""))
+        facts.append(("K of the scene", number(1e-6 * k["scene_stiffness"], "N/µm"), "under the same force and moment"))
+        title = f"Identified from {self.source} at {self.speed_rpm:.1f} r/min\n{self.title.splitlines()[0]}"
+        return title, [*facts, *(("warning", "", text) for text in self.warnings)]
 
-    def __repr__(self) -> str:
-        rows = [f"{row['quantity']} {row['value']} +- {row['+- at 95 %']} {row['unit']}" for row in self._rows()]
-        return few_lines(f"Identified from {self.source} at {self.speed_rpm:.1f} r/min", [self.title, *rows, *self.warnings])
 
-    def _repr_html_(self) -> str:
-        return html_table(f"{self.title}: {self.source} at {self.speed_rpm:.1f} r/min", self._rows(), self.warnings)
+def _within(name: str, value: float, error: float, remark: str) -> Fact:
+    """A stiffness [N/m] with its half-width at 95 %."""
+    words = f"+- {number(1e-6 * error, 'N/µm', 2)} at 95 %"
+    return name, number_within(1e-6 * value, 1e-6 * error, "N/µm"), f"{words}; {remark}" if remark else words

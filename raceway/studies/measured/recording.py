@@ -113,13 +113,15 @@ def _refuse_clipped(source: str, name: str, signal: np.ndarray) -> None:
 
     Notes
     -----
-    A sine of amplitude A in steps of q stays arccos(1 - q / A) / pi of its time within the last step at each end.
+    A sine of amplitude A in steps of q stays arccos(1 - q / A) / pi of its time within the last step at each end.  A signal
+    without noise that keeps step with its samples has few values, each as often as another.
     """
-    values = np.unique(signal)
+    values, counts = np.unique(signal, return_counts=True)
     if len(values) < 3:
         return
     amplitude, step = 0.5 * (values[-1] - values[0]), float(np.diff(values).min())
     usual = math.acos(max(1.0 - step / amplitude, -1.0)) / math.pi
+    usual = max(usual, float(np.median(counts)) / len(signal))
     for word, end in (("top", values[-1]), ("bottom", values[0])):
         there = float((signal == end).mean())
         if there > 2.0 * usual + _AT_THE_END:

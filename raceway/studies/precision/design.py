@@ -26,8 +26,8 @@ from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.many.axes import parse_axes, points
-from raceway.studies.many.points import refuse_mistakes, tables_at
+from raceway.studies.many.axes import points
+from raceway.studies.many.points import axes_of, refuse_mistakes, tables_at
 
 STEPS = (45, 90, 180, 360, 720, 1440)
 TURNS = (3, 6, 12, 24, 48)
@@ -99,7 +99,7 @@ def make_design(tables: ReadTables, vary: Iterable[str] | Mapping[str, Any], lim
     """
     given, notes = vary if isinstance(vary, Mapping) else list(vary), list[str]()
     if given:
-        axes = parse_axes(given)
+        axes = axes_of(given, tables, registry)
         title = refuse_mistakes(tables, axes, registry)
         wanted = [("axes", point) for point in points(axes)]
     else:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import attrs
 
-from raceway.commands.notebook import few_lines, html_table
 from raceway.errors import RacewayError
+from raceway.framework.shown import Fact, Shown
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
@@ -31,7 +31,7 @@ Row = Tables
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
-class Precision:
+class Precision(Shown):
     """Findings of a precision study.
 
     Attributes
@@ -232,12 +232,23 @@ class Precision:
         panel.legend(frameon=False, fontsize=8)
         return panel
 
-    def __repr__(self) -> str:
-        known = sum(row["error"] is not None for row in self.judged)
-        return few_lines(f"Precision: {known} of {len(self.rows)} settings with a known error", [self.title, *self.words])
-
-    def _repr_html_(self) -> str:
-        return html_table(self.title, self.table(), [*self.words, "* on the front; ~ known to the reference's bound only"])
+    def _shown(self) -> tuple[str, list[Fact]]:
+        short = [("in short", "", text) for text in self.words]
+        front = set(self.front(self.base))
+        rows = [
+            (
+                words_of(row["setting"]),
+                "-" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}",
+                ("on the front, " if place in front else "")
+                + (f"{1e3 * row['cost']['time_s']:.3g} ms" if row["cost"] else row["status"]),
+            )
+            for place, row in enumerate(self.judged)
+        ]
+        return f"Error against run time of {len(self.rows)} settings\n{self.title.splitlines()[0]}", [
+            *short[:5],
+            *rows,
+            *short[5:],
+        ]
 
     def table(self) -> list[dict[str, str]]:
         """One line a row, as short text for a screen."""

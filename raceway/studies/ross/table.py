@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.commands.notebook import few_lines, html_table
 from raceway.errors import RacewayError, extra
+from raceway.framework.shown import Fact, Shown
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.ross.coefficients import Coefficients
@@ -25,7 +25,7 @@ _RPM = 30.0 / np.pi
 
 
 @attrs.frozen(eq=False, repr=False)
-class RossTable:
+class RossTable(Shown):
     """Coefficients of one bearing for ROSS.
 
     Attributes
@@ -146,12 +146,12 @@ class RossTable:
         given = {"speed": self.coefficients.speed, "frequency": self.coefficients.frequency}
         return {name: values for name, values in given.items() if values is not None}
 
-    def __repr__(self) -> str:
-        over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())
-        return few_lines(f"RossTable '{self.tag}' for ROSS {self.file.generation}: {over}", self.notes)
-
-    def _repr_html_(self) -> str:
+    def _shown(self) -> tuple[str, list[Fact]]:
         from raceway.studies.ross.screen import point_rows
 
         rows, constant = point_rows(self.to_dict())
-        return html_table(f"{self.tag}, for ROSS {self.file.generation}", rows, [*constant, *self.notes])
+        over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())
+        ends = [(", ".join(f"{name} {value}" for name, value in row.items()), "", "") for row in (rows[0], rows[-1])]
+        notes = [("note", "", text) for text in self.notes]
+        same = [("same everywhere", "", text) for text in constant]
+        return f"{self.tag}, coefficients for ROSS {self.file.generation}\n{over}", [*ends, *same, *notes]

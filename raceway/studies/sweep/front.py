@@ -16,6 +16,7 @@ from raceway.framework.registry import Registry, registry_with
 from raceway.scene.given import plain_tables
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
+from raceway.studies.many.points import in_units, numbers_at
 from raceway.studies.sweep.dataset import dataset
 from raceway.studies.sweep.design import Design, grid, listed_points
 from raceway.studies.sweep.engine import Sweep, prepare
@@ -111,9 +112,10 @@ def prepared_sweep(scene: Any, axes: Axes, store: Path, resume: bool = False, pl
         As ``sweep``.
     """
     files = tuple(Path(file) for file in plugins)
-    tables = plain_tables(scene, registry=registry_with(files))
+    registry = registry_with(files)
+    tables = plain_tables(scene, registry=registry)
     try:
-        prepared = prepare(tables, design_of(axes), store, files, resume)
+        prepared = prepare(tables, _in_units(design_of(axes), tables, registry), store, files, resume)
     except SceneError as error:
         raise with_static_remedy(error) from None
     for note in prepared.survey.notes:
@@ -135,6 +137,13 @@ def design_of(axes: Axes) -> Design:
     if isinstance(axes, Design):
         return axes
     return grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
+
+
+def _in_units(design: Design, tables: ReadTables, registry: Registry) -> Design:
+    """A design with all values as numbers in the units of their keys."""
+    if design.axes:
+        return Design(tuple(in_units(axis, tables, registry) for axis in design.axes))
+    return Design(listed=tuple(numbers_at(tables, point, registry) for point in design.listed))
 
 
 def executor_of(name: str | Executor, given: ReadTables, registry: Registry) -> Executor:

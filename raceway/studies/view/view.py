@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import base64
 import io
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import attrs
 
-from raceway.commands.notebook import few_lines
 from raceway.errors import SceneError
+from raceway.framework.shown import Fact, Shown, number
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
@@ -20,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@attrs.frozen(eq=False, repr=False)
-class View:
+@attrs.frozen(eq=False, repr=False, slots=False)
+class View(Shown):
     """Pictures of one bearing.
 
     Attributes
@@ -75,13 +74,17 @@ class View:
         axes.set_axis_off()
         return axes
 
-    def __repr__(self) -> str:
-        where = [f"written: {path}" for path in self.files] or ["in memory: save(folder) writes them"]
-        return few_lines(f"View: {', '.join(self.pictures)}", [self.content["title"], *where])
+    def _shown(self) -> tuple[str, list[Fact]]:
+        shown = self.content
+        facts: list[Fact] = [
+            ("largest ball load", number(shown["largest_ball_load_n"], "N", 4), f"on the inner race, {shown['shown']}"),
+            ("largest pressure", number(1e-6 * shown["largest_pressure_pa"], "MPa", 4), "Hertz"),
+            ("pictures", "", ", ".join(self.pictures)),
+        ]
+        where = [("written", "", str(path)) for path in self.files] or [("in memory", "", "save(folder) writes them")]
+        return shown["title"], [*facts, *where, *(("warning", "", text) for text in shown["warnings"])]
 
     def _repr_html_(self) -> str:
         image = base64.b64encode(self.pictures["bearing.png"]).decode()
-        words = escape(repr(self)).replace("\n", "<br>")
-        return (
-            f'<img style="max-width:100%" alt="the bearing cut open" src="data:image/png;base64,{image}"/><div>{words}</div>'
-        )
+        picture = f'<img style="max-width:100%" alt="the bearing cut open" src="data:image/png;base64,{image}"/>'
+        return f"{picture}{super()._repr_html_()}"
