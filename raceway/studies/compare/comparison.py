@@ -86,9 +86,18 @@ class Comparison(Shown, Findings):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         names = _short_names(self.axes)
+        changes = [
+            (
+                " x ".join(names[key] for key in one["term"]),
+                f"{one['percent']:+.3g} %",
+                "on K, from its first value to its last",
+            )
+            for one in self.effects
+            if one["quantity"] == "equivalent_stiffness"
+        ]
         runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_k_of(row)) for row in self.rows]
-        short = [("in short", "", text) for text in self.words]
-        return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*short[:4], *runs, *short[4:]]
+        words: Fact = ("words", "", f"{len(self.words)} sentences in .words")
+        return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*changes[:3], words, *runs]
 
     def table(self) -> list[dict[str, str]]:
         """One row a run, as short text for a screen; why a run is in doubt is said in the words."""

@@ -66,7 +66,7 @@ def compare(
     ... }
     >>> found = rw.compare(scene, {"supports.tilt": ["locked", "free"]})
     >>> (1e-6 * found.to_xarray().equivalent_stiffness).round(0).values.tolist()  # K [N/um]
-    [235.0, 33.0]
+    [235.0, 31.0]
     """
     registry = registry_with(plugins)
     folder = None if out is None else writable(Path(out))

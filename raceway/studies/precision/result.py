@@ -233,7 +233,12 @@ class Precision(Shown):
         return panel
 
     def _shown(self) -> tuple[str, list[Fact]]:
-        short = [("in short", "", text) for text in self.words]
+        reference = self.references[self.base]
+        facts: list[Fact] = [("reference", f"{reference.bound:.1g}", f"relative bound; {reference.how}")]
+        for threshold, place in self.cheapest(self.base).items():
+            row = None if place is None else self.judged[place]
+            name, value = f"cheapest within {100.0 * float(threshold):g} %", "none" if row is None else _time(row)
+            facts.append((name, value, "" if row is None else words_of(row["setting"])))
         front = set(self.front(self.base))
         rows = [
             (
@@ -245,9 +250,8 @@ class Precision(Shown):
             for place, row in enumerate(self.judged)
         ]
         return f"Error against run time of {len(self.rows)} settings\n{self.title.splitlines()[0]}", [
-            *short[:5],
+            *facts,
             *rows,
-            *short[5:],
         ]
 
     def table(self) -> list[dict[str, str]]:
@@ -266,6 +270,10 @@ class Precision(Shown):
         from raceway.studies.precision.picture import PrecisionReport
 
         return PrecisionReport(picture=pictures).write(self.to_dict(), folder)
+
+
+def _time(row: Row) -> str:
+    return f"{1e3 * row['cost']['time_s']:.3g} ms"
 
 
 def _reference_table(reference: Reference) -> Tables:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.commands.inputs import slug
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.registry import default_registry
+from raceway.scene.file import parse_value
 from raceway.scene.given import tidy
+from raceway.storage.tables import Tables
+from raceway.studies.many.points import numbers_at
 from raceway.studies.ross.coefficients import coefficients
 from raceway.studies.ross.file import GENERATIONS, check_name, installed_generation, ross_file
 from raceway.studies.ross.table import RossTable
@@ -66,17 +71,26 @@ def export_ross(
     >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
     >>> found = rw.export_ross(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}))
     >>> found.tag, (1e-6 * found.coefficients.stiffness[:, 0, 0]).round(1).tolist()  # kyy [N/um]
-    ('B7206C', [238.2, 237.8, 236.0, 230.9, 219.2])
+    ('B7206C', [238.2, 238.1, 236.8, 231.5, 218.9])
     """
     if path is not None:
         check_name(Path(path))
-    found = select(data_of(data), tidy(at) if isinstance(at, Mapping) else parse_at(at))
+    labelled = data_of(data)
+    found = select(labelled, _chosen(at, labelled))
     table = coefficients(found, source, damping)
     name = slug(tag if tag is not None else name_of(found))
     made = RossTable(table, ross_file(table, _generation(ross_version), name, node, head(found)))
     if path is not None:
         made.write(path)
     return made
+
+
+def _chosen(at: Mapping[str, Any] | Iterable[str], data: Dataset) -> Tables:
+    """Key -> value, numbers in the units of the keys."""
+    if not isinstance(at, Mapping):
+        return parse_at(at)
+    given = {key: parse_value(value) if isinstance(value, str) else value for key, value in tidy(at).items()}
+    return numbers_at(json.loads(data.attrs["scene"]), given, default_registry())
 
 
 def data_of(data: Any) -> Dataset:

@@ -30,7 +30,7 @@ def export_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
 
 
 def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
-    """One row a point of a table over one axis, the ends of a table over two; and sentences on what does not vary."""
+    """One row a point of a table over one axis, the ends of a table over two, by name and unit; sentences on what does not vary."""
     axes = {name: 30.0 / np.pi * np.array(content[name]) for name in ("speed", "frequency") if content[name] is not None}
     columns = {name: np.array(values) for name, values in content["coefficients"].items()}
     largest = {letter: max(float(np.max(np.abs(v))) for n, v in columns.items() if n[0] == letter) for letter in "kc"}
@@ -47,9 +47,9 @@ def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
     for place in np.ndindex(shape):
         if len(shape) == 2 and any(0 < k < size - 1 for k, size in zip(place, shape, strict=True)):
             continue
-        row = {f"{name} r/min": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
+        row = {f"{name}\nr/min": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
         for name, names, values in varying:
-            row[f"{' = '.join(names)} {_unit(name)}"] = _text(name, float(values[place]))
+            row[f"{' = '.join(names)}\n{_unit(name)}"] = _text(name, float(values[place]))
         rows.append(row)
     zero = [name for name in columns if name not in shown]
     return rows, [*constant, *([f"0 at all points: {', '.join(zero)}"] if zero else [])]
@@ -72,7 +72,9 @@ def _alike(columns: dict[str, np.ndarray]) -> list[tuple[str, list[str], np.ndar
 def _fitting(rows: list[dict[str, str]]) -> list[list[dict[str, str]]]:
     """The rows as tables that fit the width, each with the axes."""
     axes = [name for name in rows[0] if name.endswith("r/min")]
-    width = {name: max(len(word) for word in (*name.split(), *(row[name] for row in rows))) + _BLANKS for name in rows[0]}
+    width = {
+        name: max(len(word) for word in (*name.split("\n"), *(row[name] for row in rows))) + _BLANKS for name in rows[0]
+    }
     room = _WIDTH - sum(width[name] for name in axes)
     parts: list[list[str]] = [[]]
     for name in (name for name in rows[0] if name not in axes):

@@ -151,7 +151,16 @@ class RossTable(Shown):
 
         rows, constant = point_rows(self.to_dict())
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())
-        ends = [(", ".join(f"{name} {value}" for name, value in row.items()), "", "") for row in (rows[0], rows[-1])]
+        ends = [
+            (
+                ", ".join(
+                    f"{name.partition(chr(10))[0]} {value} {name.partition(chr(10))[2]}" for name, value in row.items()
+                ),
+                "",
+                "",
+            )
+            for row in (rows[0], rows[-1])
+        ]
         notes = [("note", "", text) for text in self.notes]
         same = [("same everywhere", "", text) for text in constant]
         return f"{self.tag}, coefficients for ROSS {self.file.generation}\n{over}", [*ends, *same, *notes]

@@ -91,7 +91,7 @@ def sweep(
     >>> import raceway as rw
     >>> found = rw.sweep({"bearing": {"preset": "B7206C"}}, {"load.axial": [400.0, 1000.0]})
     >>> (1e-6 * found.stiffness.sel(dof="y", dof2="y")).round(1).values.tolist()  # kyy [N/um]
-    [170.7, 235.5]
+    [183.4, 238.2]
     """
     with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as told:
         folder = Path(temporary) / "sweep" if store is None else writable(Path(store))

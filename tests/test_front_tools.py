@@ -1,0 +1,260 @@
+"""compare, sweep, precision, export_ross and view from Python: the command line's numbers, in objects that show themselves."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.plugins.executors.serial import Serial
+from raceway.studies.ross.screen import point_rows
+from validation.command_line import invoke
+
+SCENE = {
+    "title": "tools",
+    "bearing": {"preset": "B7206C"},
+    "load": {"axial": 1000.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 10.0},
+    "integrator": {"kind": "quasi_static"},
+}
+STATIC = {name: SCENE[name] for name in ("title", "bearing", "load")}
+SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
+TOML = """
+title = "tools"
+bearing.preset = "B7206C"
+load.axial = 1000.0
+excitation = {kind = "bidirectional", speed_rpm = 12000.0, amplitude = "constant", force = 10.0}
+integrator.kind = "quasi_static"
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "tools.toml"
+    path.write_text(TOML)
+    return path
+
+
+def brief(found):
+    """What a console and a notebook show: few lines, one table."""
+    html = found._repr_html_()
+    return len(repr(found).splitlines()) <= 15 and html.count("<table") == 1
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    return rw.compare(SCENE, {"supports.tilt": ["locked", "free"], "load.axial": np.array([400.0, 1000.0])})
+
+
+def test_compare_gives_the_rows_of_the_command_line(comparison, file, tmp_path):
+    words = [
+        "compare",
+        file,
+        "--vary",
+        "supports.tilt=locked,free",
+        "--vary",
+        "load.axial=400,1000",
+        "--no-pictures",
+        "--json",
+    ]
+    found = json.loads(invoke(*words, "--out", tmp_path / "out").stdout)
+    own = json.loads(json.dumps(comparison.to_dict()))
+    assert [row["point"] for row in found["rows"]] == [row["point"] for row in own["rows"]]
+    for theirs, ours in zip(found["rows"], own["rows"], strict=True):
+        assert theirs["result"]["identification"] == ours["result"]["identification"]
+    assert found["effects"] == own["effects"] and found["words"] == own["words"]
+
+
+def test_a_comparison_shows_itself_and_is_labelled(comparison):
+    assert brief(comparison)
+    data = comparison.to_xarray()
+    for row in comparison.rows:
+        k = float(data.equivalent_stiffness.sel(row.point))
+        assert k == row.result["identification"]["equivalent_stiffness"]
+    assert data.equivalent_stiffness.attrs["units"] == "N/m"
+    assert comparison.plot().get_xlabel() == "load.axial"
+    one = rw.compare(SCENE, {"supports.tilt": ["locked", "free"]})
+    assert "K(w)" in one.plot().get_xlabel()  # a dot for each run, where no axis has numbers
+
+
+def test_finished_runs_are_kept_where_a_folder_is_given(tmp_path):
+    first = rw.compare(SCENE, {"load.axial": "400:1000:2"}, out=tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"compare.json", "compare-rows.jsonl"}
+    calls = []
+    again = rw.compare(SCENE, {"load.axial": [400, 1000]}, out=tmp_path, progress=lambda *step: calls.append(step))
+    assert not calls and again.to_dict()["rows"] == first.to_dict()["rows"]
+
+
+def test_axes_take_units_text_and_single_values():
+    data = rw.sweep(STATIC, {"load.axial": ["0.4 kN", "1 kN"], SPIN: "0:2000:2", "supports.tilt": "free"})
+    np.testing.assert_array_equal(data["load.axial"], [400.0, 1000.0])
+    assert data.stiffness.shape == (2, 2, 1, 5, 5) and data["load.axial"].attrs["units"] == "N"
+    with pytest.raises(SceneError, match="stands twice in the axis"):
+        rw.sweep(STATIC, {"load.axial": [400.0, 400.0]})
+    with pytest.raises(SceneError, match="load.axail"):
+        rw.sweep(STATIC, {"load.axail": [400.0, 500.0]})
+
+
+def test_a_sweep_in_memory_is_that_of_a_store_and_leaves_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    axes = {SPEED: np.linspace(1000.0, 9000.0, 5)}
+    free, kept = rw.sweep(SCENE, axes), rw.sweep(SCENE, axes, store=tmp_path / "store")
+    assert not list((tmp_path / "temporary").iterdir()) and (tmp_path / "store" / "points.sqlite").is_file()
+    for name in ("equivalent_stiffness", "stiffness", "error_total"):
+        np.testing.assert_array_equal(free[name], kept[name])
+        assert free[name].attrs["units"] and free[name].attrs["long_name"]
+    one = rw.run({**SCENE, "excitation": {**SCENE["excitation"], "speed_rpm": 5000.0}})
+    assert float(free.equivalent_stiffness.sel({SPEED: 5000.0})) == pytest.approx(one.equivalent_stiffness, rel=1e-9)
+    with pytest.raises(RacewayError, match="holds this sweep already, 5 of 5 points done"):
+        rw.sweep(SCENE, axes, store=tmp_path / "store")
+    again = rw.sweep(SCENE, axes, store=tmp_path / "store", resume=True)
+    np.testing.assert_array_equal(again.equivalent_stiffness, kept.equivalent_stiffness)
+
+
+def test_executors_by_name_or_as_such_give_the_same_bits():
+    axes = {"load.axial": [400.0, 700.0, 1000.0]}
+    alone = rw.sweep(STATIC, axes, executor=Serial())
+    beside = rw.sweep(STATIC, axes, executor="processes", workers=1)
+    np.testing.assert_array_equal(alone.stiffness, beside.stiffness)
+    with pytest.raises(PluginError, match="no executor 'procesess'|'procesess'"):
+        rw.sweep(STATIC, axes, executor="procesess")
+    with pytest.raises(PluginError, match="has no --workers"):
+        rw.sweep(STATIC, axes, workers=2)
+
+
+def test_a_list_of_points_is_swept():
+    data = rw.sweep(
+        STATIC, [{"load.axial": 400.0, "supports.tilt": "free"}, {"load.axial": "1 kN", "supports.tilt": "locked"}]
+    )
+    assert data.sizes["point"] == 2
+    np.testing.assert_array_equal(data["load.axial"], [400.0, 1000.0])
+
+
+def test_a_sweep_without_any_result_is_an_error():
+    with pytest.raises(ConvergenceError, match="all 2 points failed; the first: "):
+        rw.sweep({**SCENE, "load": {"axial": 0.0}}, {SPEED: [1000.0, 2000.0]})
+
+
+def test_precision_takes_keys_with_values(tmp_path):
+    scene = {**SCENE, "integrator": {"kind": "newmark"}, "rotor": {"mass": 2.0}}
+    found = rw.precision(scene, {"integrator.steps_per_turn": [45, 90]}, repeats=1, out=tmp_path)
+    assert brief(found) and (tmp_path / "precision.json").is_file()
+    data = found.to_xarray()
+    np.testing.assert_array_equal(data.error, [row["error"] for row in found.judged])
+    assert data.error[1] < data.error[0]
+    assert "error" in found.plot().get_ylabel()
+
+
+@pytest.fixture(scope="module")
+def turning():
+    return rw.sweep(SCENE, {SPEED: "2000:18000:5", "load.axial": [400.0, 1000.0]})
+
+
+def test_coefficients_come_from_a_sweep_or_its_store(turning, tmp_path):
+    rw.sweep(SCENE, {SPEED: "2000:18000:5", "load.axial": [400.0, 1000.0]}, store=tmp_path / "store")
+    here = rw.export_ross(turning, at={"load.axial": "1 kN"})
+    there = rw.export_ross(tmp_path / "store", tmp_path / "bearing.toml", at=["load.axial=1000"])
+    for name, values in here.coefficients.columns().items():
+        np.testing.assert_array_equal(there.coefficients.columns()[name], values)
+    expected = turning.equivalent_stiffness.sel({"load.axial": 1000.0})
+    np.testing.assert_array_equal(here.coefficients.stiffness[:, 0, 0], expected)
+    assert '["BearingElement_B7206C"]' in (tmp_path / "bearing.toml").read_text()
+    assert here.tag == "B7206C" and rw.export_ross(turning, at={"load.axial": 400}, tag="left seat").tag == "left-seat"
+    assert brief(here) and here.to_xarray().kyy.attrs["units"] == "N/m"
+    assert here.plot().get_xlabel() == "speed [r/min]"
+    with pytest.raises(RacewayError, match="is no sweep: give what raceway.sweep returned"):
+        rw.export_ross({"kyy": 1.0})
+    with pytest.raises(SceneError, match="must be one of 2, 3"):
+        rw.export_ross(turning, at={"load.axial": 400}, ross_version=4)
+
+
+def test_the_notes_say_what_tilt_was_and_that_a_dry_bearing_does_not_damp(turning):
+    notes = " ".join(rw.export_ross(turning, at={"load.axial": 1000}).notes)
+    assert "tilt locked in these numbers: the tangent kyy is" in notes and "with it free" in notes
+    free = rw.run({**STATIC, "supports": {"tilt": "free"}}).to_dict()["equilibrium"]["kyy_tilts_follow_n_per_m"]
+    locked = rw.run(STATIC).stiffness[1, 1]
+    assert locked > 5.0 * free  # what the note is worth
+    assert "a dry bearing damps next to nothing" in notes and "damping=C" in notes
+    given = rw.export_ross(turning, at={"load.axial": 1000}, damping=1000.0)
+    assert "next to nothing" not in " ".join(given.notes)
+
+
+def test_an_element_without_ross_says_what_is_missing(turning, monkeypatch):
+    monkeypatch.setitem(sys.modules, "ross", None)
+    with pytest.raises(RacewayError, match=r"an element needs ROSS: pip install '.\[ross\]'"):
+        rw.export_ross(turning, at={"load.axial": 1000}).element()
+
+
+def test_stiffness_from_standstill_is_refused_with_the_command_that_gives_it(file, tmp_path):
+    refused = invoke("sweep", file, "--grid", f"{SPEED}=0:20000:5", "--out", tmp_path / "refused")
+    assert refused.exit_code == 2
+    told = " ".join(refused.stderr.split())
+    words = f"raceway sweep SCENE --set identifier.kind=tangent --grid {SPIN}=0:20000:21 --out STORE"
+    assert words in told and "raceway export STORE --from tangent --ross bearing.toml" in told
+    # The commands that it names work, with fewer points.
+    swept = invoke(
+        "sweep", file, "--set", "identifier.kind=tangent", "--grid", f"{SPIN}=0:20000:5", "--out", tmp_path / "store"
+    )
+    assert swept.exit_code == 0, swept.output
+    path = tmp_path / "bearing.toml"
+    found = invoke("export", tmp_path / "store", "--from", "tangent", "--ross", path, "--ross-version", "3", "--json")
+    content = json.loads(found.stdout)
+    assert content["speed"][0] == 0.0
+    for n, k in zip(content["speed"], content["coefficients"]["kyy"], strict=True):
+        own = rw.run({**STATIC, "kinematics": {"spin_speed_rpm": n * 30.0 / np.pi}}).stiffness
+        assert k == pytest.approx(own[1, 1] - own[1, 0] * own[0, 1] / own[0, 0], rel=1e-6)
+
+
+def table(width):
+    """A table over speed of that many different coefficients, as ``raceway export`` shows it."""
+    names = ("kyy", "kyz", "kzy", "kzz", "cyy", "cyz", "czy", "czz", "kxx")
+    values = {name: [0.0] * 5 for name in names}
+    values |= {name: [(k + 1) * 1.23456e8 * (1.0 + 0.1 * n) for n in range(5)] for k, name in enumerate(names[:width])}
+    notes = ["made up"]
+    speed = [104.719755 * n for n in range(5)]
+    return {"ross": 3, "tag": "B7206C", "speed": speed, "frequency": None, "coefficients": values, "notes": notes}
+
+
+@pytest.mark.parametrize("width", [1, 4, 9])
+def test_no_number_is_broken_at_80_columns(width):
+    from rich.console import Console
+
+    from raceway.studies.ross.screen import export_screen
+
+    console = Console(width=80, highlight=False)
+    with console.capture() as taken:
+        console.print(export_screen(table(width), []))
+    lines = taken.get().splitlines()
+    assert max(len(line.rstrip()) for line in lines) <= 80
+    rows, constant = point_rows(table(width))
+    shown = set(" ".join(lines).split())
+    assert {word for row in rows for word in row.values()} <= shown
+    assert "1000" in shown  # r/min, not rad/s
+    zero = "0 at all points: " if width < 9 else ""
+    assert " ".join(constant).startswith(zero)
+
+
+def test_columns_that_are_alike_are_one():
+    rows, constant = point_rows(
+        table(1) | {"coefficients": {**table(1)["coefficients"], "kzz": table(1)["coefficients"]["kyy"], "kxx": [6e7] * 5}}
+    )
+    assert list(rows[0]) == ["speed\nr/min", "kyy = kzz\nN/µm"]
+    assert "kxx = 60 N/µm at all points" in constant
+
+
+def test_a_view_of_a_result_keeps_its_pictures_in_memory(tmp_path):
+    found = rw.view(rw.run(STATIC))
+    assert found.files == [] and all(content[:4] == b"\x89PNG" for content in found.pictures.values())
+    assert brief(found) and 'src="data:image/png;base64,' in found._repr_html_()
+    written = found.save(tmp_path)
+    assert {path.name for path in written} == {"bearing.png", "contacts.png", "ball-loads.png"}
+    assert found.plot("contacts.png").images
+    with pytest.raises(SceneError, match="must be one of bearing.png"):
+        found.plot("bearing.gif")
+    with pytest.raises(SceneError, match="nothing moves"):
+        rw.view(STATIC, animate=True)
