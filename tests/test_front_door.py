@@ -346,7 +346,9 @@ def test_a_public_name_has_words_and_an_example_that_runs(name, monkeypatch):
     assert runner.summarize(verbose=False).failed == 0
 
 
-@pytest.mark.parametrize("name", ["Result", "Scene", "Check", "ScenePlan"])
+@pytest.mark.parametrize(
+    "name", ["Result", "Scene", "Check", "ScenePlan", "Comparison", "Precision", "Identified", "RossTable", "View"]
+)
 def test_what_an_object_has_is_documented(name):
     cls = getattr(rw, name)
     for word, member in inspect.getmembers(cls):

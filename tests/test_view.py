@@ -148,7 +148,7 @@ def test_the_command_draws_without_a_display_and_in_silence(tmp_path):
 @pytest.mark.parametrize("package", ["pyvista", "matplotlib"])
 def test_a_missing_package_is_named_before_anything_is_computed(tmp_path, monkeypatch, package):
     real = importlib.util.find_spec
-    monkeypatch.setattr("raceway.studies.view.command.find_spec", lambda name: None if name == package else real(name))
+    monkeypatch.setattr("raceway.studies.view.front.find_spec", lambda name: None if name == package else real(name))
     found = invoke("view", MINIMAL, "--out", tmp_path)
     assert found.exit_code == 2
     assert package in found.output and "pip install '.[view]'" in found.output

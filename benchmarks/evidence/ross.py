@@ -62,7 +62,7 @@ def _rows(interpreter: str) -> list[Row]:
         below(
             f"{name}: all nine coefficients at the points of the table, largest relative difference from ours",
             exact, 1e-12, COMMAND,
-            "read by ROSS by itself" if by_itself else "read by ROSS, then raceway.studies.ross.reading.through_points",
+            "read by ROSS by itself" if by_itself else "read by ROSS, then passing through the points: raceway.export_ross(...).element()",
         )
     ]  # fmt: skip
     if by_itself:

@@ -30,6 +30,15 @@ class Comparison(Shown, Findings):
     rows : one a run, ``point`` and ``result`` (content of result.json, or status and reason), the last axis running fastest
     effects, trends : of each key and of two together on K and |Z|;  words : all of it in sentences
     fault : why finished runs could not be kept
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> force = {"kind": "bidirectional", "speed_rpm": 12000, "amplitude": "constant", "force": "100 N"}
+    >>> scene = {"bearing": {"preset": "B7206C"}, "excitation": force, "integrator": {"kind": "quasi_static"}}
+    >>> found = rw.compare(scene, {"load.axial": ["0.5 kN", "1 kN"]})
+    >>> found.effects[0]["term"], round(found.effects[0]["percent"])  # of K [%]
+    (('load.axial',), 26)
     """
 
     fault: RacewayError | None = None

@@ -28,6 +28,16 @@ class Identified(Shown):
     Attributes
     ----------
     found : lines, run-out and state in detail;  title : of the scene;  source : file of the signals, or "signals"
+
+    Examples
+    --------
+    >>> import numpy as np, raceway as rw
+    >>> angle = 2.0 * np.pi * 200.0 * (time := np.arange(0.0, 0.1, 5e-5))
+    >>> orbit = {"time_s": time, "y_um": 15.0 * np.cos(angle), "z_um": 15.0 * np.sin(angle), "speed_rpm": 12000.0 + 0.0 * time}
+    >>> rig = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000}, "rig": {}, "integrator": {"kind": "quasi_static"}}
+    >>> found = rw.identify(orbit, rig)
+    >>> round(found.speed_rpm), round(1e-6 * found.equivalent_stiffness)  # [r/min], K [N/um]
+    (12000, 84)
     """
 
     found: Found

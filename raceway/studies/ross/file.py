@@ -154,8 +154,8 @@ def _reading_notes(table: Coefficients, generation: int) -> list[str]:
     told = ", ".join(f"{name} {_part(value)}" for name, value in worst.items() if value > 1e-12) or "none"
     return [
         "ROSS 2 does not pass through the points: it smooths with a bound of 1 N/m, or 1 N s/m, a point, which is a lot for a "
-        f"damping; largest change, of the largest value of its kind: {told}. raceway.studies.ross.reading.through_points(bearing) "
-        "after loading makes it exact",
+        f"damping; largest change, of the largest value of its kind: {told}. raceway.export_ross(STORE).element() gives a bearing "
+        "that passes through them",
         "beyond the ends ROSS 2 goes on as a cubic, and modal analyses ask at speed 0: let the table begin low",
     ]
 

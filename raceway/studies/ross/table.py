@@ -33,6 +33,14 @@ class RossTable(Shown):
     coefficients : ``speed``, ``frequency`` (n,) [rad/s], ``stiffness`` (..., 2, 2) [N/m], ``damping`` (..., 2, 2) [N s/m] over y, z
     file : what is written for ROSS
     names : our coefficient -> ROSS's, whose X, Y, Z are y, z, x here
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+    >>> found = rw.export_ross(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}), tag="left")
+    >>> found.tag, found.names["kyy"], found.to_xarray().kyy.attrs["units"]
+    ('left', 'kxx', 'N/m')
     """
 
     coefficients: Coefficients
@@ -40,6 +48,7 @@ class RossTable(Shown):
 
     @property
     def names(self) -> dict[str, str]:
+        """Our coefficient -> ROSS's."""
         return dict(NAMES)
 
     @property
@@ -49,6 +58,7 @@ class RossTable(Shown):
 
     @property
     def tag(self) -> str:
+        """The element's name in ROSS."""
         return self.file.tag
 
     def write(self, path: str | Path) -> Path:
@@ -151,16 +161,14 @@ class RossTable(Shown):
 
         rows, constant = point_rows(self.to_dict())
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())
-        ends = [
-            (
-                ", ".join(
-                    f"{name.partition(chr(10))[0]} {value} {name.partition(chr(10))[2]}" for name, value in row.items()
-                ),
-                "",
-                "",
-            )
-            for row in (rows[0], rows[-1])
-        ]
+        ends = [(*_words(row),) for row in (rows[0], rows[-1])]
+        same = [("everywhere", "", text) for text in constant]
         notes = [("note", "", text) for text in self.notes]
-        same = [("same everywhere", "", text) for text in constant]
         return f"{self.tag}, coefficients for ROSS {self.file.generation}\n{over}", [*ends, *same, *notes]
+
+
+def _words(row: dict[str, str]) -> Fact:
+    """Where a point lies, and its numbers."""
+    told = [(name.split("\n"), value) for name, value in row.items()]
+    at = ", ".join(f"{value} r/min" for (_, unit), value in told if unit == "r/min")
+    return f"at {at}", "", ", ".join(f"{name} {value} {unit}" for (name, unit), value in told if unit != "r/min")

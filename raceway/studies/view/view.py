@@ -27,6 +27,13 @@ class View(Shown):
     ----------
     content : what is shown: the largest load [N] and pressure [Pa], the exaggeration of an animation, warnings
     pictures : name -> content of the file
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.view({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+    >>> found.pictures["bearing.png"][:4], found.files
+    (b'\\x89PNG', [])
     """
 
     content: Tables
