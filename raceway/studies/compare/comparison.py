@@ -38,13 +38,14 @@ class Comparison(Shown, Findings):
     >>> scene = {"bearing": {"preset": "B7206C"}, "excitation": force, "integrator": {"kind": "quasi_static"}}
     >>> found = rw.compare(scene, {"load.axial": ["0.5 kN", "1 kN"]})
     >>> found.effects[0]["term"], round(found.effects[0]["percent"])  # of K [%]
-    (('load.axial',), 26)
+    (('load.axial',), 27)
     """
 
     fault: RacewayError | None = None
 
     @cached_property
     def words(self) -> list[str]:
+        """The effects and trends, a sentence each."""
         return explain(self)
 
     def to_dict(self) -> Tables:

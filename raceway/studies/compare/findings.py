@@ -93,6 +93,7 @@ class Findings:
     notes: tuple[str, ...] = ()
 
     def axis(self, key: str) -> Axis:
+        """The axis of a key that was varied."""
         return next(axis for axis in self.axes if axis.key == key)
 
     def settings(self, keys: Sequence[str]) -> list[tuple[dict[str, int], str]]:
@@ -106,6 +107,7 @@ class Findings:
 
     @property
     def varied(self) -> list[Axis]:
+        """Axes with more than one value."""
         return [axis for axis in self.axes if len(axis.values) > 1]
 
     @cached_property

@@ -159,6 +159,7 @@ class Precision(Shown):
 
     @cached_property
     def words(self) -> list[str]:
+        """The reference, the cheapest settings and the models' differences, a sentence each."""
         reference = self.references[self.base]
         lines = [f"reference: {reference.how}; relative bound {reference.bound:.1g}"]
         limited = [row for row in self.judged if row["at_bound"] and row["physics"] == self.base]
@@ -180,6 +181,7 @@ class Precision(Shown):
         return [*lines, *self.notes]
 
     def to_dict(self) -> Tables:
+        """Everything, as plain tables for JSON."""
         keep = (
             "family",
             "setting",
