@@ -8,8 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from raceway.plugins.reports.pictures import new_figure
+from raceway.studies.many.page import Page
 from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES
+
+#: The page of `view` has pictures; those two take longest to write.
+MARKS = {"view": [pytest.mark.slow, pytest.mark.needs("pyvista")], "study article": [pytest.mark.slow]}
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +37,8 @@ def page(tmp_path_factory):
     return write
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.needs("browser")
+@pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS.get(name, ())) for name in PAGES])
 def test_a_page_is_whole_at_both_widths_and_asks_for_nothing(browser, page, name):
     path = page(name)
     assert path.stat().st_size < 5e6  # the limit of the pages
@@ -42,6 +48,8 @@ def test_a_page_is_whole_at_both_widths_and_asks_for_nothing(browser, page, name
         assert look.found["images"] or look.found["drawings"]
 
 
+@pytest.mark.slow
+@pytest.mark.needs("browser", "pyvista")
 def test_the_bearing_can_be_seen_turned_and_asked(browser, page):
     browser.look(page("view"), 1280)
     # Pixels that differ from the background, in the drawing's middle.
@@ -79,6 +87,8 @@ def test_the_bearing_can_be_seen_turned_and_asked(browser, page):
     assert browser.run(seen)[0] < other  # without the outer ring less is covered
 
 
+@pytest.mark.slow
+@pytest.mark.needs("browser", "pyvista")
 def test_without_webgl_the_page_says_where_to_look(browser, page, tmp_path):
     text = page("view").read_text(encoding="utf-8")
     path = tmp_path / "view.html"
@@ -90,6 +100,7 @@ def test_without_webgl_the_page_says_where_to_look(browser, page, tmp_path):
     assert "pictures below" in browser.run("return document.getElementById('told').textContent")
 
 
+@pytest.mark.needs("browser")
 def test_faults_are_found(browser, tmp_path):
     path = tmp_path / "bad.html"
     body = '<img alt="gone" src="gone.png"><div style="width: 900px">wide</div><svg width="0" height="5"></svg>'
@@ -108,12 +119,34 @@ def test_faults_are_found(browser, tmp_path):
         assert word in faults
 
 
+#: Heads that do not wrap, and figures as narrow as three fit beside each other.
+CRAMPED = "th.number { white-space: nowrap } .figures { grid-template-columns: repeat(3, 1fr) !important } th.words { min-width: 0 !important }"
+
+
+@pytest.mark.needs("browser")
+def test_tables_that_are_cut_off_and_figures_like_stamps_are_found(browser, tmp_path):
+    points = [f"{speed} r/min, {load} N" for speed in (9000, 13000, 16000) for load in (400, 1000, 2000)]
+    cause = "run-out: of a surface with scratches, which the sensor takes for motion of the shaft at all orders"
+    made = Page("Wide")
+    made.table(["cause", *points], [[cause, *(f"{0.123 * k:.3f}" for k in range(len(points)))]], caption="many columns")
+    made.figures([(new_figure(7.0, 4.0), f"figure {k}", "") for k in range(3)])
+    path = made.write(tmp_path / "wide.html")
+    assert browser.look(path, 1280).faults() == browser.look(path, 400).faults() == []
+    path.write_text(path.read_text().replace("</style>", f"{CRAMPED}</style>"))
+    faults = " ".join(browser.look(path, 1280).faults())
+    for words in ("table 'many columns' is cut off", "'run-out: of a surface", "figure 'figure 2' is"):
+        assert words in faults
+    assert browser.look(path, 400).faults() == [], "tables of a telephone scroll"
+
+
 def test_a_browser_that_is_missing_is_named(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda _: None)
     with pytest.raises(RuntimeError, match="apt-get install chromium chromium-driver"):
         Browser()
 
 
+@pytest.mark.slow
+@pytest.mark.needs("pyvista")
 def test_the_data_of_the_page_are_json(page):
     text = page("view").read_text(encoding="utf-8")
     data = json.loads(text.split('type="application/json">')[1].split("</script>")[0])

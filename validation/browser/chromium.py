@@ -11,6 +11,10 @@ import attrs
 
 #: How wide the windows are in which a page must be readable [px].
 WIDTHS = (1280, 400)
+#: From this width on no table scrolls in its box, and no column of sentences is squeezed [px].
+SCREEN = 1000
+#: The least width of a figure on a screen, unless its file has less [px].
+FIGURE = 480
 _REMEDY = (
     "pages are tested in a real browser: apt-get install chromium chromium-driver (`make apt-line` prints the whole line)"
 )
@@ -23,6 +27,9 @@ return {
     && getComputedStyle(e).visibility !== "hidden" && box(e).right > document.documentElement.clientWidth + 1)
     .map((e) => e.tagName + " " + (e.id || e.className || e.textContent.slice(0, 40))),
   images: [...document.images].map((e) => [e.alt, e.complete ? e.naturalWidth : 0, box(e).width, box(e).height]),
+  tables: [...document.querySelectorAll(".scroll")].map((e) => [e.getAttribute("aria-label"), e.scrollWidth, e.clientWidth]),
+  squeezed: [...document.querySelectorAll("tbody td, tbody th")].filter((e) => e.textContent.length > 40 && box(e).width < 200)
+    .map((e) => [e.textContent.slice(0, 40), box(e).width]),
   drawings: [...document.querySelectorAll("svg, canvas")].map((e) => [box(e).width, box(e).height]),
   small: [...document.querySelectorAll("body *")].filter((e) => e.children.length === 0 && e.textContent.trim()
     && box(e).width > 0 && parseFloat(getComputedStyle(e).fontSize) < 11).length,
@@ -50,7 +57,22 @@ class Look:
         out += ["a drawing has no size" for shown in found["drawings"] if not min(shown)]
         if found["small"]:
             out.append(f"{found['small']} texts are smaller than 11 px")
-        return out
+        return out + (self._of_a_screen() if found["width"] >= SCREEN else [])
+
+    def _of_a_screen(self) -> list[str]:
+        """Tables that are cut off, sentences of one word a line, figures like stamps."""
+        found = self.found
+        out = [
+            f"table '{name}' is cut off: {whole} px in a box of {seen}"
+            for name, whole, seen in found["tables"]
+            if whole > seen
+        ]
+        out += [f"'{text}' has a column of {width:.0f} px" for text, width in found["squeezed"]]
+        return out + [
+            f"figure '{name}' is {width:.0f} px wide, less than {FIGURE}"
+            for name, natural, width, _ in found["images"]
+            if width < min(natural, FIGURE)
+        ]
 
 
 class Browser:

@@ -88,12 +88,11 @@ class Page:
         head = "".join(f'<th scope="col"{_class(number=right[k])}>{_inline(name)}</th>' for k, name in enumerate(columns))
         lines = []
         for row in body:
-            first = f'<th scope="row"{_class(number=right[0])}>{_toned(row[0])}</th>'
-            cells = [
-                f"<td{_class(number=right[k], words=len(cell.text + cell.more) > _SENTENCE)}>{_toned(cell)}</td>"
-                for k, cell in enumerate(row[1:], start=1)
-            ]
-            lines.append(f"<tr>{first}{''.join(cells)}</tr>")
+            cells = []
+            for k, cell in enumerate(row):
+                kind = _class(number=right[k], words=len(cell.text + cell.more) > _SENTENCE)
+                cells.append(f"<td{kind}>{_toned(cell)}</td>" if k else f'<th scope="row"{kind}>{_toned(cell)}</th>')
+            lines.append(f"<tr>{''.join(cells)}</tr>")
         title = f"<caption>{_inline(caption)}</caption>" if caption else ""
         label = escape(caption or columns[0], quote=True)
         self._blocks.append(

@@ -30,6 +30,9 @@ _UNITS = {
     "axial_displacement": "m", "load.axial": "N", "excitation.speed_rpm": "r/min", "bearing.contact_angle_deg": "deg",
 }  # fmt: skip
 
+#: What names a row of the tables of curves.
+_OF_A_CURVE = ("contact angle [deg]", "tilt", "axial load [N]")
+
 
 def write_data(found: Map, folder: Path) -> list[Path]:
     """Write map.json and map.csv."""
@@ -86,12 +89,25 @@ def _page(content: Tables) -> Page:
     page.section("Every curve")
     page.table(
         [
-            "contact angle [deg]", "tilt", "axial load [N]", "trend", "k at the lowest speed [N/um]", "change at the highest [%]",
-            "least [%]", "largest [%]", "small signals [%]", "largest exponent", "at [r/min]", "saturates [r/min]", "last exponent",
-            "contact lost from [r/min]", "unseats from [r/min]", "groove's edge from [r/min]", "failed",
+            *_OF_A_CURVE,
+            "trend",
+            "k at the lowest speed [N/µm]",
+            "change at the highest [%]",
+            "least [%]",
+            "largest [%]",
+            "small signals [%]",
+            "failed",
         ],
-        [_curve(curve) for curve in content["curves"]],
-        caption="Changes are relative to the lowest speed; a dash: not within these speeds",
+        [_trend(curve) for curve in content["curves"]],
+        caption="k over speed; changes are relative to the lowest speed",
+    )
+    page.table(
+        [
+            *_OF_A_CURVE, "largest exponent", "at [r/min]", "last exponent", "saturates [r/min]", "contact lost from [r/min]",
+            "unseats from [r/min]", "groove's edge from [r/min]",
+        ],
+        [_limits(curve) for curve in content["curves"]],
+        caption="Exponents of k over speed, and the speeds from which a curve does so; a dash: not within these speeds",
     )  # fmt: skip
     page.section("Points without a number")
     failed = [row for row in content["rows"] if row["status"] != "completed"]
@@ -102,17 +118,21 @@ def _page(content: Tables) -> Page:
     return page
 
 
+def _trend(curve: Tables) -> list[str | None]:
+    percent = (curve[f"{name}_change"] for name in ("last", "least", "largest", "small_signal"))
+    changes = [None if value is None else f"{100.0 * value:+.3g}" for value in percent]
+    return [*_curve(curve), curve["trend"], _plain(curve["first_stiffness"], "{:.4g}", 1e-6), *changes, str(curve["failed"])]
+
+
+def _limits(curve: Tables) -> list[str | None]:
+    speeds = (curve[f"{name}_rpm"] for name in ("saturates_at", "contact_lost_from", "unseats_from", "edge_from"))
+    exponents = [_plain(curve["steepest_exponent"], "{:.2f}"), _plain(curve["steepest_at_rpm"], "{:.0f}")]
+    return [*_curve(curve), *exponents, _plain(curve["last_exponent"], "{:.2f}"), *(_plain(v, "{:.0f}") for v in speeds)]
+
+
 def _curve(curve: Tables) -> list[str | None]:
-    def percent(name: str) -> str | None:
-        return None if curve[name] is None else f"{100.0 * curve[name]:+.3g}"
+    return [_plain(curve["contact_angle_deg"]), str(curve["tilt"]), _plain(curve["axial"])]
 
-    def plain(name: str, factor: float = 1.0, form: str = "{:.4g}") -> str | None:
-        return None if curve[name] is None else form.format(factor * curve[name])
 
-    return [
-        plain("contact_angle_deg"), str(curve["tilt"]), plain("axial"), curve["trend"], plain("first_stiffness", 1e-6),
-        percent("last_change"), percent("least_change"), percent("largest_change"), percent("small_signal_change"),
-        plain("steepest_exponent", form="{:.2f}"), plain("steepest_at_rpm", form="{:.0f}"),
-        plain("saturates_at_rpm", form="{:.0f}"), plain("last_exponent", form="{:.2f}"),
-        *(plain(f"{name}_from_rpm", form="{:.0f}") for name in ("contact_lost", "unseats", "edge")), str(curve["failed"]),
-    ]  # fmt: skip
+def _plain(value: float | None, form: str = "{:.4g}", factor: float = 1.0) -> str | None:
+    return None if value is None else form.format(factor * value)
