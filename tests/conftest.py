@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+from itertools import combinations
 from typing import Any
 
 # As the commands do: two processes of tests with two threads each of linear algebra wait for each other, three times as long.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when numpy is imported
 
+import attrs
 import pytest
 from matplotlib.figure import Figure
 
@@ -15,6 +17,18 @@ from raceway import build_model, make_plan, scene_from_dict
 from raceway.bodies.model import Model
 from tests.figures import outside
 from validation.tables import b7206c
+
+
+@pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Of the matrix of all kinds the quick tests are those that meet two kinds together for the first time."""
+    met = set()
+    for item in items:
+        if isinstance(item, pytest.Function) and item.originalname == "test_combination":
+            pairs = set(combinations(enumerate(attrs.astuple(item.callspec.params["cell"])), 2))
+            if pairs <= met:
+                item.add_marker(pytest.mark.slow)
+            met |= pairs
 
 
 @pytest.fixture

@@ -54,6 +54,7 @@ def _page(k, monkeypatch) -> str:
     return page(found, pictures(found), "raceway study article").html()
 
 
+@pytest.mark.slow
 def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, quick, monkeypatch):
     done = []
     real = runs.curve

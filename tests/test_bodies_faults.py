@@ -27,6 +27,7 @@ def raceway_bodies():
 '''
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("duty", "body", "words"),
     [

@@ -298,6 +298,7 @@ def test_an_interruption_while_a_file_is_written_leaves_nothing(tmp_path, monkey
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_home_and_a_cache_that_cannot_be_written(tmp_path):
     """The table is there all the same; `tangent` compiles the fewest kernels."""
     blocked = tmp_path / "file"

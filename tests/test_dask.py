@@ -35,6 +35,7 @@ def cluster(tmp_path_factory, plugin):
         found.stop()
 
 
+@pytest.mark.slow
 def test_a_worker_killed_half_way_and_one_without_the_plugin_change_nothing(cluster, tmp_path):
     """Same bits as in one process: every worker runs the same chains of points with the same kernels."""
     alone = sweep(prepared(tmp_path / "serial"), Serial())  # first, so that kernels are compiled once

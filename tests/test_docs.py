@@ -53,7 +53,9 @@ def test_a_law_written_from_the_page_is_short_conforms_and_runs_in_a_scene(folde
     assert 0.75 < power.identification.equivalent_stiffness / hertz.identification.equivalent_stiffness < 0.95
 
 
-@pytest.mark.parametrize("name", PLUGINS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name == "trapezoidal.py" else name for name in PLUGINS]
+)
 def test_every_plugin_on_the_page_conforms(folder, name):
     registry = Registry(third_party=False)
     for entry in registry.load_file(folder / name):

@@ -178,6 +178,7 @@ def test_implicit_steps_run_from_the_scene(kind):
     assert found["error"]["total"] is None
 
 
+@pytest.mark.slow
 def test_explicit_steps_run_from_the_scene():
     found = run(scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"})).to_dict()
     json.dumps(found, allow_nan=False)

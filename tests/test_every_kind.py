@@ -144,6 +144,7 @@ def test_a_sweep_uses_a_foreign_executor(files, tmp_path):
     assert json.loads(found.stdout)["states"]["done"] == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "words"),
     [("raise ValueError('no ink')", "write() raises ValueError: no ink"), ("raise RacewayError('no ink')", "no ink"),

@@ -130,7 +130,8 @@ def test_series_of_equilibria_is_one_turn(identifier, kind):
 
 
 @pytest.mark.parametrize(
-    ("tilt", "axial", "speed", "inertia"), [("locked", 400.0, 15000.0, False), ("free", 1000.0, 10980.0, False)]
+    ("tilt", "axial", "speed", "inertia"),
+    [pytest.param("locked", 400.0, 15000.0, False, marks=pytest.mark.slow), ("free", 1000.0, 10980.0, False)],
 )
 def test_transients_equal_independent_periodic_motion(tilt, axial, speed, inertia):
     """12 turns with next to no damping; the report `identified_stiffness` holds all sixteen cases."""

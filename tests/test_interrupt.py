@@ -121,6 +121,7 @@ def test_nohup_is_respected():
         signal.signal(signal.SIGHUP, before)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM])
 def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_path):
     words = ["sweep", ARTICLE, "--set", "integrator.turns=40", "--grid", "load.axial=400:2000:24", "--out", tmp_path / "s"]
@@ -208,6 +209,7 @@ class Deaf:
         return None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["processes", "joblib", "dask"])
 def test_workers_do_not_hear_a_terminal_from_their_start(name):
     """In a process of its own: what clears up behind the first worker is started with it."""

@@ -121,6 +121,7 @@ FAULTS = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("fault", "suffix"), FAULTS)
 def test_damaged_cache_files_are_replaced(warm, fault, suffix):
     whole = files(warm, suffix)
@@ -134,6 +135,7 @@ def test_damaged_cache_files_are_replaced(warm, fault, suffix):
         assert use(warm) == (0, 3, [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ["", "kernels"])
 def test_a_folder_that_others_may_write_is_refused(warm, place):
     """Compiled kernels are pickles: whoever may write one executes what he likes."""

@@ -25,6 +25,7 @@ def test_a_new_package_has_every_part(tmp_path, kind):
     assert all("${" not in p.read_text() for p in folder.rglob("*") if p.is_file())
 
 
+@pytest.mark.slow
 def test_new_packages_pass_their_own_tests(tmp_path):
     """One process for all kinds, since each start of an interpreter with the kernels costs seconds."""
     folders = [new_plugin(kind, f"fresh_{kind}", tmp_path) for kind in KINDS]

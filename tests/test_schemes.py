@@ -109,7 +109,9 @@ def scene(bodies, integrator):
 
 
 @pytest.mark.parametrize("integrator", ["stepped", "by_numbers"])
-@pytest.mark.parametrize("bodies", BODIES)
+@pytest.mark.parametrize(
+    "bodies", [pytest.param(name, marks=pytest.mark.slow) if name == "elastic" else name for name in BODIES]
+)
 def test_a_foreign_integrator_has_its_order_on_every_kind_of_bodies(bodies, integrator):
     """A force that grows over 0.1 ms: the error falls with the square of the step, from 10 to 20 and 40 steps."""
     chosen = scene(bodies, integrator)

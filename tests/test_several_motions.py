@@ -71,6 +71,7 @@ def test_without_damping_the_branch_leads_through_no_force():
     assert abs(result.identification.dynamic_stiffness - wanted) < 1e-6 * abs(wanted)
 
 
+@pytest.mark.slow
 def test_an_internal_resonance_does_not_hide_the_stable_motion():
     """Newton's iteration from the linear response ends on an unstable motion or none; the force that grows leads to another."""
     result = solved(article(1000.0, kind="periodic", tolerance=1e-9))
@@ -84,6 +85,7 @@ def test_an_internal_resonance_does_not_hide_the_stable_motion():
     assert abs(by_time.identification.dynamic_stiffness - z) < 2.0 * by_time.error["total"] * abs(z)
 
 
+@pytest.mark.slow
 def test_a_branch_that_closes_leads_to_the_stable_motion():
     """800 N: two unstable motions, and a stable one that a branch whose turns do not close passes by."""
     result = solved(article(800.0, kind="periodic", tolerance=1e-9))
@@ -95,6 +97,7 @@ def test_a_branch_that_closes_leads_to_the_stable_motion():
     assert multiplier == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_transient_on_an_unstable_orbit_says_so():
     result = solved(article(500.0, turns=60))
     first = result.simulation.orbits[0]

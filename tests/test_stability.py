@@ -137,6 +137,7 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
     assert along.sum() / 1e5 - 1.0 > 0.02
 
 
+@pytest.mark.slow
 def test_elastic_bodies_of_another_stiffness_fail(monkeypatch):
     """Deliberate fault: rings 10 % stiffer than those of the condensed bodies that they are held against."""
     wanted = {"shown": {"law": "hertz", "bodies": "elastic, resultants"}}
@@ -147,6 +148,7 @@ def test_elastic_bodies_of_another_stiffness_fail(monkeypatch):
     assert found == {"axial displacement": FAILED, "radial stiffness": FAILED, "axial force on the outer seat": AS_EXPECTED}
 
 
+@pytest.mark.slow
 def test_elastic_bodies_that_forget_the_energy_of_their_contacts_fail(monkeypatch):
     name = "elastic bodies: rubber balls in ceramic rings"
     assert {row.verdict for row in rows_named(name)} == {AS_EXPECTED}

@@ -115,6 +115,7 @@ def test_a_scene_says_how_to_install_what_it_requires(tmp_path):
     assert "Install it: pip install 'raceway-hunt-crossley>=0.1'" in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PACKAGES)
 def test_the_packages_own_tests_pass(name):
     root = str(Path(__file__).parents[1])

@@ -59,6 +59,7 @@ SCENES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     changes = SCENES[name]
@@ -101,6 +102,7 @@ ELASTIC = (
 )
 
 
+@pytest.mark.slow
 def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrates_them():
     scene = load_scene(ARTICLE, ELASTIC)
     compute(scene)  # as above
@@ -235,6 +237,7 @@ def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
     assert not leave_out.RULES["integration"]().holds
 
 
+@pytest.mark.slow
 def test_compliances_that_are_kept_are_made_anew_by_the_rule_that_measures_them(monkeypatch):
     from raceway.bodies.condensed import compliances
 

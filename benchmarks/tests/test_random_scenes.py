@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 
+import pytest
+
 from benchmarks.evidence._random_scenes import FAILED, FINISHED, REFUSED, try_scenes
 
 COUNT = 100
 
 
+@pytest.mark.slow
 def test_every_scene_ends_in_a_result_or_a_message():
     """The same scenes in every run; ``python -m benchmarks.evidence random_scenes`` tries 10 000."""
     found: Counter[str] = Counter()

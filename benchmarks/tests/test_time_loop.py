@@ -5,6 +5,7 @@ import pytest
 from benchmarks.time_loop import SAME, compare
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("inertial", [True, False])
 @pytest.mark.parametrize("kind", ["newmark", "central_difference"])
 def test_the_composed_loop_computes_what_a_hand_fused_one_does(kind, inertial):

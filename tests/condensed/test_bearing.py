@@ -184,6 +184,7 @@ def test_a_bearing_without_dimensions_is_refused_by_name():
     assert {m.path for m in caught.value.mistakes} == {"bearing.bore", "bearing.outer_diameter", "bearing.width"}
 
 
+@pytest.mark.slow
 def test_an_unwritable_cache_is_said_once_and_costs_nothing_else(made_anew, monkeypatch, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")

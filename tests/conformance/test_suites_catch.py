@@ -36,6 +36,7 @@ class Dissipating(broken_laws.Broken):
     dissipative = True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("plugin", "check", "found"),
     [

@@ -138,6 +138,7 @@ def test_a_sprung_row_follows_a_changing_speed(built, bodies, first, last):
         assert rows == pytest.approx([400.0, 300.0], rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("first", "last"), [(6000.0, 15000.0), (15000.0, 6000.0)])
 def test_stiffness_of_a_sprung_pair_over_a_run_up_is_that_of_steady_runs(first, last):
     """0.5 %, where a ring placed at the last speed makes -4.4 and +7.2 %."""

@@ -299,6 +299,7 @@ def test_constants_of_a_moment_are_those_of_a_steady_scene(built, bodies):
     assert now.at_speed(0.4) is now and model.system.scalars[CAGE] > now.scalars[CAGE]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("first", "last", "integrator"),
     [
@@ -342,6 +343,7 @@ def test_steps_from_python_follow_the_speed(built, integrator):
     assert np.abs(stepped.displacement - compiled.displacement).max() < 1e-6 * np.abs(compiled.displacement).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damping", [0.0, 500.0])
 @pytest.mark.parametrize("tilt", ["locked", "free"])
 def test_a_changing_speed_is_not_told_as_damping(damping, tilt):
@@ -389,6 +391,7 @@ def crossing(duration, **tables):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt", ["locked", "free"])
 def test_every_window_of_a_run_up_states_its_error(tilt):
     """0.5 s: Z is off by more than its size near the resonance, where one total of 2 % at the end stood for all windows.
@@ -433,6 +436,7 @@ def test_windows_of_a_slow_run_up_have_small_errors_and_no_warning():
     assert not any("windows" in text for text in result.warnings)
 
 
+@pytest.mark.slow
 def test_windows_without_a_steady_motion_have_the_error_of_their_record():
     """Equilibria have no steady motion to be held against: what a bend of the amplitude would change is told."""
     result = run(scene_from_dict(turning(6000.0, 15000.0, integrator={"kind": "quasi_static", "steps_per_turn": 120})))

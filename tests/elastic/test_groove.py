@@ -18,6 +18,7 @@ def test_peak_pressure_is_hertzs():
     assert found.penalty_share < 0.02  # ten times stiffer than a row of elements, two rows to the semi-axis
 
 
+@pytest.mark.slow
 def test_balls_rows_need_not_match_the_races():
     approach = 0.95 * float(HERTZ.approach(300.0))
     one, other = (pressed(300.0, 2.0, approach, ball_finer=finer, **MESH).reaction for finer in (1.0, 1.3))

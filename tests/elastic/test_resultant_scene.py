@@ -176,6 +176,7 @@ def test_the_screen_tells_of_the_bodies_and_of_no_points(static):
         assert words not in text
 
 
+@pytest.mark.slow
 def test_implicit_steps_keep_the_energy_to_the_square_of_the_step():
     def drift(steps: int) -> float:
         found = run(scene(**EXCITED, integrator={"kind": "newmark", "turns": 1, "steps_per_turn": steps, "tolerance": 1e-6}))
@@ -196,6 +197,7 @@ def test_a_series_of_equilibria_gives_the_tangents_stiffness():
     assert series == pytest.approx(tangent, rel=0.05)
 
 
+@pytest.mark.slow
 def test_explicit_steps_run_and_are_planned():
     wanted = scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"})
     found = run(wanted).to_dict()

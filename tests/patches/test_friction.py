@@ -172,6 +172,7 @@ def test_what_a_plan_says_of_friction_and_inertia():
     assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in unused(found))
 
 
+@pytest.mark.slow
 def test_points_agree_with_resultants_on_what_friction_does():
     """Both slide almost everywhere under 600 N: what friction takes differs by what sticks meanwhile, and by the start."""
     lost, stiffness = [], []

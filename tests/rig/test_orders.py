@@ -129,6 +129,7 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
     assert abs(np.mean(off)) < 3.5 * np.std(off) / np.sqrt(20) + 0.02 / rate
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [{}, {"rate": 100e3, "duration": 0.06}, {"duration": 0.03}])
 @pytest.mark.parametrize("part", [0.0, 0.01, 0.02, 0.05])
 def test_the_phase_lies_within_the_doubt_of_noisy_marks(options, part):

@@ -231,6 +231,7 @@ def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
     assert "Are unbalance, sensor's place and run-out right?" in found.stderr
 
 
+@pytest.mark.slow
 def test_a_point_without_a_motion_is_shown_as_failed(tmp_path, monkeypatch):
     from raceway.studies.rig import study as module
 
@@ -248,6 +249,7 @@ def test_a_point_without_a_motion_is_shown_as_failed(tmp_path, monkeypatch):
     assert "no motion, for the test" in (tmp_path / "rig.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_path, monkeypatch):
     from raceway.studies.shaft import bearing as module
 

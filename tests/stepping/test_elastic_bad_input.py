@@ -138,6 +138,7 @@ def test_going_on_from_disk_equals_never_having_stopped(method, tmp_path):
     assert apart <= (1e-7 * np.abs(whole.final.whole["u"]).max() if method.implicit else 0.0)
 
 
+@pytest.mark.slow
 def test_explicit_and_implicit_steps_agree_and_keep_the_energy():
     found = []
     for method, steps in ((CentralDifference(), 4000), (Newmark(), 400)):
