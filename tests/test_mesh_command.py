@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import re
 import sys
+from pathlib import Path
 
 import pytest
 
+from raceway.plugins.formats.vtu import Vtu
 from validation.command_line import EXAMPLES, MINIMAL, invoke, raceway
 
 COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "--set", "mesh.nodes_per_semi_axis=1")
@@ -19,8 +22,27 @@ def test_mesh_counts_and_files(tmp_path):
     content = json.loads(found.stdout)
     assert content["elements"] == sum(body["elements"] for body in content["bodies"].values()) > 1000
     assert content["scaled_jacobian"]["min"] > 0.2
-    assert len(content["files"]) == len(content["bodies"]) == 14
+    assert len(content["bodies"]) == 14
+    assert [Path(name).name for name in content["files"]] == ["inner_ring.vtu", "outer_ring.vtu", "balls.vtu"]
     assert sorted(map(str, tmp_path.iterdir())) == sorted(content["files"])
+    balls = Vtu().read(tmp_path / "balls.vtu")
+    sizes = {name: body["elements"] for name, body in content["bodies"].items() if name.startswith("ball")}
+    assert len(balls.cells) == sum(sizes.values()) and set(sizes) <= set(balls.node_sets)
+
+
+def test_a_format_goes_by_the_ending_of_its_files_too(tmp_path):
+    for word in ("inp", "abaqus"):
+        found = invoke("mesh", MINIMAL, *COARSE, "--format", word, "--out", tmp_path / word)
+        assert found.exit_code == 0, found.output
+    assert (tmp_path / "inp/balls.inp").read_bytes() == (tmp_path / "abaqus/balls.inp").read_bytes()
+
+
+def test_without_meshio_the_extra_is_named_before_anything_is_meshed(tmp_path, monkeypatch):
+    real = importlib.util.find_spec
+    monkeypatch.setattr("raceway.studies.view.mesh_command.find_spec", lambda name: None if name == "meshio" else real(name))
+    monkeypatch.setattr("raceway.bodies.meshing.mesh_scene", lambda *_: pytest.fail("meshed before it was refused"))
+    found = invoke("mesh", MINIMAL, *COARSE, "--out", tmp_path)
+    assert found.exit_code == 2 and "pip install '.[mesh]'" in found.output
 
 
 @pytest.mark.needs("pyvista")

@@ -46,7 +46,7 @@ AREAS = {
     "verify": "data/cases studies/many/reference studies/verify",
     "pages": """
         data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture
-        studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
+        studies/precision/labels studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
         __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/higher_types framework/hookspecs framework/registry
         framework/shown framework/sources front pipeline/facts pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder

@@ -6,4 +6,5 @@ front       ``raceway.precision``
 study       the runs;  command: ``raceway precision``
 result      errors, fronts, orders
 picture     files of a study;  screen: its table;  labelled: its data set
+labels      beside points, none on another
 """

@@ -12,6 +12,7 @@ from raceway.framework.options import between, option
 from raceway.plugins.reports.pictures import new_figure, save_figure
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
+from raceway.studies.precision.labels import Label, put_beside
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -152,33 +153,35 @@ def _words(setting: Tables) -> str:
 def draw(result: Tables) -> Figure:
     """The figure of a study."""
     figure = new_figure(12.8, 8.6)
-    draw_on(panel := figure.add_subplot(), result)
+    labels = draw_on(panel := figure.add_subplot(), result)
     figure.suptitle(f"Error against run time: {result['title']}", fontsize=13)
     if panel.get_legend_handles_labels()[1]:
         figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    put_beside(panel, labels)
     return figure
 
 
-def draw_on(panel: Axes, result: Tables) -> None:
-    """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front."""
+def draw_on(panel: Axes, result: Tables) -> list[Label]:
+    """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front; labels to be put."""
     bound = result["reference"]["error"]
     # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
     least = bound / 10.0 if bound else _LEAST
     base = [k for k, row in enumerate(result["rows"]) if _drawn(row) and _of_base(row)]
     other = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not _of_base(row)]
     series: dict[str, list[int]] = {}
+    labels: list[Label] = []
     for place in base:
         series.setdefault(_series(result["rows"][place]), []).append(place)
     for number, (name, places) in enumerate(series.items()):
         tone, mark = _COLOURS[number % len(_COLOURS)], _MARKERS[(number // 2) % len(_MARKERS)]
         xy = [_point(result["rows"][place], least) for place in places]
         panel.plot(*zip(*xy, strict=True), color=tone, marker=mark, linewidth=1.0, alpha=0.9, label=name)
-        for place, (x, y) in zip(places, xy, strict=True):
-            panel.annotate(_rung(result["rows"][place]), (x, y), (4, 3), textcoords="offset points", fontsize=7, color=tone)
+        labels += [(_rung(result["rows"][place]), point, tone) for place, point in zip(places, xy, strict=True)]
     if other:
         xy = [_point(result["rows"][place], least) for place in other]
         label = "other models, against their own references"
         panel.plot(*zip(*xy, strict=True), linestyle="", marker="x", color=_GREY, label=label)
+        labels += [(_words(result["rows"][place]["setting"]), point, _GREY) for place, point in zip(other, xy, strict=True)]
     _front(panel, result, least)
     if bound:
         panel.axhspan(bound / 30.0, bound, color="#e3e7eb", zorder=0)
@@ -190,6 +193,7 @@ def draw_on(panel: Axes, result: Tables) -> None:
     panel.grid(True, which="major", color="#e3e7eb", linewidth=0.8)
     panel.set_axisbelow(True)
     panel.spines[["top", "right"]].set_visible(False)
+    return labels
 
 
 def _front(panel: Axes, result: Tables, least: float) -> None:

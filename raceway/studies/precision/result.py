@@ -236,11 +236,13 @@ class Precision(Shown):
         RacewayError
             matplotlib is missing.
         """
+        from raceway.studies.precision.labels import put_beside
         from raceway.studies.precision.picture import draw_on
 
         panel = given_axes(ax, 9.0, 6.0)
-        draw_on(panel, self.to_dict())
+        labels = draw_on(panel, self.to_dict())
         panel.legend(frameon=False, fontsize=8)
+        put_beside(panel, labels)
         return panel
 
     def _shown(self) -> tuple[str, list[Fact]]:

@@ -65,6 +65,10 @@ def causes(study: RigStudy) -> Figure:
     axes.set_xlim(0.8 * _LEAST_PERCENT, max(200.0, 1.5 * largest))
     for limit in (1.0, 3.0):
         axes.axvline(limit, color="#1c2733", linewidth=0.8, linestyle="--")
+        axes.annotate(
+            f"{limit:g} %", (limit, 1.0), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points",
+            ha="center", va="bottom", fontsize=8,
+        )  # fmt: skip
     axes.set_xlabel("error of K by this cause alone [%]")
     axes.grid(color="#d8dee4", linewidth=0.7)
     axes.set_axisbelow(True)

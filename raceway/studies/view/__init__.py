@@ -1,5 +1,6 @@
 """Pictures of a bearing.
 
+labels        ball loads beside their arrows
 states        states of a result that are drawn
 surfaces      triangles of rings, balls and grooves
 bearing       rings, balls, arrows and contact ellipses of one state

@@ -99,7 +99,7 @@ def _inside(bearing: Bearing, turn: Turn, k: int, strongest: float) -> list[Part
 def _frame(pyvista: ModuleType, parts: list[Part], heading: str, words: str, top: float, peak: float) -> np.ndarray:
     plotter = scene.new_plotter(pyvista, _SIZE)
     scene.add_parts(pyvista, plotter, parts, top, peak)
-    scene.colour_bar(pyvista, plotter, "ball load [N]", scene.LOADS, top, (0.075, 0.05))
+    scene.colour_bar(pyvista, plotter, "ball load, N", scene.LOADS, top, (0.075, 0.05))
     plotter.add_text(heading, position="upper_edge", font_size=8, color=_INK)
     plotter.add_text(words, position="lower_edge", font_size=8, color=_INK)
     plotter.enable_anti_aliasing("ssaa")

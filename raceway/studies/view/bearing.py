@@ -21,6 +21,8 @@ _MM = 1e3
 CUT = (-0.08 * pi, 0.55 * pi)
 #: The longest arrow over the ball diameter.
 _LONGEST = 1.1
+#: The longest semi-axis of a contact as it is drawn over the ball's diameter.
+_WIDEST = 0.45
 INNER, OUTER, FACE = "#6f93b5", "#b9a679", "#dfe3e7"
 
 
@@ -150,22 +152,23 @@ class Bearing:
     def arrows(self, state: State, top: float) -> list[Part]:
         """The force of each ball on the outer ring, outside of it; as long as the ball diameter at the load ``top`` [N]."""
         z, parts = len(state.azimuth), []
-        reach = 0.5 * _MM * self.shape.outer_diameter + 0.12 * self.diameter
         towards = self.towards(state)[z:]
-        for k, centre in enumerate(self.centres(state)):
-            length = _LONGEST * self.diameter * state.load[z + k] / max(top, 1e-12)
+        for k, (start, tip) in enumerate(zip(*self.arrow_ends(state, top), strict=True)):
+            length = float(np.linalg.norm(tip - start))
             if length > 0.01 * self.diameter:
-                # Along the line of contact, begun where that leaves the ring.
-                radius = np.hypot(*centre[1:])
-                start = centre + towards[k] * (reach - radius) / max(float(np.hypot(*towards[k][1:])), 0.3)
-                parts.append(
-                    Part(
-                        f"load {k}",
-                        surfaces.arrow(start, towards[k], length, 0.22 * self.diameter),
-                        load=float(state.load[k]),
-                    )
-                )
+                solid = surfaces.arrow(start, towards[k], length, 0.22 * self.diameter)
+                parts.append(Part(f"load {k}", solid, load=float(state.load[k])))
         return parts
+
+    def arrow_ends(self, state: State, top: float) -> tuple[np.ndarray, np.ndarray]:
+        """(Z, 3) starts and tips of the arrows along the lines of contact, begun where these leave the outer ring [mm]."""
+        z, centres = len(state.azimuth), self.centres(state)
+        towards = self.towards(state)[z:]
+        reach = 0.5 * _MM * self.shape.outer_diameter + 0.12 * self.diameter
+        outward = np.maximum(np.hypot(*towards[:, 1:].T), 0.3)
+        start = centres + towards * ((reach - np.hypot(*centres[:, 1:].T)) / outward)[:, None]
+        length = _LONGEST * self.diameter * state.load[z:] / max(top, 1e-12)
+        return start, start + towards * length[:, None]
 
     def tips(self, state: State, top: float) -> np.ndarray:
         """(Z, 3) places beyond the arrows, for their labels [mm]."""
@@ -178,17 +181,22 @@ class Bearing:
         return np.asarray(reach[:, None] * _radial(state.azimuth) + axial[:, None] * [1.0, 0.0, 0.0])
 
     def patches(self, state: State, races: tuple[str, ...] = ("inner", "outer")) -> list[Part]:
-        """The contact ellipses on the balls, coloured by Hertz's pressure [MPa]."""
-        z, parts = len(state.azimuth), []
+        """The contact ellipses on the balls, ``widening`` times as large, coloured by Hertz's pressure [MPa]."""
+        z, parts, factor = len(state.azimuth), [], self.widening(state)
         towards, centres = self.towards(state), self.centres(state)
         for i in np.flatnonzero(state.load > 0.0):
             k, race = int(i) % z, "inner" if i < z else "outer"
             if race in races:
                 along = np.array([0.0, -np.sin(state.azimuth[k]), np.cos(state.azimuth[k])])
-                a, b = _MM * state.half[i]
+                a, b = factor * _MM * state.half[i]
                 patch = surfaces.contact_patch(centres[k], towards[i], along, self.diameter, (a, b), 1e-6 * state.peak[i])
                 parts.append(Part(f"{race} contact {k}", patch, scale="pressure", ball=k))
         return parts
+
+    def widening(self, state: State) -> int:
+        """How many times as large as they are contact ellipses are drawn: in truth they are specks on the balls."""
+        widest = _MM * float(state.half[state.load > 0.0].max(initial=0.0))
+        return max(int(_WIDEST * self.diameter / widest), 1) if widest > 0.0 else 1
 
     def towards(self, state: State) -> np.ndarray:
         """(2 Z, 3) unit vectors from the balls' centres to their contacts."""

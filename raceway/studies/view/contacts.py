@@ -11,7 +11,7 @@ from raceway.studies.view.bearing import INNER, OUTER, Bearing, State
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.collections import QuadMesh
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 _MM, _INK = 1e3, "#20262c"
@@ -84,18 +84,25 @@ def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, place: float) 
     axes.add_collection(PolyCollection(corners[profile.quads], facecolor="none", edgecolor=_INK, linewidth=0.25, alpha=0.7))
 
 
-def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: float) -> QuadMesh:
+def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: float) -> ScalarMappable:
+    """One ellipse on a mesh of its own radii and angles, so that its edge is smooth."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    scale = ScalarMappable(Normalize(0.0, max(top, 1e-9)), "inferno")
     a, b = _MM * state.half[i]
-    x, y = np.meshgrid(np.linspace(-reach, reach, 401), np.linspace(-0.35 * reach, 0.35 * reach, 201))
-    inside = 1.0 - (x / max(a, 1e-12)) ** 2 - (y / max(b, 1e-12)) ** 2
-    pressure = np.where(
-        (inside > 0.0) & (state.load[i] > 0.0), 1e-6 * state.peak[i] * np.sqrt(np.maximum(inside, 0.0)), np.nan
-    )
-    shown = axes.pcolormesh(x, y, pressure, cmap="inferno", vmin=0.0, vmax=max(top, 1e-9), shading="auto", rasterized=True)
+    words = "no contact"
+    if state.load[i] > 0.0:
+        part, turn = np.meshgrid(np.sin(np.linspace(0.0, 0.5 * np.pi, 61)), np.linspace(0.0, 2.0 * np.pi, 241))
+        pressure = 1e-6 * state.peak[i] * np.sqrt(1.0 - part**2)
+        place = a * part * np.cos(turn), b * part * np.sin(turn)
+        axes.pcolormesh(*place, pressure, cmap=scale.cmap, norm=scale.norm, shading="gouraud", rasterized=True)
+        words = f"{state.load[i]:.4g} N, peak {1e-6 * state.peak[i]:.4g} MPa, {2.0 * a:.3g} x {2.0 * b:.3g} mm"
     axes.set_aspect("equal")
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-0.35 * reach, 0.35 * reach)
     axes.set_facecolor("#f4f5f7")
     axes.set_xlabel("across the groove [mm]")
     axes.set_ylabel("rolling [mm]")
-    words = f"{state.load[i]:.4g} N, peak {1e-6 * state.peak[i]:.4g} MPa, {2.0 * a:.3g} x {2.0 * b:.3g} mm"
-    axes.set_title(f"{race} race: {words if state.load[i] > 0.0 else 'no contact'}", fontsize=11)
-    return shown
+    axes.set_title(f"{race} race: {words}", fontsize=11)
+    return scale

@@ -22,7 +22,7 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import load, slug, tell_faults
 from raceway.commands.progress import ProgressBar
-from raceway.errors import RacewayError, SceneError
+from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.registry import registry_with
 from raceway.framework.sources import blamed
 from raceway.plugins.system_libraries import refuse_pictures
@@ -33,14 +33,19 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from raceway.framework.contracts import Format
-    from raceway.framework.registry import Entry
+    from raceway.framework.registry import Entry, Registry
 
 
 @click.command(short_help="Mesh the bodies of a scene: counts, quality, files.")
 @on_scene
 @out_folder
 @click.option(
-    "--format", "form", default="vtu", show_default=True, metavar="NAME", help="Format of the files; plug-ins bring more."
+    "--format",
+    "form",
+    default="vtu",
+    show_default=True,
+    metavar="NAME",
+    help="Format of the files by its name or ending: vtu, abaqus or inp, msh; plug-ins bring more.",
 )
 @click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
 @programs
@@ -55,7 +60,7 @@ def mesh(
     plugins: tuple[Path, ...],
     as_json: bool,
 ) -> int:
-    """Build the meshes of a scene; say their counts, quality, memory and time; write a file for each body.
+    """Build the meshes of a scene; say their counts, quality, memory and time; write a file for each ring, one for all balls.
 
     A scene without a table [mesh] gets the mesher `structured` with its defaults.
 
@@ -67,7 +72,7 @@ def mesh(
     loaded = load(scene, changes, registry)
     folder = writable(out or RESULTS / slug(loaded.title))
     tell_faults(registry)
-    written = registry.find("format", form)
+    written = _format(registry, form)
     if picture and find_spec("pyvista"):
         refuse_pictures(", or leave out --picture")
     with ProgressBar("meshing") as progress:
@@ -101,20 +106,41 @@ def mesh(
     return 0
 
 
+def _format(registry: Registry, word: str) -> Entry:
+    """The format of a name, or of the ending of its files; refused where it needs a package that is missing."""
+    names = registry.names("format")
+    of_ending = [name for name in names if f".{word}" in registry.find("format", name).plugin.suffixes]
+    found = registry.find("format", of_ending[0] if word not in names and len(of_ending) == 1 else word)
+    if found.plugin.__module__.startswith("raceway.plugins.formats") and find_spec("meshio") is None:
+        raise RacewayError(f"files of meshes in the format '{found.name}' need the package meshio: {extra('mesh')}")
+    return found
+
+
 def _write(form: Entry, meshes: Tables, folder: Path, progress: ProgressBar) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RacewayError(f"`{folder}` cannot be made: {error.strerror}. Choose another with --out.") from None
     paths = []
-    for done, (name, body) in enumerate(meshes.items()):
-        progress(f"writing {name}", done, len(meshes))
+    parts = _together(meshes)
+    for done, (name, body) in enumerate(parts.items()):
+        progress(f"writing {name}", done, len(parts))
         with blamed(str(form), "write()"):
             writer: Format = form.plugin()
             path = folder / f"{slug(name)}{writer.suffixes[0]}"
             writer.write(path, body)
         paths.append(path)
     return paths
+
+
+def _together(meshes: Tables) -> Tables:
+    """Bodies by the name of their file: all balls are one mesh, in which each is a set of nodes of its own name."""
+    from raceway.core.mesh.hex_mesh import merged
+
+    balls = {name: body for name, body in meshes.items() if name.startswith("ball")}
+    if len(balls) < 2:
+        return meshes
+    return {**{name: body for name, body in meshes.items() if name not in balls}, "balls": merged(balls)}
 
 
 def _draw(meshes: Tables, content: Tables, folder: Path) -> Path:

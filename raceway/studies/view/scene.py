@@ -11,6 +11,7 @@ from raceway.errors import RacewayError, extra
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.tables import Tables
 from raceway.studies.view.bearing import Bearing, Part, State
+from raceway.studies.view.labels import LETTERS, ball_labels
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -89,6 +90,19 @@ def add_parts(pyvista: ModuleType, plotter: Any, parts: Sequence[Part], top_load
             plotter.add_mesh(mesh, scalars="load", cmap=LOADS, clim=(0.0, top_load), ambient=0.3, **look)
 
 
+def screen_points(plotter: Any) -> Callable[[np.ndarray], np.ndarray]:
+    """Where points (n, 3) [mm] of the scene are seen: (n, 2) pixels from the lower left corner."""
+    width, height = plotter.window_size
+    matrix = plotter.camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
+    project = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+
+    def seen(points: np.ndarray) -> np.ndarray:
+        at = np.column_stack([points, np.ones(len(points))]) @ project.T
+        return np.asarray(0.5 * (at[:, :2] / at[:, 3:] + 1.0) * [width, height])
+
+    return seen
+
+
 def colour_bar(pyvista: ModuleType, plotter: Any, title: str, colours: str, top: float, place: tuple[float, float]) -> None:
     """A colour bar of its own, from 0 to ``top``."""
     table = pyvista.LookupTable(colours, scalar_range=(0.0, top))
@@ -113,18 +127,17 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         peak = max((float(part.surface.values.max()) for part in patches if part.surface.values is not None), default=1.0)
         parts = [*bearing.rings(), *bearing.balls(state), *bearing.arrows(state, top), *patches]
         add_parts(pyvista, plotter, parts, top, peak)
-        plotter.add_point_labels(
-            bearing.tips(state, top), [f"{k}: {state.load[k]:.3g} N" for k in range(z)], font_size=26, text_color=_INK, shape=None, show_points=False,
-            always_visible=True, justification_horizontal="center", justification_vertical="center",
-        )  # fmt: skip
-        colour_bar(pyvista, plotter, "ball load [N]", LOADS, top, (0.045, 0.54))
-        colour_bar(pyvista, plotter, "pressure [MPa]", PRESSURES, peak, (0.045, 0.06))
+        # VTK draws square brackets as round ones.
+        colour_bar(pyvista, plotter, "ball load, N", LOADS, top, (0.045, 0.54))
+        colour_bar(pyvista, plotter, "pressure, MPa", PRESSURES, peak, (0.045, 0.06))
         plotter.add_text(heading, position="upper_edge", font_size=13, color=_INK)
         plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=_INK, viewport=(0.85, 0.0, 1.0, 0.2))
         plotter.enable_anti_aliasing("ssaa")
         plotter.camera_position = [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
         plotter.reset_camera()
         plotter.camera.zoom(1.08)
+        for text, place in ball_labels(bearing, state, top, screen_points(plotter)):
+            plotter.add_text(text, position=place, font_size=LETTERS // 2, color=_INK)
         image = np.asarray(plotter.screenshot(return_img=True))
         plotter.close()
         return image

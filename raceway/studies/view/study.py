@@ -77,7 +77,8 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         pictures["stress.png"] = path, "stress in a section of rings and ball", told
     if wanted.page:
         text = {
-            "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown), "notes": _notes(bearing)
+            "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown),
+            "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, shown)}."],
         }  # fmt: skip
         path = _page(bearing, shown, text, pictures).write(folder / "view.html")
         pictures["view.html"] = path, "", ""
@@ -106,12 +107,13 @@ def _still(
     for name, (state, words) in states.items():
         on_progress(f"drawing {name}", len(pictures), 0)
         path = write_whole(
-            _png(overview(bearing, state, f"{_short(result.title)}\n{words}: {_loads(state)}")), folder / name
+            _png(overview(bearing, state, f"{_short(result.title)}\n{words}: {_loads(state)}\n{_widened(bearing, state)}")),
+            folder / name,
         )
         pictures[name] = (
             path,
             f"the bearing cut open, balls coloured by their load, {words}",
-            f"Loads {words}: {_loads(state)}",
+            f"Loads {words}: {_loads(state)}; {_widened(bearing, state)}",
         )
     on_progress("drawing contacts.png", len(pictures), 0)
     path = save_figure(contacts(bearing, shown, f"{_short(result.title)}, {when}"), folder / "contacts.png", 110)
@@ -138,6 +140,11 @@ def _page(bearing: Bearing, state: State, text: Tables, pictures: Pictures) -> P
 def _loads(state: State) -> str:
     inner = state.load[: len(state.azimuth)]
     return f"balls {inner.min():.4g} to {inner.max():.4g} N, pressure up to {1e-6 * state.peak.max():.4g} MPa"
+
+
+def _widened(bearing: Bearing, state: State) -> str:
+    factor = bearing.widening(state)
+    return "contact ellipses are to scale" if factor == 1 else f"contact ellipses are {factor} times as large as they are"
 
 
 def _bearing_words(result: Result) -> str:
