@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import raceway
 from raceway import scene_from_dict
@@ -153,6 +154,29 @@ DRAWN: dict[object, Callable[[], list[Figure]]] = {
 def test_every_drawn_point_lies_inside_its_axes(draw):
     figures = draw()
     assert figures and [line for figure in figures for line in shown(figure)] == []
+
+
+def test_labels_of_precision_lie_on_no_other_and_name_the_other_models():
+    rows = [
+        {"setting": {"integrator.steps_per_turn": n}, "family": f"order {p}", "error": n ** -2.0, "time_s": 1e-5 * n * (1.0 + 1e-3 * p), "base": True}
+        for p in (1, 2, 3) for n in (10, 20, 40, 10000)
+    ]  # fmt: skip
+    rows.append({"setting": {"bodies.kind": "condensed"}, "family": "models", "error": 1e-3, "time_s": 1e-3, "base": False})
+    figure = precision.draw({"title": "made up", "rows": rows, "front": [0], "reference": {"error": None}})
+    figure.draw_without_rendering()
+    (panel,) = figure.axes
+    assert sorted(text.get_text() for text in panel.texts) == sorted(
+        ["10", "20", "40", "10000"] * 3 + ["bodies.kind = condensed"]
+    )
+    boxes = [Text.get_window_extent(text) for text in panel.texts]  # of an annotation: with its line
+    assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
+
+
+def test_the_dashed_lines_of_a_rigs_error_say_what_they_are():
+    _, split = of_a_rig()
+    (panel,) = split.axes
+    dashed = [line.get_xdata()[0] for line in panel.lines if line.get_linestyle() == "--"]
+    assert {text.get_text(): text.xy[0] for text in panel.texts} == {f"{limit:g} %": limit for limit in dashed} != {}
 
 
 def test_no_module_makes_figures_that_are_not_looked_at_here():

@@ -14,6 +14,8 @@ from raceway.pipeline.run import run
 from raceway.plugins.reports.pictures import ball_loads
 from raceway.studies.view import surfaces
 from raceway.studies.view.bearing import Bearing
+from raceway.studies.view.contacts import contacts
+from raceway.studies.view.labels import LETTERS, ball_labels
 from raceway.studies.view.states import at_peak, at_rest, last_turn
 from validation.command_line import ARTICLE, MINIMAL, invoke, raceway
 from validation.tables import b7206c
@@ -99,6 +101,49 @@ def test_a_turn_is_exaggerated_by_a_round_factor(moving):
     state, angle = at_peak(moving)
     assert 0.0 <= angle < 360.0
     assert state.load[:12].max() == pytest.approx(moving.simulation.record.contact_force[:, :12].max(), rel=1e-9)
+
+
+def flat(points):
+    """Seen along the axis, 15 pixels a millimetre."""
+    return 15.0 * points[:, 1:] + 800.0
+
+
+@pytest.mark.parametrize(("ball_count", "every"), [(12, 1), (25, 2)])
+def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
+    """On 12 balls all; on 25 small ones every second."""
+    tables = b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]})
+    tables["bearing"] |= {"ball_count": ball_count, "ball_diameter": 9.525e-3 if ball_count == 12 else 4.5e-3}
+    bearing = Bearing.of(found := run(scene_from_dict(tables)))
+    state = at_rest(found)
+    top = float(state.load.max())
+    labels = ball_labels(bearing, state, top, flat)
+    assert [int(text.split(":")[0]) for text, _ in labels] == list(range(0, ball_count, every))
+    boxes = [np.array([corner, np.add(corner, (12.0 * len(text), LETTERS))]) for text, corner in labels]
+    overlap = [(a[0] < b[1]).all() and (b[0] < a[1]).all() for k, a in enumerate(boxes) for b in boxes[:k]]
+    assert not any(overlap)
+    share = np.linspace(0.0, 1.0, 50)[:, None, None]
+    tails, heads = (flat(points) for points in bearing.arrow_ends(state, top))
+    arrows = ((1.0 - share) * tails + share * heads).reshape(-1, 2)
+    assert not any(((low < arrows) & (arrows < high)).all(axis=1).any() for low, high in boxes)
+
+
+def test_contact_ellipses_are_drawn_as_many_times_as_large_as_is_said(result):
+    bearing, state = Bearing.of(result), at_rest(result)
+    factor = bearing.widening(state)
+    assert factor > 2, "specks in truth"
+    ball = int(np.argmax(state.load[:12]))
+    patch = next(part for part in bearing.patches(state) if part.name == f"inner contact {ball}")
+    from_middle = (patch.surface.points - bearing.centres(state)[ball]) / (1.004 * 0.5 * bearing.diameter)
+    widest = np.tan(np.arccos(from_middle @ bearing.towards(state)[ball])).max() * 0.5 * bearing.diameter
+    assert widest == pytest.approx(factor * 1e3 * state.half[ball, 0], rel=1e-6)
+
+
+def test_the_edge_of_a_drawn_contact_is_its_ellipse(result):
+    state = at_rest(result)
+    ball = int(np.argmax(state.load[:12]))
+    panel = contacts(Bearing.of(result), state, "made up").axes[1]
+    at = np.asarray(panel.collections[0].get_coordinates()) / (1e3 * state.half[ball])
+    assert np.hypot(*at[:, -1].T) == pytest.approx(np.ones(at.shape[0]), rel=1e-12)
 
 
 def test_a_pair_has_four_rings_and_loads_that_point_apart():
