@@ -41,7 +41,7 @@ def put_beside(axes: Axes, labels: Sequence[Label]) -> None:
                 taken.append((middle, half))
                 line = {"arrowstyle": "-", "color": tone, "linewidth": 0.5, "shrinkB": 3.0} if away > _AWAY[0] else None
                 axes.annotate(
-                    text, at, middle - point, textcoords="offset points", fontsize=_SIZE, color=tone, ha="center", va="center",
+                    text, at, tuple(middle - point), textcoords="offset points", fontsize=_SIZE, color=tone, ha="center", va="center",
                     arrowprops=line, in_layout=False,
                 )  # fmt: skip
                 break

@@ -89,14 +89,15 @@ def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: flo
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    scale = ScalarMappable(Normalize(0.0, max(top, 1e-9)), "inferno")
+    norm = Normalize(0.0, max(top, 1e-9))
+    scale = ScalarMappable(norm, "inferno")
     a, b = _MM * state.half[i]
     words = "no contact"
     if state.load[i] > 0.0:
         part, turn = np.meshgrid(np.sin(np.linspace(0.0, 0.5 * np.pi, 61)), np.linspace(0.0, 2.0 * np.pi, 241))
         pressure = 1e-6 * state.peak[i] * np.sqrt(1.0 - part**2)
         place = a * part * np.cos(turn), b * part * np.sin(turn)
-        axes.pcolormesh(*place, pressure, cmap=scale.cmap, norm=scale.norm, shading="gouraud", rasterized=True)
+        axes.pcolormesh(*place, pressure, cmap=scale.cmap, norm=norm, shading="gouraud", rasterized=True)
         words = f"{state.load[i]:.4g} N, peak {1e-6 * state.peak[i]:.4g} MPa, {2.0 * a:.3g} x {2.0 * b:.3g} mm"
     axes.set_aspect("equal")
     axes.set_xlim(-reach, reach)
