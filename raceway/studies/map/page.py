@@ -131,7 +131,7 @@ def _limits(curve: Tables) -> list[str | None]:
 
 
 def _curve(curve: Tables) -> list[str | None]:
-    return [_plain(curve["contact_angle_deg"]), str(curve["tilt"]), _plain(curve["axial"])]
+    return [_plain(curve["contact_angle_deg"]), str(curve["tilt"]), _plain(curve["axial"], "{:.5g}")]
 
 
 def _plain(value: float | None, form: str = "{:.4g}", factor: float = 1.0) -> str | None:

@@ -118,7 +118,7 @@ def _rig_words(study: RigStudy) -> str:
 
 
 def _name(row: Tables) -> str:
-    return f"{row['speed_rpm']:.0f} r/min, {row['axial_n']:.0f} N"
+    return f"{row['speed_rpm']:.0f}\u00a0r/min, {row['axial_n']:.0f}\u00a0N"  # no line ends between number and unit
 
 
 def _truth(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
