@@ -126,7 +126,7 @@ def screen() -> str:
     """What ``raceway run examples/minimal.toml`` prints with warm caches, without the name of the folder."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "raceway", "run", str(SHOWN.relative_to(ROOT)), "--out", folder]
-        environment = {**os.environ, "COLUMNS": "110", "NO_COLOR": "1"}
+        environment = {**os.environ, "COLUMNS": "80", "NO_COLOR": "1"}
         for _ in range(2):
             done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT, env=environment)
     lines = [line.rstrip() for line in done.stdout.splitlines() if not line.startswith("written:")]

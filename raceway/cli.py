@@ -19,6 +19,7 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    explained,
     on_scene,
     out_folder,
     plugin_files,
@@ -82,6 +83,7 @@ class RunOptions(NamedTuple):
     pictures: bool
     patience: float
     plugins: tuple[Path, ...]
+    explain: bool
     as_json: bool
 
 
@@ -96,6 +98,7 @@ class RunOptions(NamedTuple):
 )  # fmt: skip
 @programs
 @plugin_files
+@explained
 @common
 @record(RunOptions)
 def run(given: RunOptions) -> int:
@@ -106,7 +109,8 @@ def run(given: RunOptions) -> int:
 
     \b
     Example:
-      raceway run examples/b7206.toml --set excitation.speed_rpm=15000 --set supports.tilt=free --pictures
+      raceway run examples/b7206.toml --pictures \\
+          --set excitation.speed_rpm=15000 --set supports.tilt=free
     """
     registry = registry_with(given.plugins)
     loaded = load(given.scene, given.changes, registry)
@@ -133,7 +137,7 @@ def run(given: RunOptions) -> int:
         failed = write_reports(chosen, result, folder, files)
     from raceway.commands.screen.result import run_screen
 
-    show(content, given.as_json, failed, lambda: run_screen(content, files))
+    show(content, given.as_json, failed, lambda: run_screen(content, files, given.explain))
     return 0
 
 

@@ -19,7 +19,7 @@ import pytest
 
 from raceway.cli import main
 from raceway.commands.inputs import slug
-from validation.command_line import ARTICLE, MINIMAL, install, invoke, law, python, raceway
+from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, install, invoke, law, python, raceway
 
 COMMANDS = sorted(main.commands)
 GROUPS = {
@@ -38,6 +38,53 @@ def test_help_teaches_with_an_example(command):
     assert f"raceway {command}" in found.stdout.split("Example:")[1]
     assert "--json" in found.stdout
     assert "--debug" in found.stdout
+    assert "--verbose" in found.stdout
+
+
+@pytest.mark.parametrize("command", [*RUNNABLE, "study", ""])
+def test_help_fits_80_columns(command, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert max(map(len, invoke(*command.split(), "--help").stdout.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("group", [[], ["study"]])
+def test_a_group_without_a_command_shows_its_help(group):
+    found = invoke(*group)
+    assert found.exit_code == 2 and found.stdout == ""
+    assert found.stderr == invoke(*group, "--help").stdout
+
+
+def test_a_hint_stands_on_a_line_of_its_own():
+    found = invoke("run")
+    assert found.exit_code == 2
+    assert found.stderr.splitlines() == [
+        "error: Missing argument 'SCENE'.",
+        "  try `raceway run --help`, which has an example",
+    ]
+
+
+def test_verbose_leaves_standard_output_to_json(tmp_path):
+    found = invoke("run", MINIMAL, "--out", tmp_path, "--json", "-v")
+    assert json.loads(found.stdout)["title"] == "minimal"
+    told = found.stderr
+    for words in (
+        "plan: 27 degrees of freedom",
+        "kept: centrifugal force of the balls",
+        "newmark, 4320 steps",
+        "run finished in",
+    ):
+        assert words in told
+    quiet = invoke("run", MINIMAL, "--out", tmp_path, "--json")
+    assert quiet.stderr == ""
+    from raceway.framework.registry import default_registry
+
+    assert not default_registry().manager.has_plugin("raceway -v")
+
+
+def test_verbose_tells_of_a_run_that_fails(tmp_path):
+    found = invoke("run", MINIMAL, "--set", "load.axial=0", "--out", tmp_path, "-v")
+    assert found.exit_code != 0
+    assert "run failed: " in found.stderr and "error: " in found.stderr
 
 
 def test_help_and_version():
@@ -65,7 +112,7 @@ def test_run_says_everything_and_writes_the_result(article):
     for words in (
         "B7206C, 1 kN axial", "12 balls of 9.525 mm on 46 mm", "most loaded ball", "least loaded ball", "tangent kxx",
         "tangent kyy", "Z real", "Z imaginary", "|Z|", "equivalent stiffness K", "equivalent damping C", "phase lag",
-        "orbit", "tilt locked", "secant: 1x force over 1x displacement", "time step", "run with half as many steps, order 2",
+        "orbit", "tilt locked", "secant: 1x force over 1x displacement", "time step", "second run, half as many steps",
         "compiling, apart", "energy drift",
         "left out: tilts (supports.tilt is locked)", f"written: {folder}/result.json",
     ):  # fmt: skip
@@ -381,6 +428,52 @@ def test_progress_is_drawn_on_a_terminal_after_a_second_and_never_elsewhere():
     with ProgressBar("starting", quick) as bar:
         bar("newmark", 1, 2)
     assert "newmark" not in quick.file.getvalue()
+
+
+def test_a_bar_inside_a_bar_says_what_it_does_in_the_outer_one():
+    from rich.console import Console
+
+    from raceway.commands.progress import ProgressBar
+
+    file = Console(file=io.StringIO(), force_terminal=True, width=80)
+    with ProgressBar("outside", file, 0.01) as bar:
+        time.sleep(0.1)
+        with ProgressBar("inside", patience=0.01) as inner:
+            inner("inside, a half", 1, 2)
+            time.sleep(0.15)
+        bar("outside again", 1, 1)
+        time.sleep(0.15)
+    drawn = file.file.getvalue()
+    assert drawn.index("outside") < drawn.index("inside, a half") < drawn.index("outside again")
+
+
+STUDIES = {
+    "map": (["study", "map"], "raceway.studies.map.study.study_map", "map-rows.jsonl"),
+    "article": (["study", "article"], "raceway.studies.article.study.article", "article-rows.jsonl"),
+    "rig": (["study", "rig", str(EXAMPLES / "test_rig.toml")], "raceway.studies.rig.study.study", "rig-rows.jsonl"),
+    "stability": (["stability"], "raceway.studies.stability.study.stability", "stability-rows.jsonl"),
+    "precision": (["precision", MINIMAL], "raceway.studies.precision.front.study", "precision-rows.jsonl"),
+}
+
+
+@pytest.mark.parametrize("study", STUDIES)
+def test_a_study_that_is_stopped_ends_its_bar_before_it_says_so(study, tmp_path, monkeypatch):
+    from raceway.commands import frame
+    from raceway.commands.progress import ProgressBar
+
+    words, name, kept = STUDIES[study]
+    bars = []
+
+    def stopped(*_given, **_named):
+        assert ProgressBar._shown is not None
+        (tmp_path / kept).write_text("")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(name, stopped)
+    monkeypatch.setattr(frame, "warn", lambda text, **_: bars.append((text, ProgressBar._shown)))
+    assert invoke(*words, "--out", tmp_path).exit_code == 130
+    ((text, shown),) = bars
+    assert "goes on from there" in text and shown is None
 
 
 def test_examples_are_short():

@@ -145,7 +145,7 @@ def test_effects_and_words_say_what_the_rows_say(small):
     assert effect["difference"] == pytest.approx(k[:, 1].mean() - k[:, 0].mean(), rel=1e-12)
     text = "\n".join(small.words)
     assert f"supports.tilt from locked to free changes it by {percent(tilt)}" in text
-    assert f"{k.min() / 1e6:.2f} and {k.max() / 1e6:.2f} N/um" in text
+    assert f"{k.min() / 1e6:.2f} and {k.max() / 1e6:.2f} N/µm" in text
     for end, level in enumerate(("locked", "free")):
         change = percent(math.log(k[1, end] / k[0, end]))
         assert ("with supports.tilt = locked" in text) and change in text, level
@@ -158,7 +158,7 @@ def test_json_table_and_picture(small, tmp_path):
     answer = json.loads(json.dumps(small.to_dict(), allow_nan=False))
     assert [axis["key"] for axis in answer["axes"]] == ["excitation.kind", "supports.tilt"]
     assert len(answer["rows"]) == 4 and answer["rows"][0]["result"]["schema"] == 1
-    assert [list(row) for row in small.table()] == [["kind", "tilt", "K N/um", "|Z| N/um", "error %"]] * 4
+    assert [list(row) for row in small.table()] == [["kind", "tilt", "K N/µm", "|Z| N/µm", "error %"]] * 4
     (path,) = small.picture(tmp_path)
     assert path.read_bytes()[:4] == b"\x89PNG"
 
@@ -292,7 +292,7 @@ def test_one_inexact_corner_hides_no_large_effect():
     assert by_term["supports.tilt",]["resolved"] and not by_term["excitation.kind",]["resolved"]
     text = "\n".join(found.words)
     assert "supports.tilt from locked to free changes it by -78.8 %" in text
-    # 2 / 16 of -ln(1 - 0.03 |Z| / K), K = 40 and |Z| = 37.8 N/um at the corner; |Z| itself a little more.
+    # 2 / 16 of -ln(1 - 0.03 |Z| / K), K = 40 and |Z| = 37.8 N/µm at the corner; |Z| itself a little more.
     assert "the runs' own errors move them by at most 0.38 %" in text
     assert "K(w) hardly depends on excitation.kind" in text  # 0 +- 0.36 % is surely below 0.5 %
 
@@ -308,7 +308,7 @@ def test_a_small_effect_within_the_errors_is_not_told_as_one():
         rows.append(Row(point, {"identification": found, "error": {"total": 0.021 if k == 0.355e8 else 1e-6}}))
     text = "\n".join(Comparison("made up", axes, tuple(rows)).words)
     assert (
-        "K(w) lies between 35.50 and 234.20 N/um. On average supports.tilt from locked to free changes it by -84.7 %" in text
+        "K(w) lies between 35.50 and 234.20 N/µm. On average supports.tilt from locked to free changes it by -84.7 %" in text
     )
     assert (
         "within the runs' errors of 1.1 % and so not resolved: excitation.kind (+0.78 %; with supports.tilt = locked -0.13 %)"

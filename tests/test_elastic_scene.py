@@ -16,8 +16,8 @@ from raceway.errors import RacewayError, SceneError
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.planning.unused import unused
 from raceway.scene.file import scene_from_dict
+from raceway.scene.unused import unused
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.
 TINY = {

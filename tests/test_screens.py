@@ -2,25 +2,32 @@
 
 import ast
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
+from raceway.commands.screen import Words, rows_table
+from raceway.commands.screen.notes import short
 from raceway.pipeline.result import tilts_follow
-from validation.command_line import ARTICLE, invoke
+from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
-#: All but the module that writes numbers with so many digits.
-SCREENS = [path for path in (*PACKAGE.glob("commands/screen/*.py"), *PACKAGE.rglob("*screen.py")) if path.name != "text.py"]
+#: Modules that count digits, signs and columns, and know nothing of results.
+LAYOUT = ("text.py", "wrapping.py", "rows.py")
+SCREENS = [path for path in (*PACKAGE.glob("commands/screen/*.py"), *PACKAGE.rglob("*screen.py")) if path.name not in LAYOUT]
 #: What ``raceway verify`` sorts its rows by, and does not show.
 SORTED_BY = {"verify": ["row['error'] / row['tolerance']"]}
 
 
 def number(node):
-    """A literal number, or arithmetic of such: a factor of units."""
+    """A literal or a constant's name, or arithmetic of such: a factor of units."""
     if isinstance(node, ast.BinOp):
         return number(node.left) and number(node.right)
+    if isinstance(node, ast.Name):
+        return node.id.isupper() and len(node.id) > 3
     return isinstance(node, ast.Constant) and isinstance(node.value, int | float)
 
 
@@ -69,3 +76,152 @@ def test_tilts_that_follow_are_condensed_statically(tilt):
     assert tilts_follow(k, tilt) == pytest.approx(1.0 / moved[0], rel=1e-10)
     assert tilts_follow(k, "locked") is None
     assert tilts_follow(np.diag([1.0, 2.0, 3.0, 0.0, 0.0]), "free") == 2.0
+
+
+def lines(renderable, width=80):
+    console = Console(width=width)
+    with console.capture() as captured:
+        console.print(renderable, crop=False)
+    return [line.rstrip() for line in captured.get().splitlines()]
+
+
+def test_the_answer_stands_first(tmp_path):
+    found = invoke("run", MINIMAL, "--out", tmp_path)
+    result = json.loads((tmp_path / "result.json").read_text())["identification"]
+    text = found.stdout.splitlines()
+    heads = [line for line in text if not line.startswith((" ", "warning", "written"))]
+    assert heads[heads.index("Answer at 12000 r/min, tilt locked") + 1] == "Equilibrium under the constant loads"
+    place = next(k for k, line in enumerate(text) if line.startswith("  equivalent stiffness K"))
+    assert place <= 6 and f"{1e-6 * result['equivalent_stiffness']:.5g} N/µm" in text[place]
+    assert [line.split("  ")[1].strip() for line in text[place:] if line.startswith("  ")][0] == "equivalent stiffness K"
+
+
+def test_notes_are_short_on_the_screen_and_whole_where_they_are_asked_for(tmp_path):
+    brief, whole = (invoke("run", MINIMAL, "--out", tmp_path, *words).stdout for words in ([], ["--explain"]))
+    how = json.loads((tmp_path / "result.json").read_text())["error"]["how"]
+    text = " ".join(whole.split())
+    assert all(" ".join(note.split()) in text for note in how.values())
+    assert "Hann" in how["transient"] and "Hann" not in brief
+    assert all(len(short(note)) <= 48 for note in how.values())
+    assert "--explain" in brief and "kinematics.orbiting" in whole
+
+
+@pytest.mark.parametrize(
+    "note",
+    [
+        "distance from the steady motion, less the part of the time step",
+        "friction remembers how the motion began: 0.0012 between this start and 'ramp'; and free vibration: its leakage",
+        "largest misfit of K - m w^2 + j w C, over |Z| there: at 12000 r/min",
+        "time step and transient with their phases, at least half the larger; plus identification, mesh and calibration; of the "
+        "last window alone, at 15000 r/min",
+        "a stranger's estimate: with a clause, and another one, that goes on for longer than a line of a screen can hold at all",
+    ],
+)
+def test_numbers_of_a_note_stay_and_clauses_go(note):
+    told = short(note)
+    assert len(told) <= 60 < len(note)
+    if "stranger" not in note:
+        assert {word for word in note.split() if word[0].isdigit()} <= {*told.split()}
+
+
+def test_a_static_scene_has_one_line_for_what_it_cannot_tell(tmp_path):
+    scene = tmp_path / "static.toml"
+    scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n')
+    text = invoke("run", scene, "--out", tmp_path / "out").stdout
+    assert "not estimated" not in text and text.count("static scene") == 1
+    answer = text[text.index("Answer") : text.index("Equilibrium")]
+    assert all(words in answer for words in ("tangent kxx", "tangent kyy", "most loaded ball", "[excitation]"))
+
+
+def test_an_orbit_along_a_line_has_no_second_axis(tmp_path):
+    words = ("--set", "excitation.kind=unidirectional", "--set", "integrator.kind=periodic", "--out", tmp_path)
+    text = invoke("run", ARTICLE, *words).stdout
+    orbit = json.loads((tmp_path / "result.json").read_text())["identification"]["orbit"]
+    assert f"{1e6 * orbit['major_m']:.4g} x 0 µm  1x motion, a line" in text
+
+
+def test_a_pair_is_called_one_and_its_balls_have_rows(tmp_path):
+    text = " ".join(invoke("run", EXAMPLES / "duplex_db.toml", "--out", tmp_path).stdout.split())
+    result = json.loads((tmp_path / "result.json").read_text())
+    loads = [ball["load_inner_n"] for ball in result["equilibrium"]["balls"]]
+    count = result["scene"]["bearing"]["ball_count"]
+    row, ball = divmod(int(np.argmax(loads)), count)
+    assert "pair DB, back to back: two rows of these balls, 16 mm apart, mounted with 290 N (rigid)" in text
+    assert f"most loaded ball {max(loads):.5g} N row {row + 1}, ball {ball} at" in text
+    assert f"preload {result['equilibrium']['preload']['running_n']:.5g} N" in text
+
+
+def test_a_dry_bearings_damping_is_told_with_the_remedy(tmp_path):
+    text = " ".join(invoke("run", MINIMAL, "--out", tmp_path).stdout.split())
+    assert "rule of thumb of rotor programs" in text and "2.9e+03 N s/m" in text and "contact.damping" in text
+
+
+def test_a_table_says_once_what_is_the_same_in_all_rows():
+    rows = [{"axial": "400", "speed_rpm": f"{speed}", "K N/µm": 153.2} for speed in (12000, 15000)]
+    text = lines(rows_table(rows))
+    assert text[0] == "the same in all rows: axial 400, K N/µm 153.2"
+    assert text[1].split() == ["speed", "r/min"] and text[3:] == ["      12000", "      15000"]
+    assert "the same" not in lines(rows_table(rows[:1]))[0]
+
+
+@pytest.mark.parametrize("width", [40, 80, 120])
+@pytest.mark.parametrize("columns", [3, 9, 30])
+def test_a_table_of_any_width_keeps_every_number_whole(width, columns):
+    made = np.random.default_rng(columns)
+    rows = [
+        {f"quantity_{k} [N/µm]": float(made.normal() * 10.0 ** made.integers(-9, 9)) for k in range(columns)}
+        for _ in range(4)
+    ]
+    rows = [{"name": f"a setting of many words, the {k}th of four", **row} for k, row in enumerate(rows)]
+    text = lines(rows_table(rows), width)
+    assert max(map(len, text)) <= width
+    words = " ".join(text).split()
+    assert all(f"{value:.5g}" in words for row in rows for value in row.values() if isinstance(value, float))
+
+
+def test_a_line_ends_neither_in_a_number_nor_before_its_unit():
+    text = "rows under the loads 1044.4, 44.442 N; m = 0.061 kg at 12000 r/min, +- 5e-06 N/µm, an orbit of 15.66 x 12.2 µm, C 3 N s/m"
+    for width in range(16, 80):
+        told = lines(Words(text), width)
+        assert " ".join(told) == text and max(map(len, told)) <= width
+        for whole in ("44.442 N;", "m = 0.061 kg", "12000 r/min,", "+- 5e-06 N/µm,", "15.66 x 12.2 µm,", "3 N s/m"):
+            assert any(whole in line for line in told), (width, whole)
+
+
+def test_a_precision_study_says_how_well_its_reference_is_known_and_the_rest_when_asked():
+    from raceway.studies.precision.screen import precision_screen
+
+    words = [
+        "reference: steady orbit to 1e-10; confirmed by two methods, each extrapolated; relative bound 1e-10",
+        "cheapest: a; b; c",
+    ]
+    rows = [{"setting": "steps_per_turn 45", "error": "1.4e-06"}]
+    brief, whole = (" ".join(lines(precision_screen("T", rows, words, [], explain))) for explain in (False, True))
+    assert "confirmed by two" not in brief and "relative bound 1e-10" in brief and "cheapest: a; b; c" in brief
+    assert all(text in whole for text in words)
+
+
+#: Names of cases and quantities, which stored rows are found by, and heads of files; screens write the former with the sign.
+NAMES_IN_ASCII = {"verify/bearings.py", "stability/extremes.py", "measured/command.py", "measured/heads.py"}
+
+
+@pytest.mark.parametrize("folder", ["commands", "studies", "plugins"])
+def test_micrometres_are_written_one_way(folder):
+    written = {}
+    for path in (PACKAGE / folder).rglob("*.py"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        texts = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
+        told = [n.value for n in texts if re.search(r"\bum\b", n.value) and n.value not in documented(tree)]
+        if told and "/".join(path.parts[-2:]) not in NAMES_IN_ASCII:
+            written["/".join(path.parts[-2:])] = told
+    assert not written
+
+
+def documented(tree):
+    """Docstrings of a module and all that is in it."""
+    nodes = (n for n in ast.walk(tree) if isinstance(n, ast.Module | ast.ClassDef | ast.FunctionDef))
+    return {
+        n.body[0].value.value
+        for n in nodes
+        if n.body and isinstance(n.body[0], ast.Expr) and isinstance(n.body[0].value, ast.Constant)
+    }

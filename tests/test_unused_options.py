@@ -1,5 +1,7 @@
 """Options that change nothing are told with the reason, for built-ins and third parties alike."""
 
+import json
+from pathlib import Path
 from typing import ClassVar
 
 import attrs
@@ -11,6 +13,7 @@ from raceway.errors import PluginError
 from raceway.framework.options import unused_options
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.unidirectional import Unidirectional
+from validation.command_line import ARTICLE, invoke
 
 
 @pytest.mark.parametrize(
@@ -56,3 +59,32 @@ class Confused(Hertz):
 def test_a_wrong_answer_is_the_authors_mistake(answer):
     with pytest.raises(PluginError, match="plug-in 'confused': unused_options"):
         unused_options(Confused(answer=answer))
+
+
+def told(folder, *changes):
+    """What a run of the article's scene, whose file gives `integrator.turns`, says of keys without effect."""
+    words = [word for change in changes for word in ("--set", change)]
+    found = invoke("run", ARTICLE, *words, "--out", folder, "--json")
+    assert found.exit_code == 0, found.stderr
+    return [text for text in json.loads(found.stdout)["warnings"] if "has no effect" in text]
+
+
+def test_a_key_of_the_file_that_a_change_idles_is_nobodys_mistake(tmp_path):
+    assert told(tmp_path, "integrator.kind=periodic") == []
+    assert told(tmp_path, "identifier.kind=tangent") == []
+    (said,) = told(tmp_path, "integrator.kind=periodic", "integrator.turns=5")
+    assert said == "`integrator.turns` has no effect: integrator 'periodic' needs one turn"
+
+
+def test_a_key_of_the_file_that_is_idle_in_the_file_is_told_whatever_is_changed(tmp_path):
+    text = Path(ARTICLE).read_text(encoding="utf-8").replace('kind = "newmark"', 'kind = "periodic"')
+    (tmp_path / "scene.toml").write_text(text)
+    found = invoke("run", tmp_path / "scene.toml", "--set", "load.axial=900", "--out", tmp_path / "out", "--json")
+    assert [text for text in json.loads(found.stdout)["warnings"] if "`integrator.turns` has no effect" in text]
+
+
+def test_a_sweep_over_kinds_tells_no_point_of_an_inherited_key(tmp_path):
+    words = ("--grid", "integrator.kind=newmark,periodic", "--grid", "load.axial=900,1000", "--out", tmp_path / "store")
+    found = invoke("sweep", ARTICLE, *words, "--json")
+    rows = json.loads(found.stdout)["rows"]
+    assert len(rows) == 4 and not any("has no effect" in text for row in rows for text in row.get("warnings", []))

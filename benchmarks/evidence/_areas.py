@@ -29,8 +29,8 @@ AREAS = {
     "kernels": "core/jit core/signatures framework/plugin_kernel storage/kernel_files",
     "plan": "framework/probe pipeline/allowance planning",
     "scene": """
-        framework/options planning/implausible planning/unused scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
-        scene/tables scene/units""",
+        framework/options planning/implausible scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
+        scene/tables scene/units scene/unused""",
     "article": "studies/article data/article",
     "compare": "studies/compare",
     "map": "studies/map data/map",
@@ -54,7 +54,7 @@ AREAS = {
         studies/article/command studies/article/screen studies/compare/command studies/compare/front studies/compare/labelled studies/compare/screen studies/map/command
         studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
         studies/precision/labelled studies/precision/screen studies/rig/command studies/rig/screen
-        studies/ross/command studies/ross/front studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
+        studies/ross/command studies/ross/front studies/ross/points studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
         studies/sweep/store_command studies/verify/command studies/verify/screen studies/view/command studies/view/front studies/view/view studies/view/mesh_command
         studies/view/mesh_screen""",
 }

@@ -5,7 +5,7 @@ inputs         scenes, result folders, plug-ins that a command starts from
 console        messages and exit codes
 interrupt      Ctrl-C, SIGTERM and SIGHUP
 streams        standard streams that are closed, or know ASCII only
-progress       the bar on standard error
+progress       the bar on standard error;  verbose: what -v tells
 reports        reports that ``raceway run`` writes beside result.json
 failure        files of a run that failed
 cache          ``raceway cache``

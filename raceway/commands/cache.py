@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from raceway.commands.frame import common, show
+from raceway.commands.frame import common, show, show_progress
 
 
 @click.command(short_help="See or clear what is kept between runs.")
@@ -22,11 +22,12 @@ def cache(clear: bool, as_json: bool) -> int:
 
     from raceway.storage import array_cache, cache_folder
 
-    if clear:
-        cache_folder.clear()
-        array_cache.clear()
-    folders = [attrs.asdict(folder) for folder in cache_folder.kernel_folders()]
-    arrays = [attrs.asdict(entry) for entry in array_cache.entries()]
+    with show_progress(waiting="looking through what is kept"):
+        if clear:
+            cache_folder.clear()
+            array_cache.clear()
+        folders = [attrs.asdict(folder) for folder in cache_folder.kernel_folders()]
+        arrays = [attrs.asdict(entry) for entry in array_cache.entries()]
     content = {
         "root": str(cache_folder.cache_root() / "kernels"),
         "current": cache_folder.source_key(),

@@ -29,6 +29,13 @@ class _Stopped(BaseException):
     """An interruption that click does not see: it would answer with an empty line."""
 
 
+class _Bare(click.UsageError):
+    """A group without a command: its help is the answer."""
+
+    def __init__(self, ctx: click.Context) -> None:
+        super().__init__(ctx.get_help(), ctx)
+
+
 class Commands(click.Group):
     """A group of commands that ends with one message and an exit code, whatever happens."""
 
@@ -38,6 +45,11 @@ class Commands(click.Group):
         words = list(sys.argv[1:] if args is None else args)
         extra["standalone_mode"] = False
         sys.exit(guarded(lambda: super(Commands, self).main(words, prog_name="raceway", **extra), words))
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if not args and self.no_args_is_help and not ctx.resilient_parsing:
+            raise _Bare(ctx)
+        return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> object:
         try:
@@ -85,6 +97,9 @@ def guarded(command: Callable[[], object], words: list[str]) -> int:
 def report(error: Exception, as_json: bool) -> int:
     """Say what went wrong, on standard error or as JSON on standard output; return the exit code."""
     code, items = described(error)
+    if isinstance(error, _Bare):
+        click.echo(error.message, err=True)
+        return code
     if as_json:
         try:
             print_json({"errors": items, **(error.files if isinstance(error, RacewayError) else {})})
@@ -99,6 +114,8 @@ def report(error: Exception, as_json: bool) -> int:
     if len(items) > 1:
         head += f"{len(items)} mistakes\n  "
     lines = [f"{_where(item)}{item['message']}" for item in items] + list(getattr(error, "__notes__", ()))
+    if isinstance(error, click.UsageError):
+        lines.append(_help_hint(error))
     click.echo(head + "\n  ".join(lines), err=True)
     return code
 
@@ -112,8 +129,6 @@ def described(error: Exception) -> tuple[int, list[Tables]]:
     code, message = 2, str(error)
     if isinstance(error, RacewayError):
         code = error.exit_code
-    elif isinstance(error, click.UsageError):
-        message = f"{error.format_message()}{_help_hint(error)}"
     elif isinstance(error, click.ClickException):
         message = error.format_message()
     elif isinstance(error, OSError):
@@ -136,7 +151,7 @@ def _where(item: Tables) -> str:
 
 def _help_hint(error: click.UsageError) -> str:
     path = error.ctx.command_path if error.ctx is not None else "raceway"
-    return f" (try `{path} --help`, which has an example)"
+    return f"try `{path} --help`, which has an example"
 
 
 def _os_message(error: OSError) -> str:

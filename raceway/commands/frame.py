@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from raceway.commands.console import described, print_json, warn
+from raceway.commands.verbose import listen
 from raceway.errors import RacewayError
 
 if TYPE_CHECKING:
@@ -69,9 +70,15 @@ def on_scene(command: F) -> F:
 
 
 def common(command: F) -> F:
-    """--json and --debug, which every command takes; ``console`` reads both from the command line, too."""
+    """--json, -v and --debug, which every command takes; ``console`` reads --json and --debug from the command line, too."""
     command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
+    command = click.option(
+        "-v", "--verbose", is_flag=True, expose_value=False, callback=listen, help="Say on standard error what is computed."
+    )(command)
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
+
+
+explained = click.option("--explain", is_flag=True, help="Notes on the screen in full, as they stand in the results.")
 
 
 def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
@@ -100,8 +107,11 @@ def show_progress(remaining: bool = False, waiting: str | None = None) -> Progre
 
 def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:
     """Write files; hand a failure back, so that what was computed is shown before it is reported."""
+    from raceway.commands.progress import ProgressBar
+
     try:
-        files += [str(path) for path in write()]
+        with ProgressBar("writing"):
+            files += [str(path) for path in write()]
     except RacewayError as error:
         return error
     return None

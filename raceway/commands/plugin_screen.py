@@ -12,6 +12,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from raceway.commands.screen import Words, written
 from raceway.framework.contracts import plural
 from raceway.storage.tables import ReadTables, Tables
 
@@ -52,11 +53,11 @@ def plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:
             table = Table.grid(padding=(0, 2))
             table.add_column(min_width=20, no_wrap=True)
             table.add_column(min_width=12)
-            table.add_column(style="dim", overflow="fold")
+            table.add_column()
             for option in row["options"]:
                 default = "" if option["default"] is None else str(option["default"])
                 unit = f" [{option['unit']}]" if option["unit"] else ""
-                table.add_row(escape(option["name"]), escape(default), escape(option["help"] + unit))
+                table.add_row(escape(option["name"]), Words(default), Words(option["help"] + unit, "dim"))
             parts.append(Text.assemble("  ", (row["name"], "cyan"), f"  {row['distribution']} {row['version']}"))
             if row["options"]:
                 parts.append(Padding(table, (0, 0, 0, 6)))
@@ -68,10 +69,10 @@ def conformity_screen(found: Conformity) -> RenderableType:
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
-    table.add_column(style="dim", overflow="fold")
+    table.add_column()
     for row in found.rows:
         status = Text(row.status, style="green" if row.good else "bold red")
-        table.add_row(escape(row.name), status, escape(f"{row.duty}: {row.message}" if row.message else row.duty))
+        table.add_row(escape(row.name), status, Words(f"{row.duty}: {row.message}" if row.message else row.duty, "dim"))
     good = sum(row.good for row in found.rows)
     verdict = "conforms" if found.conforms else "does not conform"
     title = f"{found.kind.replace('_', ' ')} '{found.name}' {verdict}: {good} of {len(found.rows)} checks"
@@ -79,6 +80,5 @@ def conformity_screen(found: Conformity) -> RenderableType:
 
 
 def new_plugin_screen(folder: Path, files: Sequence[str]) -> RenderableType:
-    listed = "\n".join(f"  {file}" for file in files)
     steps = f"pip install -e {folder} && python -m pytest {folder}"
-    return Text(f"written: {folder}\n{listed}\nnext: {steps}")
+    return Group(*written([str(folder), *files]), Text(f"next: {steps}", no_wrap=True, overflow="ignore"))

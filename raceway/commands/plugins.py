@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from raceway.commands.console import print_json
-from raceway.commands.frame import common, plugin_files, show
+from raceway.commands.frame import common, plugin_files, show, show_progress
 from raceway.commands.inputs import faults
 from raceway.errors import RacewayError
 from raceway.framework.registry import default_registry, registry_with
@@ -72,7 +72,8 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
     from raceway.commands import plugin_screen
     from raceway.testing import check_named
 
-    conformity = check_named(name, registry_with(plugins))
+    with show_progress(waiting=f"checking {name}"):
+        conformity = check_named(name, registry_with(plugins))
     show(conformity.to_dict(), as_json, None, lambda: plugin_screen.conformity_screen(conformity))
     return 0 if conformity.conforms else 1
 

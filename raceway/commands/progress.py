@@ -1,11 +1,16 @@
-"""A progress bar on standard error, on a terminal, for what takes longer than a second.  Part of ``raceway.cli``."""
+"""A progress bar on standard error, on a terminal, for what takes longer than a second.  Part of ``raceway.cli``.
+
+Each new thing that is told of goes to the logger ``raceway``, too, which ``-v`` shows.
+"""
 
 from __future__ import annotations
 
+import logging
+import re
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -14,12 +19,16 @@ if TYPE_CHECKING:
 _PATIENCE_S = 1.0
 #: What a function of the package takes as ``progress``: True for a bar on a terminal, or what is called with what, done, total.
 ShowProgress = bool | Callable[[str, int, int], None] | None
+_LOGGER = logging.getLogger("raceway")
+#: What follows in a description is news of the same thing.
+_NEWS = re.compile(r"[,:;(]")
 
 
 class ProgressBar:
     """Shows what runs and how far it is; silent where nobody looks.
 
-    Called as ``bar(what, done, total)``; ``total`` 0 means that nobody knows.
+    Called as ``bar(what, done, total)``; ``total`` 0 means that nobody knows.  A bar inside another one says what it does in
+    that one: a screen has a single bar.
 
     Parameters
     ----------
@@ -27,6 +36,8 @@ class ProgressBar:
     patience : seconds before anything is drawn
     remaining : show how many are done and the time left, too: for parts that take about the same time each
     """
+
+    _shown: ClassVar[ProgressBar | None] = None
 
     def __init__(
         self, what: str, console: Console | None = None, patience: float = _PATIENCE_S, remaining: bool = False
@@ -36,12 +47,19 @@ class ProgressBar:
         self.console = console or Console(stderr=True)
         self._what, self._remaining = what, remaining
         self._bar: Progress | None = None
+        self._around: ProgressBar | None = None
+        self._told = ""
         self._over = threading.Event()
         self._lock = threading.Lock()
         self._timer = threading.Timer(patience, self._draw)
         self._timer.daemon = True
 
     def __enter__(self) -> Self:
+        self._around, ProgressBar._shown = ProgressBar._shown, self
+        if self._around is not None:
+            self(self._what, 0, 0)
+            return self
+        self._log(self._what)
         if self.console.is_terminal:
             from rich.progress import (
                 BarColumn,
@@ -68,6 +86,7 @@ class ProgressBar:
         return self
 
     def __exit__(self, *_: object) -> None:
+        ProgressBar._shown = self._around
         if self._bar is None:
             return
         self._timer.cancel()
@@ -76,8 +95,18 @@ class ProgressBar:
             self._bar.stop()
 
     def __call__(self, what: str, done: int, total: int) -> None:
+        if self._around is not None:
+            self._around(what, done, total)
+            return
+        self._log(what)
         if self._bar is not None:
             self._bar.update(self._task, description=what or self._what, completed=done, total=total or None)
+
+    def _log(self, what: str) -> None:
+        thing = _NEWS.split(what)[0]
+        if what and thing != self._told:
+            self._told = thing
+            _LOGGER.info("%s", what)
 
     def _draw(self) -> None:
         with self._lock:

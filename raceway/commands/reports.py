@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from raceway.commands.progress import ProgressBar
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.sources import blamed
 
@@ -39,7 +40,7 @@ def write_reports(reports: Sequence[Chosen], result: Result, folder: Path, files
     failures = []
     for entry, report in reports:
         try:
-            with blamed(str(entry), "write()"):
+            with ProgressBar(f"report {entry.name}"), blamed(str(entry), "write()"):
                 files += [str(path) for path in report.write(result, folder)]
         except PluginError as why:
             failures.append(str(why))

@@ -3,7 +3,6 @@
 plan           the plan of a scene
 parts          parts that are kept or left out, each with its reason;  decisions: on coordinates, balls, bodies, motion, output
 combinations   combinations that cannot run
-unused         keys of a scene without effect
 implausible    values that are possible and unlikely
 modules        modules that a run imports
 recording      turns, steps and samples of a motion

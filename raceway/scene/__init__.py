@@ -9,5 +9,6 @@ schema      JSON schema of a scene file
 catalogue   bearing presets
 requires    plug-ins that a scene needs
 rig         a test rig around the bearing
+unused      keys without effect, and those that a change makes so
 inner_ring  mass, inertia and growth of the inner ring from its dimensions
 """

@@ -39,7 +39,7 @@ PLUGIN_TABLES = {
 }
 #: Those of them that may be absent, which means something.
 OPTIONAL_TABLES = ("excitation", "mesh")
-#: Tables whose kinds are swapped most: keys of another kind stay without effect, which ``raceway.planning.unused`` tells.
+#: Tables whose kinds are swapped most: keys of another kind stay without effect, which ``raceway.scene.unused`` tells.
 SWAPPED_TABLES = ("bodies",)
 #: Bytes of a scene file at most.
 _LONGEST = 2**24

@@ -70,13 +70,20 @@ class Given:
         return found
 
     def plain(self, registry: Registry) -> Tables:
-        """The tables with all changes, numbers in the keys' units, the title that tells it, and files that start at the folder."""
-        from raceway.scene.file import numbers_only, titled, value_at, with_paths
+        """The tables with all changes, numbers in the keys' units, the title that tells it, and files that start at the folder.
+
+        Keys that the changes take their effect from are left out.
+        """
+        from raceway.scene.file import numbers_only, titled, value_at
+        from raceway.scene.unused import without_inherited
 
         tables = numbers_only(self.merged(), registry)
         told = [(key, None if value is None else value_at(tables, key)) for key, value in self.changes]
-        tables = titled(tables, self.name, told)
-        return copy.deepcopy(tables) if self.folder is None else with_paths(tables, self.folder, registry)
+        tables = self._placed(tables, registry)
+        if self.changes:
+            base = self._placed(numbers_only(self.tables, registry), registry)
+            tables = without_inherited(base, tables, [key for key, _ in self.changes], registry)
+        return titled(tables, self.name, told)
 
     def scene(self, registry: Registry) -> Scene:
         """The scene, every key checked.
@@ -89,6 +96,12 @@ class Given:
         from raceway.scene.file import scene_from_dict
 
         return attrs.evolve(scene_from_dict(self.plain(registry), registry), given=self)
+
+    def _placed(self, tables: ReadTables, registry: Registry) -> Tables:
+        """A copy with files that start at the folder."""
+        from raceway.scene.file import with_paths
+
+        return copy.deepcopy(dict(tables)) if self.folder is None else with_paths(tables, self.folder, registry)
 
     def merged(self) -> Tables:
         """The tables with all changes, as they were said."""

@@ -18,7 +18,7 @@ from raceway.core.patches.history import History
 from raceway.core.ring.increment import Increment
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
-from raceway.planning.unused import unused
+from raceway.scene.unused import unused
 from tests.patches.test_bearing import model, scene
 from validation.reference.mindlin import Mindlin
 from validation.single import single

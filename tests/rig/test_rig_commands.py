@@ -215,7 +215,7 @@ def test_options_that_contradict_each_other_or_make_no_sense(tmp_path):
     for options, words in (
         (["--run-out", "5,70", "--slow-roll", "b.csv"], "the slow roll tells it already"),
         (["--run-out", "5"], "for instance 5.0,70"),
-        (["--run-out", "-5,3"], "at least 0 um"),
+        (["--run-out", "-5,3"], "at least 0 µm"),
         (["--set", "load.axial=0"], "must be the axial load of the measurement"),
     ):
         found = invoke(*base, *options)

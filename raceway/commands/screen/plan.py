@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
-from rich.text import Text
 
 from raceway.commands.screen.text import Row, grouped, number, sections
+from raceway.commands.screen.wrapping import Words
 from raceway.storage.tables import ReadTables
 
 
@@ -32,7 +31,7 @@ def plan_screen(title: str, plan: ReadTables) -> RenderableType:
     ]
     parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"])]
     parts += [_reasons("Modules not imported, hence not compiled", unused), sections(rows)]
-    return Group(Text(title, style="bold"), *parts)
+    return Group(Words(title, "bold"), *parts)
 
 
 def _mesh_rows(mesh: ReadTables) -> list[Row]:
@@ -50,7 +49,7 @@ def _mesh_rows(mesh: ReadTables) -> list[Row]:
 def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType:
     table = Table.grid(padding=(0, 2))
     table.add_column(width=32)
-    table.add_column(style="dim", overflow="fold")
+    table.add_column()
     for item in items:
-        table.add_row(escape(item["part"]), escape(item["why"]))
-    return Group(Text(heading, style="bold"), Padding(table, (0, 0, 0, 2)))
+        table.add_row(Words(item["part"]), Words(item["why"], "dim"))
+    return Group(Words(heading, "bold"), Padding(table, (0, 0, 0, 2)))

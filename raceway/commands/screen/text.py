@@ -2,39 +2,56 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from raceway.commands.screen.wrapping import Words
 from raceway.framework.shown import number as number
 from raceway.framework.shown import number_within as number_within
-from raceway.storage.tables import ReadTables
 
 Row = tuple[str, str, str]
 
 T = TypeVar("T")
 
+#: Widths of the first two columns of a section: the rest of 80 is left to the remark.
+_QUANTITY, _VALUE = 22, 16
+
 
 def sections(rows: Iterable[Row]) -> RenderableType:
-    """Quantity, value, remark; a row without a value is a heading with its remark."""
+    """Quantity, value, remark; a row without a value is a heading with its remark, or a remark alone where it has no quantity."""
     parts: list[RenderableType] = []
+    table = _section()
     for quantity, value, remark in rows:
-        if not value:
-            parts.append(Text.assemble((quantity, "bold"), (f"  {remark}" if remark else "", "dim")))
-            table = Table.grid(padding=(0, 2))
-            table.add_column(width=24)
-            table.add_column(justify="right", min_width=16, no_wrap=True)
-            table.add_column(style="dim", overflow="fold")
-            parts.append(Padding(table, (0, 0, 0, 2)))
-        else:
-            table.add_row(escape(quantity), escape(value), escape(remark))
+        if value:
+            table.add_row(Words(quantity), escape(value), Words(remark, "dim"))
+            continue
+        if quantity:
+            parts.append(Words(quantity, "bold"))
+        if remark:
+            parts.append(Words(remark, "dim", indent=2))
+        table = _section()
+        parts.append(Padding(table, (0, 0, 0, 2)))
     return Group(*parts)
+
+
+def _section() -> Table:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(width=_QUANTITY)
+    table.add_column(justify="right", min_width=_VALUE, no_wrap=True)
+    table.add_column()
+    return table
+
+
+def micro(text: str) -> str:
+    """A text with the sign of micrometres that screens have, where what it comes from is written in ASCII."""
+    return re.sub(r"\bum\b", "µm", text)
 
 
 def tilt_words(tilt: float | str) -> str:
@@ -61,23 +78,3 @@ def grouped(bodies: Mapping[str, T]) -> list[tuple[str, T]]:
         else:
             balls[at] = said, balls[at][1] + 1
     return rows + [(f"balls ({count})", said) for said, count in balls]
-
-
-def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
-    """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned."""
-    table = Table(title=title or None, title_justify="left", header_style="bold", box=SIMPLE_HEAD, pad_edge=False)
-    keys = list(dict.fromkeys(key for row in rows for key in row))
-    for key in keys:
-        numeric = any(isinstance(row.get(key), float | int) for row in rows)
-        table.add_column(
-            key if "." in key else key.replace("_", " "), justify="right" if numeric else "left", overflow="fold"
-        )
-    for row in rows:
-        table.add_row(*(_cell(row.get(key)) for key in keys))
-    return table
-
-
-def _cell(value: object) -> str:
-    if isinstance(value, bool):
-        return "[green]yes[/]" if value else "[red]no[/]"
-    return escape(number(value) if isinstance(value, float) else "-" if value is None else str(value))

@@ -84,7 +84,8 @@ def article(given: ArticleOptions) -> int:
     \b
     Example:
       raceway study article --bodies rigid --friction 0
-      raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000
+      raceway study article examples/b7206.toml \\
+          --set rotor.mass=1.5 --axial 400,1000,2000
     """  # fmt: skip
     registry = registry_with(given.plugins)
     from raceway.studies.article.design import ARTICLE, article_tables, design
@@ -102,12 +103,11 @@ def article(given: ArticleOptions) -> int:
     pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "article-rows.jsonl"
-    with show_progress() as progress:
+    with keeping("curves", kept), show_progress() as progress:
         from raceway.studies.article.files import write
         from raceway.studies.article.study import article as study
 
-        with keeping("curves", kept):
-            found = study(made, given.processes, kept, registry, given.plugins, progress)
+        found = study(made, given.processes, kept, registry, given.plugins, progress)
         progress("writing", 0, 0)
         content, files = found.to_dict(), list[str]()
         failed = attempt(lambda: write(found, folder, pictures, command), files) or found.fault

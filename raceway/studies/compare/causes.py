@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from raceway.studies.compare.findings import Findings
 
 
+#: Beginning of the sentence that says what decides.
+IN_SHORT = "In short:"
+
+
 def leading_axis(comparison: Findings) -> Axis | None:
     """The axis of numbers with most values among those with effects; the first of equals."""
     keys = next(iter(comparison.factorials.values())).keys if comparison.factorials else ()
@@ -173,7 +177,7 @@ def _in_short(comparison: Findings, leading: Axis, partner: Axis, others: list[s
         cause = f"mostly by {named(first)}" if first is not None and large else "by none of the other axes"
         parts.append(f"with {partner.key} = {shown(value)} {cause}")
     sense = f"whether K(w) rises or falls along {leading.key} is decided by {listed(turning)}; " if turning else ""
-    return f"In short: {sense}how much it changes is decided {listed(parts)}."
+    return f"{IN_SHORT} {sense}how much it changes is decided {listed(parts)}."
 
 
 def _least(factorial: Factorial, along: str, key: str, given: dict[str, int]) -> float:

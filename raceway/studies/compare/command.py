@@ -10,6 +10,7 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    explained,
     keeping,
     on_scene,
     out_folder,
@@ -29,6 +30,7 @@ from raceway.storage.files import writable
 @out_folder
 @click.option("--pictures/--no-pictures", default=True, help="Write the curves as PNG (default).")
 @plugin_files
+@explained
 @common
 def compare(
     scene: Path,
@@ -37,6 +39,7 @@ def compare(
     out: Path | None,
     pictures: bool,
     plugins: tuple[Path, ...],
+    explain: bool,
     as_json: bool,
 ) -> int:
     """Vary some keys of a scene and say which of them causes what: main effects and interactions.
@@ -46,7 +49,8 @@ def compare(
     \b
     Example:
       raceway compare examples/b7206.toml --set integrator.kind=periodic \\
-          --vary excitation.kind=unidirectional,bidirectional --vary excitation.speed_rpm=10980:15000:5
+          --vary excitation.kind=unidirectional,bidirectional \\
+          --vary excitation.speed_rpm=10980:15000:5
     """
     registry = registry_with(plugins)
     tables, mistakes = changed_tables(scene, changes, registry)
@@ -76,7 +80,8 @@ def compare(
         failed = attempt(lambda: comparison.picture(folder), files)
     from raceway.studies.compare.screen import compare_screen
 
-    show(content, as_json, failed, lambda: compare_screen(title, comparison.table(), comparison.words, files))
+    words = comparison.words if explain else comparison.short_words
+    show(content, as_json, failed, lambda: compare_screen(title, comparison.table(), words, files, not explain))
     with keeping("runs", kept):
         if stopped is not None:
             raise stopped

@@ -11,7 +11,7 @@ import attrs
 from raceway.errors import RacewayError
 from raceway.framework.shown import Fact, Shown, number_within
 from raceway.storage.tables import Tables
-from raceway.studies.compare.explain import explain
+from raceway.studies.compare.explain import explain, in_few_words
 from raceway.studies.compare.findings import QUANTITIES, Findings, Row
 from raceway.studies.many.axes import Axis, shown
 
@@ -47,6 +47,11 @@ class Comparison(Shown, Findings):
     def words(self) -> list[str]:
         """The effects and trends, a sentence each."""
         return explain(self)
+
+    @cached_property
+    def short_words(self) -> list[str]:
+        """Those of the words that a screen shows unless it is asked for all."""
+        return in_few_words(self)
 
     def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
@@ -143,8 +148,8 @@ def _k_of(row: Row) -> tuple[str, str]:
 def _screen_row(row: Row, names: dict[str, str], noted: bool) -> dict[str, str]:
     text = {name: shown(row.point[key]) for key, name in names.items()}
     k, z = (row.value(quantity) for quantity in QUANTITIES)
-    text["K N/um"] = "" if k is None else f"{k / 1e6:.3f}"
-    text["|Z| N/um"] = "" if z is None else f"{z / 1e6:.3f}"
+    text["K N/µm"] = "" if k is None else f"{k / 1e6:.3f}"
+    text["|Z| N/µm"] = "" if z is None else f"{z / 1e6:.3f}"
     text["error %"] = "" if k is None else f"{100.0 * row.error:.2g}"
     if noted:
         text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""

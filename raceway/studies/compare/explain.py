@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from raceway.studies.compare.causes import causes, leading_axis
+from raceway.studies.compare.causes import IN_SHORT, causes, leading_axis
 from raceway.studies.compare.effects import Effect, Factorial
 from raceway.studies.compare.inertia import inertia
 from raceway.studies.compare.phrases import HARDLY, LABELS, listed, percent, settings, step
@@ -30,6 +30,14 @@ def explain(comparison: Findings) -> list[str]:
         words += _interactions(comparison, quantity)
     leading = leading_axis(comparison)
     return words + (causes(comparison, leading) if leading else []) + inertia(comparison, leading)
+
+
+def in_few_words(comparison: Findings) -> list[str]:
+    """What decides, then doubts and the effects on K: for a screen; ``explain`` has the rest."""
+    leading = leading_axis(comparison)
+    decisive = [text for text in (causes(comparison, leading) if leading else []) if text.startswith(IN_SHORT)]
+    found = _main_effects(comparison, "equivalent_stiffness") if comparison.factorials else [_why_no_effects(comparison)]
+    return [*decisive, *_doubts(comparison), *(f"Note: {note}." for note in comparison.notes), *found]
 
 
 def _what_was_run(comparison: Findings) -> str:
@@ -59,7 +67,9 @@ def _doubts(comparison: Findings) -> list[str]:
     words = []
     for reason, found in reasons.items():
         points = ", ".join(found[:4]) + (f" and {len(found) - 4} more" if len(found) > 4 else "")
-        words.append(f"Left out of the explanation, {len(found)} of {len(comparison.rows)} runs, {points}: {reason}.")
+        words.append(
+            f"Left out of the explanation, {len(found)} of {len(comparison.rows)} runs, {points}: {reason.rstrip('.')}."
+        )
     if comparison.held and words:
         words.append(
             f"Some of them stand at the ends of the axes, so the effects hold for {settings(comparison.held)} only."
@@ -92,10 +102,10 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             if effect is not largest and largest.share > 0.9:
                 share = f"{100.0 * effect.share / (1.0 - largest.share):.2g} % of the rest"
             mixed = ", a mean of rises and falls" if _mixed(factorial, key) else ""
-            change = f"{percent(effect.log_change)} ({(effect.difference or 0.0) / 1e6:+.2f} N/um; {share}{mixed})"
+            change = f"{percent(effect.log_change)} ({(effect.difference or 0.0) / 1e6:+.2f} N/µm; {share}{mixed})"
             parts.append(f"{step(comparison.axis(key))} changes it by {change}")
     none = "no axis is seen to move it" if hidden else "no axis moves it"
-    words = [f"{label} lies between {low:.2f} and {high:.2f} N/um. On average {'; '.join(parts) or none}."]
+    words = [f"{label} lies between {low:.2f} and {high:.2f} N/µm. On average {'; '.join(parts) or none}."]
     if hidden:
         words.append(
             f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {listed(hidden)}."

@@ -26,7 +26,7 @@ def inertia(comparison: Findings, leading: Axis | None) -> list[str]:
     masses = f"{min(mass):.3f}" if max(mass) - min(mass) < 5e-4 else f"{min(mass):.3f} to {max(mass):.3f}"
     added = "less than 0.01" if damping < 1e-4 else f"up to {100 * damping:.2g}"
     less = (
-        f"|Z| is K(w) less m w^2, with m = {masses} kg: {min(force) / 1e6:.2f} to {max(force) / 1e6:.2f} N/um, which is "
+        f"|Z| is K(w) less m w^2, with m = {masses} kg: {min(force) / 1e6:.2f} to {max(force) / 1e6:.2f} N/µm, which is "
         f"{min(share):.1f} to {max(share):.1f} % of K(w); damping adds {added} % of |Z|."
     )
     return [less] if leading is None else [less, *_opposite(comparison, leading)]

@@ -71,7 +71,7 @@ def draw(result: Tables) -> Figure:
         low, high = _limits(rows)
         for quantity, panel in zip(_LABELS, panels[:, place], strict=True):
             _curves(panel, rows, quantity, along, styles, (low, high))
-            panel.set_ylabel(f"{_LABELS[quantity]}  [N/um]" if place == 0 else "")
+            panel.set_ylabel(f"{_LABELS[quantity]}  [N/µm]" if place == 0 else "")
         panels[0, place].set_title(f"{column} = {value}" if column else "", fontsize=12)
         panels[-1, place].set_xlabel(along)
     figure.suptitle(f"K(w) and |Z| over {along}: {result['title']}", fontsize=13)
@@ -80,7 +80,7 @@ def draw(result: Tables) -> Figure:
 
 
 def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
-    """One quantity [N/um] of a comparison on axes."""
+    """One quantity [N/µm] of a comparison on axes."""
     known = {axis["key"]: axis["values"] for axis in result["axes"]}
     varied = [key for key, values in known.items() if len(values) > 1]
     along = max((key for key in varied if all(map(_is_number, known[key]))), key=lambda key: len(known[key]), default=None)
@@ -93,14 +93,14 @@ def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
     styles = {key: [_text(value) for value in known[key]] for key in varied if key != along}
     _curves(panel, result["rows"], quantity, along, styles, _limits(result["rows"]))
     panel.set_xlabel(along)
-    panel.set_ylabel(f"{_LABELS[quantity]}  [N/um]")
+    panel.set_ylabel(f"{_LABELS[quantity]}  [N/µm]")
     if handles := _handles(styles, any(map(in_doubt, result["rows"]))):
         panel.legend(handles=handles, frameon=False, fontsize=9)
     return panel
 
 
 def value_of(row: Tables, quantity: str) -> float | None:
-    """K(w) or |Z| of a row [N/um]; None where the run gave none."""
+    """K(w) or |Z| of a row [N/µm]; None where the run gave none."""
     found = row["result"].get("identification")
     if found is None:
         return None
@@ -204,7 +204,7 @@ def _dots_on(panel: Axes, rows: list[Tables], quantity: str) -> None:
         else:
             words = row["result"].get("status", "no value")
             panel.annotate(words, (0.02, place), xycoords=("axes fraction", "data"), va="center")
-    panel.set_xlabel(f"{_LABELS[quantity]}  [N/um]")
+    panel.set_xlabel(f"{_LABELS[quantity]}  [N/µm]")
     panel.grid(True, color="#e3e7eb", linewidth=0.8)
     panel.spines[["top", "right"]].set_visible(False)
 

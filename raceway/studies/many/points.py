@@ -15,12 +15,16 @@ from raceway.framework.registry import Registry
 from raceway.scene.file import PLUGIN_TABLES, numbers_only, scene_from_dict, value_at, with_value
 from raceway.scene.tables import TABLES
 from raceway.scene.units import is_quantity
+from raceway.scene.unused import without_inherited
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis, parse_axes, shown
 
 
 def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: list[str] | None = None) -> Tables:
-    """The scene's tables at one point; what is left out with a change of kind is said in ``notes``, once each."""
+    """The scene's tables at one point; what is left out with a change of kind is said in ``notes``, once each.
+
+    Keys of the scene that the point takes their effect from are left out without a word.
+    """
     changed = dict(tables)
     # Kinds first: what another axis sets must not be taken for an option of the old kind.
     for key, value in sorted(point.items(), key=lambda item: not item[0].endswith(".kind")):
@@ -33,7 +37,7 @@ def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: 
                 if notes is not None and note not in notes:
                     notes.append(note)
         changed = with_value(changed, key, value)
-    return changed
+    return without_inherited(tables, changed, point, registry)
 
 
 def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tables:

@@ -76,7 +76,8 @@ def study_map(given: MapOptions) -> int:
     \b
     Example:
       raceway study map
-      raceway study map --set excitation.amplitude=constant --set excitation.force=100 --vary load.axial=100,1000
+      raceway study map --vary load.axial=100,1000 \\
+          --set excitation.amplitude=constant --set excitation.force=100
     """
     from raceway.studies.map.design import design
 
@@ -89,12 +90,11 @@ def study_map(given: MapOptions) -> int:
     pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "map-rows.jsonl"
-    with show_progress() as progress:
+    with keeping("points", kept), show_progress() as progress:
         from raceway.studies.map.page import write_data, write_pictures
         from raceway.studies.map.study import study_map as study
 
-        with keeping("points", kept):
-            found = study(planned, given.processes, kept, registry, given.plugins, progress)
+        found = study(planned, given.processes, kept, registry, given.plugins, progress)
         progress("writing", 0, 0)
         written: list[str] = []
         failed = attempt(lambda: write_data(found, folder), written)
@@ -118,22 +118,23 @@ def _start(scene: Path | None, changes: tuple[str, ...], registry: Registry) -> 
 
 def _screen(content: Tables) -> RenderableType:
     from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
 
-    from raceway.commands.screen.text import written
+    from raceway.commands.screen import Words, rows_table, written
 
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    for name in ("angle", "tilt", "axial N", "k0 N/um", "k/k0 at the end", "contact lost", "edge", "saturates", "trend"):
-        table.add_column(name, justify="left" if name in ("tilt", "trend") else "right")
+    heads = {"contact lost": "contact_lost_from_rpm", "edge": "edge_from_rpm", "saturates": "saturates_at_rpm"}
+    rows = []
     for curve in content["curves"]:
         first, last = curve["first_stiffness"], curve["last_change"]
-        table.add_row(
-            f"{curve['contact_angle_deg']:g}", str(curve["tilt"]), f"{curve['axial']:g}",
-            "" if first is None else f"{1e-6 * first:.4g}", "" if last is None else f"{1.0 + last:.3g}",
-            *("" if curve[key] is None else f"{curve[key]:.0f}" for key in ("contact_lost_from_rpm", "edge_from_rpm", "saturates_at_rpm")),
-            curve["trend"],
-        )  # fmt: skip
-    words = [Text(text) for text in content["words"]]
+        rows.append(
+            {
+                "angle": f"{curve['contact_angle_deg']:g}",
+                "tilt": str(curve["tilt"]),
+                "axial N": f"{curve['axial']:g}",
+                "k0 N/µm": "" if first is None else f"{1e-6 * first:.4g}",
+                "k/k0 at the end": "" if last is None else f"{1.0 + last:.3g}",
+                **{head: "" if curve[key] is None else f"{curve[key]:.0f}" for head, key in heads.items()},
+                "trend": curve["trend"],
+            }
+        )
     head = f"{content['title']}\n{content['amplitude']}; speeds in r/min"
-    return Group(Text(head, style="bold"), table, *words, *written(content["files"]))
+    return Group(Words(head, "bold"), rows_table(rows), *map(Words, content["words"]), *written(content["files"]))

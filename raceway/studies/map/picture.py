@@ -194,7 +194,7 @@ def curves_figure(content: Tables) -> Figure:
             if row == len(axes[TILT]) - 1:
                 panel.set_xlabel("speed [1000 r/min]")
             if column == 0:
-                panel.set_ylabel("k [N/um]")
+                panel.set_ylabel("k [N/µm]")
     place: Tables = {"loc": "outside lower center", "ncols": 4} if narrow else {"loc": "outside right center"}
     figure.legend(frameon=False, fontsize=10, title="axial load", **place)
     words = "small signals at rest: dashed; open marks: balls lose contact"

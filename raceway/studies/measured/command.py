@@ -50,7 +50,7 @@ class IdentifyOptions(NamedTuple):
     "--slow-roll", type=PATH, metavar="FILE.csv",
     help="Signals at a low speed, whose run-out is subtracted.",
 )  # fmt: skip
-@click.option("--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [um] and angle from the mark [deg].")
+@click.option("--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [µm] and angle from the mark [deg].")
 @click.option(
     "--map", "columns", multiple=True, metavar='"HEAD=NAME"',
     help='A column by its head: "X [um]=y_um", or =ignore; repeat for more.',
@@ -71,9 +71,11 @@ def identify(given: IdentifyOptions) -> int:
     \b
     Example:
       raceway study rig examples/test_rig.toml --out rig
-      raceway identify rig/signals-13000rpm-400N.csv --scene examples/test_rig.toml \\
-          --set load.axial=400 --slow-roll rig/slow-roll-13000rpm-400N.csv
-      raceway identify orbit.csv --scene examples/test_rig.toml --map "Ch 1=y_um" --map "Ch 2=z_um"
+      raceway identify rig/signals-13000rpm-400N.csv \\
+          --scene examples/test_rig.toml --set load.axial=400 \\
+          --slow-roll rig/slow-roll-13000rpm-400N.csv
+      raceway identify orbit.csv --scene examples/test_rig.toml \\
+          --map "Ch 1=y_um" --map "Ch 2=z_um"
     """
     from raceway.scene.file import rig_of
 
@@ -128,6 +130,6 @@ def _vector(text: str | None) -> tuple[float, float] | None:
         amplitude, angle = float("nan"), 0.0
     if not (isfinite(amplitude) and isfinite(angle) and amplitude >= 0.0):
         raise SceneError.at(
-            "--run-out", text, "must be an amplitude of at least 0 um and an angle in deg, for instance 5.0,70"
+            "--run-out", text, "must be an amplitude of at least 0 µm and an angle in deg, for instance 5.0,70"
         )
     return 1e-6 * amplitude, angle

@@ -140,7 +140,7 @@ class Found:
             out.append("no run-out was subtracted: give --slow-roll or --run-out")
         if abs(state.stiffness / self.scene - 1.0) > _UNLIKE:
             out.append(
-                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene:.4g} N/um: is it the bearing "
+                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene:.4g} N/µm: is it the bearing "
                 "of the rig, in the rig's arrangement? Its tilt enters the result"
             )
         if abs(state.deflection) < _SMALL * abs(state.sensor):
@@ -179,8 +179,8 @@ def identify(
     found = order(turned)
     if found.backward > abs(found.line):
         raise RacewayError(
-            f"the orbit turns from z towards y, against the shaft ({1e6 * found.backward:.3g} um backward, "
-            f"{1e6 * abs(found.line):.3g} um forward): change the sign of one column, or swap y and z"
+            f"the orbit turns from z towards y, against the shaft ({1e6 * found.backward:.3g} µm backward, "
+            f"{1e6 * abs(found.line):.3g} µm forward): change the sign of one column, or swap y and z"
         )
     angle = radians(rig.unbalance_angle_deg)
     run_out = run_out or RunOut()
@@ -197,7 +197,7 @@ def identify(
         state = invert(line, held, line_at)
     except ConvergenceError as why:
         raise ConvergenceError(
-            f"no bearing like the scene's moves the sensor by {1e6 * abs(line_at):.4g} um at {found.speed * 30 / pi:.0f} r/min "
+            f"no bearing like the scene's moves the sensor by {1e6 * abs(line_at):.4g} µm at {found.speed * 30 / pi:.0f} r/min "
             f"({why}). Are unbalance, sensor's place and run-out right?"
         ) from None
     other = with_tilt_of(line, state, fourier)

@@ -125,7 +125,7 @@ def _refuse_clipped(source: str, name: str, signal: np.ndarray) -> None:
     for word, end in (("top", values[-1]), ("bottom", values[0])):
         there = float((signal == end).mean())
         if there > 2.0 * usual + _AT_THE_END:
-            text = f"{100.0 * there:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} um: the signal is cut off"
+            text = f"{100.0 * there:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} µm: the signal is cut off"
             raise SceneError.at(
                 source, None, f"{text} there. Take a larger range of the sensor or of its amplifier, and record again"
             )

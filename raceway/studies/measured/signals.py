@@ -44,7 +44,7 @@ def _spread(name: str, values: np.ndarray) -> str:
     """Half the range of a displacement or force."""
     half = 0.5 * float(np.ptp(values))
     if name in ("y", "z"):
-        return f" (+- {1e6 * half:.4g} um)"
+        return f" (+- {1e6 * half:.4g} µm)"
     return f" (+- {half:.4g} N)" if name.startswith("force") else ""
 
 

@@ -11,6 +11,7 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
+    explained,
     keeping,
     out_option,
     plugin_files,
@@ -39,6 +40,7 @@ class PrecisionOptions(NamedTuple):
     out: Path | None
     pictures: bool
     plugins: tuple[Path, ...]
+    explain: bool
     as_json: bool
 
 
@@ -55,6 +57,7 @@ class PrecisionOptions(NamedTuple):
 @out_option(f"{RESULTS}/TITLE-precision")
 @click.option("--pictures/--no-pictures", default=True, help="Draw error against run time as PNG (default).")
 @plugin_files
+@explained
 @common
 @record(PrecisionOptions)
 def precision(given: PrecisionOptions) -> int:
@@ -64,7 +67,8 @@ def precision(given: PrecisionOptions) -> int:
 
     \b
     Example:
-      raceway precision examples/b7206.toml --vary integrator.kind=newmark,central_difference \\
+      raceway precision examples/b7206.toml \\
+          --vary integrator.kind=newmark,central_difference \\
           --vary integrator.steps_per_turn=45,90,180,360
     """
     registry = registry_with(given.plugins)
@@ -75,24 +79,28 @@ def precision(given: PrecisionOptions) -> int:
     pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder / "precision-rows.jsonl"
-    with show_progress() as progress:
+    with keeping("rows", kept), show_progress() as progress:
         from raceway.studies.precision.front import precision as study
 
-        with keeping("rows", kept):
-            found = study(
-                tables,
-                given.vary,
-                reference=given.reference,
-                repeats=given.repeats,
-                limit_s=given.limit,
-                kept=kept,
-                progress=progress,
-            )
+        found = study(
+            tables,
+            given.vary,
+            reference=given.reference,
+            repeats=given.repeats,
+            limit_s=given.limit,
+            kept=kept,
+            progress=progress,
+        )
     content, files = found.to_dict(), list[str]()
     failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
     if failed is None:
         failed = verdict(content, found.converged, bool(given.reference))
     from raceway.studies.precision.screen import precision_screen
 
-    show(content, given.as_json, failed, lambda: precision_screen(content["title"], found.table(), content["words"], files))
+    show(
+        content,
+        given.as_json,
+        failed,
+        lambda: precision_screen(content["title"], found.table(), content["words"], files, given.explain),
+    )
     return 0

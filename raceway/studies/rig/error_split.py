@@ -74,10 +74,10 @@ def _disturbed(rig: Rig, held: Bearing, state: State, quiet: Signals) -> list[Ca
         return Cause(kind, what, _error(identify(record(rig, answer, signals, own.seed), rig, held, slow=slow).state, state))
 
     run_out = attrs.evolve(quiet, run_out=own.run_out)
-    size = f"{1e6 * own.run_out:g} um"
+    size = f"{1e6 * own.run_out:g} µm"
     return [
         read("noise", f"white noise, {own.noise_db:g} dB below the response", attrs.evolve(quiet, noise_db=own.noise_db)),
-        read("noise", f"drift of {1e6 * own.drift:g} um", attrs.evolve(quiet, drift=own.drift)),
+        read("noise", f"drift of {1e6 * own.drift:g} µm", attrs.evolve(quiet, drift=own.drift)),
         read("run-out", f"{size}, slow roll subtracted", run_out, roll=True),
         read("run-out", f"{size}, left in", run_out),
         read("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", attrs.evolve(quiet, speed_drift=_SPEED_DRIFT)),

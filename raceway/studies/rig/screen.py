@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
-from rich.text import Text
 
-from raceway.commands.screen import number, rows_table, sections, written
+from raceway.commands.screen import Words, number, rows_table, sections, written
 from raceway.storage.tables import ReadTables
 
 #: Corrections of the article's kind that the screen shows; all of them are in rig.json.
@@ -20,19 +19,19 @@ def rig_screen(study: ReadTables, files: Sequence[str]) -> RenderableType:
     worst = study["worst"]
     speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in study["critical_speed_rpm"].items())
     parts: list[RenderableType] = [
-        Text(study["title"], style="bold"),
-        Text(f"first critical speed {speeds}", style="dim"),
+        Words(study["title"], "bold"),
+        Words(f"first critical speed {speeds}", "dim"),
         rows_table(rows),
-        Text(
+        Words(
             "x: the bearing's own motion; printed, derived: K by such a correction over the true K; found: by the inverted beam"
         ),
-        Text(
+        Words(
             f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
         ),
         rows_table(_causes(study["worst_by_cause"]), "Largest error of K by one cause at a time"),
     ]
     parts += [
-        Text(f"failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", style="red")
+        Words(f"failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", "red")
         for one in study["failed"]
     ]
     return Group(*parts, *written(files))
@@ -44,9 +43,9 @@ def _point(row: ReadTables) -> dict[str, str]:
     return {
         "r/min": f"{row['speed_rpm']:.0f}",
         "axial N": f"{row['axial_n']:.0f}",
-        "x um": f"{1e6 * true['deflection_m']:.2f}",
-        "sensor um": f"{1e6 * true['sensor_m']:.2f}",
-        "K N/um": f"{1e-6 * true['equivalent_stiffness']:.2f}",
+        "x µm": f"{1e6 * true['deflection_m']:.2f}",
+        "sensor µm": f"{1e6 * true['sensor_m']:.2f}",
+        "K N/µm": f"{1e-6 * true['equivalent_stiffness']:.2f}",
         **{words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()},
         "found %": f"{100 * found['error']:+.3f}",
         "+- %": f"{100 * found['relative_uncertainty']:.2f}",
@@ -92,6 +91,6 @@ def identify_screen(found: ReadTables, files: Sequence[str]) -> RenderableType:
     rows.append(("K, tilt locked", number(1e-6 * locked["equivalent_stiffness"], "N/µm"), f"{wide}; {locked['definition']}"))
     rows.append(("Relative change of K if", "", "what is taken as known were otherwise"))
     rows += [(one["change"], f"{100 * one['stiffness']:+.2f} %", "") for one in found["sensitivities"]]
-    parts: list[RenderableType] = [Text(found["title"], style="bold"), sections(rows)]
-    parts += [Text(f"warning: {text}", style="yellow") for text in found["warnings"]]
+    parts: list[RenderableType] = [Words(found["title"], "bold"), sections(rows)]
+    parts += [Words(f"warning: {text}", "yellow") for text in found["warnings"]]
     return Group(*parts, *written(files))

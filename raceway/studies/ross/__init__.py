@@ -5,5 +5,5 @@ coefficients   kyy, kyz, ..., cyy, ... over speed and frequency, from a sweep
 file           a file that ROSS reads
 reading        interpolation by ROSS 2
 table          all of it as an object: the element, the file
-front          ``raceway.export_ross``;  command: ``raceway export``;  screen: what it prints
+front          ``raceway.export_ross``;  command: ``raceway export``;  points: its rows;  screen: what it prints
 """

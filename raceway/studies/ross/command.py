@@ -59,7 +59,8 @@ def export(given: ExportOptions) -> int:
 
     \b
     Example:
-      raceway export raceway-out/B7206C-sweep --ross bearing.toml --at load.axial=1000
+      raceway export raceway-out/B7206C-sweep --ross bearing.toml \\
+          --at load.axial=1000
     \b
     K(n) from 0 r/min on, the tangent of the equilibrium:
       raceway sweep examples/b7206.toml --set identifier.kind=tangent \\

@@ -157,7 +157,7 @@ class RossTable(Shown):
         return {name: values for name, values in given.items() if values is not None}
 
     def _shown(self) -> tuple[str, list[Fact]]:
-        from raceway.studies.ross.screen import point_rows
+        from raceway.studies.ross.points import point_rows
 
         rows, constant = point_rows(self.to_dict())
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())

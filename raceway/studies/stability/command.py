@@ -75,11 +75,10 @@ def stability(given: StabilityOptions) -> int:
     folder = writable(given.out or RESULTS / name)
     tell_faults(registry)
     kept = folder / "stability-rows.jsonl"
-    with show_progress() as progress:
+    with keeping("cases", kept), show_progress() as progress:
         from raceway.studies.stability.study import stability as study
 
-        with keeping("cases", kept):
-            found = study(tables, given.only, given.processes, kept, registry, given.plugins, progress)
+        found = study(tables, given.only, given.processes, kept, registry, given.plugins, progress)
     content, files = found.to_dict(), list[str]()
     failed = attempt(lambda: found.write(folder), files) or found.fault
     from raceway.studies.stability.screen import stability_screen

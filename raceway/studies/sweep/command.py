@@ -76,8 +76,10 @@ def sweep(given: SweepOptions) -> int:
 
     \b
     Example:
-      raceway sweep examples/b7206.toml --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200,2000
-      raceway sweep examples/steady_orbit.toml --list points.csv --executor joblib --workers 4
+      raceway sweep examples/b7206.toml \\
+          --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200
+      raceway sweep examples/steady_orbit.toml --list points.csv \\
+          --executor joblib --workers 4
     """
     from raceway.studies.sweep import sweep as study
     from raceway.studies.sweep.front import executor_of, prepared_sweep

@@ -7,9 +7,8 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
-from rich.text import Text
 
-from raceway.commands.screen.text import rows_table, written
+from raceway.commands.screen import Words, micro, rows_table, written
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:
@@ -40,13 +39,15 @@ def sweep_screen(content: ReadTables, rows: Iterable[ReadTables], files: Sequenc
             reasons.append(f"{point_words(row['point'])}: {row['reason'].splitlines()[0]}")
     states, total = content["states"], content["states"]["total"]
     counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "running", "waiting") if states[name])
-    parts: list[RenderableType] = [Text(content["title"], style="bold"), rows_table(shown)]
+    parts: list[RenderableType] = [Words(content["title"], "bold"), rows_table(shown)]
     if total > len(shown):
-        parts.append(Text(f"and {total - len(shown)} more points in {content['store']}", style="dim"))
-    parts.append(Text(f"{total} points: {counted}"))
-    parts += [Text(f"failed: {reason}") for reason in reasons]
+        parts.append(Words(f"and {total - len(shown)} more points in {content['store']}", "dim"))
+    parts.append(Words(f"{total} points: {counted}"))
+    parts += [Words(f"failed: {micro(reason)}") for reason in reasons]
     for count, text, point in told.values():
-        parts.append(Text(f"{count} point{'s warn' if count > 1 else ' warns'}: {text} (first at {point_words(point)})"))
+        parts.append(
+            Words(f"{count} point{'s warn' if count > 1 else ' warns'}: {micro(text)} (first at {point_words(point)})")
+        )
     return Group(*parts, *written(files))
 
 
@@ -59,9 +60,9 @@ def _sweep_row(row: ReadTables) -> dict[str, str]:
     text = {short[key]: shown(value) for key, value in row["point"].items()}
     k, z, kyy = values.get("equivalent_stiffness"), values.get("z_real"), values.get("stiffness")
     if k is not None and z is not None:
-        text |= {"K N/um": f"{k / 1e6:.3f}", "Re Z N/um": f"{z / 1e6:.3f}"}
+        text |= {"K N/µm": f"{k / 1e6:.3f}", "Re Z N/µm": f"{z / 1e6:.3f}"}
     else:
-        text |= {"K N/um": "", "Re Z N/um": ""}
-    text["kyy N/um"] = "" if kyy is None else f"{kyy[1][1] / 1e6:.3f}"
+        text |= {"K N/µm": "", "Re Z N/µm": ""}
+    text["kyy N/µm"] = "" if kyy is None else f"{kyy[1][1] / 1e6:.3f}"
     error = values.get("error_total")
     return {**text, "error %": "" if error is None else f"{100.0 * error:.2g}", "status": row["status"]}

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from raceway.studies.sweep.selection import Selection
 
 store_argument = click.argument("store", type=PATH)
+#: Beginning of a line that names a file.
+WRITTEN = "written: "
 at_option = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a value of an axis; repeat for more.")
 
 
@@ -56,7 +58,8 @@ def plot(given: PlotOptions) -> int:
 
     \b
     Example:
-      raceway plot raceway-out/B7206C-sweep --value p0 --x excitation.speed_rpm --at load.axial=1000
+      raceway plot raceway-out/B7206C-sweep --value p0 \\
+          --x excitation.speed_rpm --at load.axial=1000
     """
     require_matplotlib("read the values with raceway sweep --json or --csv")
     selection = selection_of(given.store, given.at)
@@ -107,11 +110,13 @@ def plot_words(content: Tables) -> list[str]:
     lines = [f"{content['value']} over {', '.join(axes)} ({content['kind']})"]
     if content["unfinished"]:
         lines.append("without result: " + ", ".join(f"{count} {state}" for state, count in content["unfinished"].items()))
-    return lines + [f"written: {name}" for name in content["files"]]
+    return lines + [f"{WRITTEN}{name}" for name in content["files"]]
 
 
 def told(lines: list[str], *tables: RenderableType) -> RenderableType:
     from rich.console import Group
-    from rich.text import Text
 
-    return Group(*tables, *(Text(line, no_wrap=line.startswith("written: "), overflow="ignore") for line in lines))
+    from raceway.commands.screen import Words, written
+
+    names = [line.removeprefix(WRITTEN) for line in lines if line.startswith(WRITTEN)]
+    return Group(*tables, *(Words(line) for line in lines if not line.startswith(WRITTEN)), *written(names))

@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from raceway.commands.screen.text import number
+from raceway.commands.screen import micro, number
 from raceway.storage.tables import ReadTables
 from raceway.studies.many.reference import BASES
 
@@ -28,7 +28,7 @@ def verify_screen(verification: ReadTables, passed: bool, every: bool = False) -
     every : a line for each number, not only the worst of each case and those that are off
     """
     table = Table(header_style="bold", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    table.add_column("number" if every else "case: the worst of its numbers", min_width=28, overflow="fold")
+    table.add_column("number" if every else "case: the worst of its numbers", min_width=28)
     for name, _ in _VERIFIED:
         table.add_column(name, justify="right", no_wrap=True)
     table.add_column("")
@@ -43,7 +43,8 @@ def verify_screen(verification: ReadTables, passed: bool, every: bool = False) -
             number(row["tolerance"], "", 2),
         )
         verdict = "[green]ok[/]" if row["ok"] else f"[red]off[/] {escape(row.get('note') or '')}"
-        table.add_row(f"  {escape(row['quantity'])}", *numbers, verdict)
+        quantity = escape(micro(row["quantity"]))
+        table.add_row(f"  {quantity}", *numbers, verdict)
         before = row["case"]
     counts = [f"{kept['within']} of {kept['of']} {BASES[basis]}" for basis, kept in verification["kept"].items()]
     return Group(table, Text(f"within their tolerance: {', '.join(counts)}", style="green" if passed else "red"))

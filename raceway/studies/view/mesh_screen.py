@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from rich.console import Group, RenderableType
-from rich.text import Text
 
-from raceway.commands.screen import Row, grouped, number, sections, written
+from raceway.commands.screen import Row, Words, grouped, number, sections, written
 from raceway.storage.tables import ReadTables
 
 
@@ -44,4 +43,4 @@ def mesh_screen(found: ReadTables) -> RenderableType:
     rows += [
         (name, cells, f"each: {words}" if name.startswith("balls") else words) for name, (cells, words) in grouped(bodies)
     ]
-    return Group(Text(found["title"], style="bold"), sections(rows), *written(found["files"]))
+    return Group(Words(found["title"], "bold"), sections(rows), *written(found["files"]))

@@ -2,15 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from contextlib import suppress
+
 import attrs
 
+from raceway.errors import RacewayError
 from raceway.framework.duties import bodies
 from raceway.framework.options import unused_options
+from raceway.framework.registry import Registry
+from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Scene
+from raceway.storage.tables import ReadTables, Tables
 
 
 def unused(scene: Scene) -> tuple[str, ...]:
-    """A sentence for each key that is given and has no effect: of the plug-ins by their own word, of the core here."""
+    """A sentence for each key that is given and has no effect."""
+    return tuple(f"`{path}` has no effect: {why}" for path, why in _idle(scene))
+
+
+def without_inherited(base: ReadTables, changed: ReadTables, said: Collection[str], registry: Registry) -> Tables:
+    """Changed tables without the keys of the base that lose their effect by the change: nobody said those for this scene.
+
+    Parameters
+    ----------
+    base : tables of a file;  changed : the same with some keys changed;  said : those keys, which stay and are told of
+
+    Notes
+    -----
+    A key that has no effect in the base either is the base's own mistake, and stays.  Tables that make no scene are left as
+    they are: what reads them says what is wrong.
+    """
+    result = dict(changed)
+    try:
+        lost = {path for path, _ in _idle(scene_from_dict(changed, registry))} - set(said)
+    except RacewayError:
+        return result
+    lost = {path for path in lost if not any(path.startswith(f"{key}.") for key in said)}
+    if lost:
+        with suppress(RacewayError):  # a base that is complete with the changes only has no mistakes of its own to tell of
+            lost -= {path for path, _ in _idle(scene_from_dict(base, registry))}
+    for path in lost:
+        name, _, key = path.partition(".")
+        if isinstance(result.get(name), dict):
+            result[name] = {word: value for word, value in result[name].items() if word != key}
+    return result
+
+
+def _idle(scene: Scene) -> list[tuple[str, str]]:
+    """Path and reason: of the plug-ins by their own word, of the core here."""
     plugins = {
         "bodies": scene.bodies,
         "contact": scene.contact.law,
@@ -18,12 +58,8 @@ def unused(scene: Scene) -> tuple[str, ...]:
         "identifier": scene.identifier.method,
         "excitation": scene.excitation,
     }
-    own = [
-        f"`{table}.{option}` has no effect: {why}"
-        for table, plugin in plugins.items()
-        for option, why in unused_options(plugin).items()
-    ]
-    return (*own, *(f"`{path}` has no effect: {why}" for path, why in _core(scene)))
+    own = [(f"{table}.{option}", why) for table, plugin in plugins.items() for option, why in unused_options(plugin).items()]
+    return [*own, *_core(scene)]
 
 
 def _core(scene: Scene) -> list[tuple[str, str]]:

@@ -1,0 +1,119 @@
+"""Sections of a run below its answer: equilibrium, dynamic stiffness, error, cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from raceway.commands.screen.notes import short
+from raceway.commands.screen.result_answer import loaded_ball, resolved, tangent_rows
+from raceway.commands.screen.text import Row, number, tilt_words
+from raceway.storage.tables import ReadTables
+
+
+def equilibrium_rows(result: ReadTables) -> list[Row]:
+    """Displacement and loads; the tangent stiffness where it is not the answer itself."""
+    found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
+    moved, dynamic = found["displacement"], result["identification"] is not None
+    rows = [
+        ("Equilibrium under the constant loads", "", ""),
+        ("displacement x", number(1e6 * moved["x"], "µm"), "axial, seats the bearing"),
+        ("displacement y, z", f"{_small(moved['y'])}, {_small(moved['z'])} µm", "radial"),
+    ]
+    if tilt != "locked":
+        tilts = ", ".join(_small(moved[name]) for name in ("tilt_y", "tilt_z"))
+        rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
+    rows += _mounted(found)
+    rows += [loaded_ball(result, "most")] if dynamic else []
+    rows.append(loaded_ball(result, "least"))
+    return rows + (tangent_rows(result) if dynamic else [])
+
+
+def _mounted(found: ReadTables) -> list[Row]:
+    """Preload and held axial force: mounted and running."""
+    rows, preload, held = [], found["preload"], found["held_axial"]
+    if preload is not None:
+        forces = ", ".join(f"{force:.5g}" for force in preload["rows_n"])
+        what = {"rigid": "the offset of the rows", "spring": "the second row's force"}[preload["kind"]]
+        how = f"running, without loads; mounted {preload['mounted_n']:g} N, {what} stays"
+        rows.append(("preload", number(preload["running_n"], "N"), how))
+        rows.append(("axial force of rows", f"{forces} N", "rows 1, 2 under the loads"))
+    if held is not None:
+        how = f"what the held displacement takes now; mounted {held['mounted_n']:g} N"
+        rows.append(("axial force", number(held["running_n"], "N"), how))
+    return rows
+
+
+def _small(metres: float) -> str:
+    """Micro-units; rounding noise of a symmetric state is shown as 0."""
+    return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
+
+
+def stiffness_rows(result: ReadTables, explain: bool) -> list[Row]:
+    """Parts of Z and the force that they belong to."""
+    found = result["identification"]
+    if found is None:
+        return []
+    z, across, definition = found["dynamic_stiffness"], found["dynamic_stiffness_imag_error"], found["definition"]
+    excited = result["scene"]["excitation"]["kind"]
+    lag = found["phase_lag_deg"], found["phase_lag_error_deg"]
+    return [
+        ("Dynamic stiffness Z", "", definition if explain else definition.partition(", ")[0]),
+        ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
+        ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
+        resolved("Z imaginary", 1e-6 * z["imag"], None if across is None else 1e-6 * across, "N/µm", "w C"),
+        resolved("phase lag", *lag, "deg", "displacement behind force"),
+    ]
+
+
+def error_rows(result: ReadTables, explain: bool) -> list[Row]:
+    """Relative errors of Z, each with how it was estimated; of a static scene those that are known."""
+    error, told = result["error"], {}
+    for name, how in error["how"].items():
+        told[name] = how if explain else short(how)
+    rows: list[Row] = [("Relative error of Z", "", "")]
+    static = result["identification"] is None
+    for name in ("total", "time_step", "transient", "identification", "mesh", "contact"):
+        value = error.get(name)
+        if value is not None or not static:
+            rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", told.get(name, "")))
+    if static:
+        return [("Relative error of stiffness", "", ""), *rows[1:]] if rows[1:] else []
+    known = [one for one in result["identification"].get("series", []) if one["error"] is not None]
+    if known:
+        worst = max(known, key=lambda one: one["error"])
+        how = f"at {worst['speed_rpm']:.6g} r/min; of {len(known)} windows, each with its own in result.json"
+        rows.insert(2, ("largest of the series", f"{worst['error']:.1e}", how))
+    return rows
+
+
+def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
+    """Steady motions under the same force, where more than one was found."""
+    if len(found) < 2:
+        return []
+    rows: list[Row] = [("Steady motions that were found", "", "")]
+    for k, one in enumerate(found):
+        z, word = one["dynamic_stiffness"], "unstable" if not one["stable"] else one["verdict"]
+        grows = f"{word}, multiplier {one['multiplier']:.4g} a turn, found {one['found']}{'; reported above' if one['taken'] else ''}"
+        value = f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j N/µm"
+        rows.append((f"Z of motion {k + 1}", value, f"{1e6 * one['amplitude_m']:.4g} µm; {grows}"))
+    return rows
+
+
+def cost_rows(cost: ReadTables) -> list[Row]:
+    """Time and memory."""
+    memory, threads = cost["peak_memory_bytes"] / 2**20, cost["threads"]
+    kept = "once; kept for the next run" if cost["compile_s"] else "kernels were in the cache"
+    told = f"{cost['steps']} steps, {memory:.0f} MiB, {threads} thread{'' if threads == 1 else 's'}"
+    return [
+        ("Cost", "", ""),
+        ("wall time", number(cost["wall_s"], "s", 3), told),
+        ("compiling, apart", number(cost["compile_s"], "s", 3), f"{kept} (raceway cache)"),
+    ]
+
+
+def stability_rows(found: ReadTables) -> list[Row]:
+    """How the motion ended; nothing where none was integrated."""
+    limit, drift = found["critical_time_step_s"], found["energy_drift"]
+    words = [] if limit is None else [f"explicit limit {limit:.3g} s"]
+    words += [] if drift is None else [f"energy drift {drift:.1e}"]
+    return [("Stability", "", ""), ("status", found["status"], ", ".join(words))] if words else []

@@ -1,0 +1,127 @@
+"""A table of rows with the same keys that fits any screen: numbers stay whole, columns that say nothing new are left out."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import attrs
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+from raceway.commands.screen.text import number
+from raceway.commands.screen.wrapping import Words, fixed
+from raceway.storage.tables import ReadTables
+
+if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions, RenderableType
+
+_NUMBER = re.compile(r"[+-]?\d[\d.]*(e[+-]?\d+)?( %)?[*~]*")
+#: Words of a cell or head up to which a column is not made narrower by breaking lines; blanks between columns.
+_WHOLE, _BETWEEN = 14, 2
+#: Head of the column that tells which rows belong together where one table is too wide.
+_PLACE = "#"
+
+
+def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
+    """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned.
+
+    Columns that hold the same in all of several rows are said in one line above.  What is wider than the screen goes on in a
+    second table, whose rows have the first one's numbers.
+    """
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    cells = {key: [_cell(row.get(key)) for row in rows] for key in keys}
+    same = [key for key in keys if len(rows) > 1 and len(set(cells[key])) == 1]
+    columns = tuple(_Column(_head(key), tuple(cells[key])) for key in keys if key not in same)
+    told = ", ".join(f"{_head(key)} {cells[key][0]}" for key in same if cells[key][0])
+    return _Rows(columns, title, f"the same in all rows: {told}" if told else "")
+
+
+@attrs.frozen
+class _Column:
+    """Head and cells, as text."""
+
+    head: str
+    cells: tuple[str, ...]
+
+    @property
+    def numeric(self) -> bool:
+        return all(_NUMBER.fullmatch(cell) or cell in ("", "-") for cell in self.cells)
+
+    @property
+    def whole(self) -> bool:
+        """Whether no cell is broken into lines: numbers and short texts."""
+        return self.numeric or max(map(len, self.cells), default=0) <= _WHOLE
+
+    @property
+    def most(self) -> int:
+        """Signs on one line."""
+        return max(map(len, (self.head, *self.cells)))
+
+    @property
+    def least(self) -> int:
+        """Signs that it needs, with its head and long texts in lines of one word each."""
+        broken = (self.head, *(() if self.whole else self.cells))
+        return max(map(len, (*_words(broken), *(self.cells if self.whole else ()))))
+
+
+def _words(texts: Sequence[str]) -> list[str]:
+    return [word for text in texts for word in re.split(r"[ \n]", fixed(text))]
+
+
+@attrs.frozen
+class _Rows:
+    """Tables that stand below each other where one would be too wide."""
+
+    columns: tuple[_Column, ...]
+    title: str
+    told: str
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
+        if self.title:
+            yield Text(self.title, style="italic")
+        if self.told:
+            yield Words(self.told, "dim")
+        for columns in self._blocks(options.max_width):
+            table = Table(header_style="bold", box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+            narrow = sum(column.most + _BETWEEN for column in columns) > options.max_width + _BETWEEN
+            for column in columns:
+                table.add_column(
+                    Words(column.head, "bold"),
+                    justify="right" if column.numeric else "left",
+                    width=column.least if narrow and column.whole else None,
+                    min_width=column.least,
+                )
+            for cells in zip(*(column.cells for column in columns), strict=True):
+                table.add_row(*map(Words, cells))
+            yield table
+
+    def _blocks(self, width: int) -> list[list[_Column]]:
+        """Columns in tables that fit; from the second on, and in the first then, rows are numbered."""
+        blocks = _packed(self.columns, width)
+        if len(blocks) == 1:
+            return blocks
+        count = len(self.columns[0].cells)
+        place = _Column(_PLACE, tuple(str(row + 1) for row in range(count)))
+        return [[place, *block] for block in _packed(self.columns, width - place.least - _BETWEEN)]
+
+
+def _packed(columns: Sequence[_Column], width: int) -> list[list[_Column]]:
+    blocks: list[list[_Column]] = [[]]
+    for column in columns:
+        if blocks[-1] and sum(one.least + _BETWEEN for one in (*blocks[-1], column)) > width + _BETWEEN:
+            blocks.append([])
+        blocks[-1].append(column)
+    return blocks
+
+
+def _head(key: str) -> str:
+    return key if "." in key else key.replace("_rpm", " r/min").replace("_", " ")
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return number(value) if isinstance(value, float) else "-" if value is None else str(value)
