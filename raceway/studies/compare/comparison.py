@@ -105,7 +105,7 @@ class Comparison(Shown, Findings):
             (
                 " x ".join(names[key] for key in one["term"]),
                 f"{one['percent']:+.3g} %",
-                "on K, from its first value to its last",
+                "of K on average" if one["order"] == 1 else "interaction on K",
             )
             for one in self.effects
             if one["quantity"] == "equivalent_stiffness"
