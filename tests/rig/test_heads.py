@@ -137,7 +137,7 @@ def test_a_shaker_s_record_is_read_and_told_what_is_missing(tmp_path):
     found = invoke("identify", path, "--scene", SCENE, "--out", tmp_path / "out")
     assert found.exit_code == 2 and not (tmp_path / "out").exists()
     for words in (
-        "400 samples over 0.0399 s of force (+- 20 N), y (+- 15 um)",
+        "400 samples over 0.0399 s of force (+- 20 N), y (+- 15 µm)",
         "cannot be identified from a force",
         'kind = "measured"',
     ):
@@ -149,7 +149,7 @@ def test_one_axis_is_read_and_told_what_is_missing(tmp_path):
     path.write_text("time_s,y_um\n" + "".join(f"{t:.4f},{y}\n" for t, y in zip(TIME, Y, strict=True)))
     with pytest.raises(SceneError) as told:
         rw.identify(path, SCENE)
-    for words in (str(path), "no column for z", "400 samples over 0.0399 s of y (+- 15 um)", "record y and z together"):
+    for words in (str(path), "no column for z", "400 samples over 0.0399 s of y (+- 15 µm)", "record y and z together"):
         assert words in str(told.value)
 
 
