@@ -94,7 +94,7 @@ WAVE = 1e-5 * np.cos(2.0 * np.pi * 200.003 * np.arange(4000) / 20_000.0)
 @pytest.mark.parametrize(
     ("signal", "words"),
     [
-        (np.minimum(WAVE, 0.8e-5), "of all samples of y lie at the top of its range, 8 um: the signal is cut off"),
+        (np.minimum(WAVE, 0.8e-5), "of all samples of y lie at the top of its range, 8 µm: the signal is cut off"),
         (np.maximum(WAVE, -0.95e-5), "of all samples of y lie at the bottom"),
     ],
 )
