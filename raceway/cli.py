@@ -1,19 +1,19 @@
 """The commands.  This module, with ``console``, is the only place that prints or exits.
 
-Whatever is heavy is imported inside the command that needs it: ``--help``, ``check``, ``plan``, ``plugins``, ``schema`` and
-``cache`` load no numba, scipy or matplotlib.
+Whatever is heavy is imported inside the command that needs it: ``--help`` loads no command, ``check``, ``plan``, ``plugins``,
+``schema`` and ``cache`` load no numba, scipy or matplotlib.
 """
 
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from raceway import __version__
-from raceway.commands.cache import cache
 from raceway.commands.console import Commands, print_json, warn
 from raceway.commands.frame import (
     RESULTS,
@@ -28,30 +28,57 @@ from raceway.commands.frame import (
     show,
     show_progress,
 )
-from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults
-from raceway.commands.new_scene import new_scene
-from raceway.commands.plugins import check_plugin, new_plugin, plugins, schema
-from raceway.commands.reports import chosen_reports, write_reports
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
-from raceway.framework.registry import registry_with
-from raceway.storage.files import writable
-from raceway.studies.command import study
-from raceway.studies.compare.command import compare
-from raceway.studies.measured.command import identify
-from raceway.studies.precision.command import precision
-from raceway.studies.ross.command import export
-from raceway.studies.stability.command import stability
-from raceway.studies.sweep.command import sweep
-from raceway.studies.sweep.store_command import plot
-from raceway.studies.verify.command import verify
-from raceway.studies.view.command import view
-from raceway.studies.view.mesh_command import mesh
 
 if TYPE_CHECKING:
     from raceway.scene.tables import Scene
 
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+#: Commands that are imported when they are asked for: module, where the command has the name of its words, and short help.
+_LATER = {
+    "compare": ("raceway.studies.compare.command", "One scene, some keys varied, everything else the same."),
+    "verify": ("raceway.studies.verify.command", "Compute the reference cases."),
+    "precision": ("raceway.studies.precision.command", "Error against run time: which setting is good enough."),
+    "stability": ("raceway.studies.stability.command", "Stiff and extreme cases: what must hold, holds."),
+    "sweep": ("raceway.studies.sweep.command", "One scene at thousands of points, kept in a store; parallel, resumable."),
+    "study": ("raceway.studies.command", "Whole studies that end in a page, and others' studies."),
+    "plot": ("raceway.studies.sweep.store_command", "Draw a sweep: curves, maps, surfaces."),
+    "export": ("raceway.studies.ross.command", "Write a sweep's coefficients for a rotor program."),
+    "identify": ("raceway.studies.measured.command", "K and C of a bearing from measured signals."),
+    "view": ("raceway.studies.view.command", "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page."),
+    "mesh": ("raceway.studies.view.mesh_command", "Mesh the bodies of a scene: counts, quality, files."),
+    "new-scene": ("raceway.commands.new_scene", "Write a scene to start from."),
+    "plugins": ("raceway.commands.plugins", "List what is installed, with options."),
+    "check-plugin": ("raceway.commands.plugins", "Does a plug-in keep its contract?"),
+    "new-plugin": ("raceway.commands.plugins", "Write a package for a new plug-in."),
+    "schema": ("raceway.commands.plugins", "JSON schema of a scene."),
+    "cache": ("raceway.commands.cache", "See or clear what is kept between runs."),
+}
+
+
+class CommandsByName(Commands):
+    """All commands; only the one that is asked for is imported, none for ``--help``."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted({*super().list_commands(ctx), *_LATER})
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        # Matrices of some hundred rows: threads of the linear algebra only wait for each other, and halve the speed of a run
+        # on busy cores.  Read when numpy is imported, which is later than this.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        if cmd_name in _LATER:
+            command: click.Command = getattr(import_module(_LATER[cmd_name][0]), cmd_name.replace("-", "_"))
+            return command
+        return super().get_command(ctx, cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        own = {name: command.get_short_help_str(80) for name, command in self.commands.items()}
+        rows = {**own, **{name: words for name, (_, words) in _LATER.items()}}
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, rows[name]) for name in self.list_commands(ctx)])
+
+
+@click.group(cls=CommandsByName, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="raceway")
 @click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")
 def main() -> None:
@@ -68,9 +95,6 @@ def main() -> None:
     Exit codes: 0 success, 1 a numerical failure, 2 a mistake in the scene or on the command line; 130 Ctrl-C,
     143 SIGTERM, 129 SIGHUP.
     """
-    # Matrices of some hundred rows: threads of the linear algebra only wait for each other, and halve the speed of a run
-    # on busy cores.  Read when numpy is imported, which is later than this.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 class RunOptions(NamedTuple):
@@ -112,6 +136,11 @@ def run(given: RunOptions) -> int:
       raceway run examples/b7206.toml --pictures \\
           --set excitation.speed_rpm=15000 --set supports.tilt=free
     """
+    from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults
+    from raceway.commands.reports import chosen_reports, write_reports
+    from raceway.framework.registry import registry_with
+    from raceway.storage.files import writable
+
     registry = registry_with(given.plugins)
     loaded = load(given.scene, given.changes, registry)
     folder = writable(given.out or RESULTS / slug(loaded.title))
@@ -157,6 +186,8 @@ def plan(
     Example:
       raceway plan examples/b7206.toml --set supports.tilt=free
     """
+    from raceway.commands.inputs import load, tell_faults
+    from raceway.framework.registry import registry_with
     from raceway.front.plan import plan as planned
 
     registry = registry_with(plugins)
@@ -185,6 +216,8 @@ def check(
     Example:
       raceway check examples/b7206.toml --json
     """
+    from raceway.commands.inputs import load, tell_faults
+    from raceway.framework.registry import registry_with
     from raceway.front.check import check as checked
 
     registry = registry_with(plugins)
@@ -213,11 +246,3 @@ def _keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
     error.files = {path.stem.replace("-", "_"): str(path) for path in paths}
     what = "failure and last good state" if len(paths) > 1 else "failure"
     error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
-
-
-_COMMANDS = (
-    *(compare, verify, precision, stability, sweep, study, plot, export, identify, view, mesh),
-    *(new_scene, plugins, check_plugin, new_plugin, schema, cache),
-)
-for _command in _COMMANDS:
-    main.add_command(_command)

@@ -21,9 +21,10 @@ from raceway.cli import main
 from raceway.commands.inputs import slug
 from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, install, invoke, law, python, raceway
 
-COMMANDS = sorted(main.commands)
+HERE = click.Context(main)
+COMMANDS = {name: main.get_command(HERE, name) for name in main.list_commands(HERE)}
 GROUPS = {
-    name: list(one.list_commands(click.Context(one))) for name, one in main.commands.items() if isinstance(one, click.Group)
+    name: list(one.list_commands(click.Context(one))) for name, one in COMMANDS.items() if isinstance(one, click.Group)
 }
 #: What a person can run: the sub-commands of a group, not the group.
 RUNNABLE = [name for name in COMMANDS if name not in GROUPS] + [
@@ -96,6 +97,16 @@ def test_help_and_version():
 
     assert __version__ in invoke("--version").stdout
     assert {"run", "plan", "check", "compare", "verify", "plugins", "schema", "cache"} <= set(COMMANDS)
+
+
+def test_the_list_of_commands_says_what_each_says_itself():
+    listed = dict(
+        line.split(maxsplit=1) for line in invoke("--help").stdout.split("Commands:\n")[1].splitlines() if line[2] != " "
+    )
+    assert list(listed) == list(COMMANDS)
+    for name, one in COMMANDS.items():
+        assert one.name == name
+        assert one.short_help.startswith(listed[name])
 
 
 @pytest.fixture(scope="module")
