@@ -6,9 +6,12 @@ from raceway.framework.registry import default_registry
 from raceway.testing import check
 
 ENTRIES = list(default_registry().all())
+MARKS = {"gmsh": pytest.mark.needs("gmsh"), "dask": pytest.mark.slow}
 
 
-@pytest.mark.parametrize("entry", ENTRIES, ids=[f"{e.kind}:{e.name}" for e in ENTRIES])
+@pytest.mark.parametrize(
+    "entry", [pytest.param(e, marks=MARKS.get(e.name, ())) for e in ENTRIES], ids=[f"{e.kind}:{e.name}" for e in ENTRIES]
+)
 def test_conforms(entry):
     conformity = check(entry)
     bad = [f"{row.name} ({row.status}): {row.message}" for row in conformity.rows if not row.good]
