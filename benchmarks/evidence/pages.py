@@ -67,6 +67,7 @@ def _look(name: str, command: str, path: Path, browser: Browser) -> list[Row]:
             below(f"{name} at {width} px: requests to anything but the file", len(look.asked), 0, command),
             below(f"{name} at {width} px: lines on the console", len(look.console), 0, command),
             Row(f"{name} at {width} px: figures with a size", f"{figures - _missing(faults)} of {figures}", "all", not faults, command, "; ".join(faults)),
+            below(f"{name} at {width} px: tables cut off, columns squeezed, figures like stamps, of {len(look.found['tables']) + figures}", len(look.cramped()), 0, command),
             below(f"{name} at {width} px: width of the content over the window's", look.found["scroll"] / look.found["width"], 1.0, command),
         ]  # fmt: skip
     return out

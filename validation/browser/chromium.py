@@ -57,11 +57,13 @@ class Look:
         out += ["a drawing has no size" for shown in found["drawings"] if not min(shown)]
         if found["small"]:
             out.append(f"{found['small']} texts are smaller than 11 px")
-        return out + (self._of_a_screen() if found["width"] >= SCREEN else [])
+        return out + self.cramped()
 
-    def _of_a_screen(self) -> list[str]:
-        """Tables that are cut off, sentences of one word a line, figures like stamps."""
+    def cramped(self) -> list[str]:
+        """On a screen: tables that are cut off, sentences of one word a line, figures like stamps."""
         found = self.found
+        if found["width"] < SCREEN:
+            return []
         out = [
             f"table '{name}' is cut off: {whole} px in a box of {seen}"
             for name, whole, seen in found["tables"]
