@@ -63,11 +63,12 @@ COMMANDS = {
     "plugins": ("plugins",),
     "check-plugin": ("check-plugin", "hertz"),
     "new-plugin": ("new-plugin", "contact_law", "my_law", "--out", "OUT"),
+    "new-scene": ("new-scene", "--out", "OUT/own.toml"),
     "schema": ("schema",),
     "cache": ("cache",),
 }  # fmt: skip
 #: Commands that are done before anybody waits, whatever they are given.
-QUICK = {"plan", "check", "plugins", "new-plugin", "schema"}
+QUICK = {"plan", "check", "plugins", "new-plugin", "new-scene", "schema"}
 
 
 @pytest.fixture(scope="module")

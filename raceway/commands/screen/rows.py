@@ -35,7 +35,7 @@ def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
     cells = {key: [_cell(row.get(key)) for row in rows] for key in keys}
     same = [key for key in keys if len(rows) > 1 and len(set(cells[key])) == 1]
     columns = tuple(_Column(_head(key), tuple(cells[key])) for key in keys if key not in same)
-    told = ", ".join(f"{_head(key)} {cells[key][0]}" for key in same if cells[key][0])
+    told = ", ".join(f"{' '.join(_head(key).split())} {cells[key][0]}" for key in same if cells[key][0])
     return _Rows(columns, title, f"the same in all rows: {told}" if told else "")
 
 
@@ -58,7 +58,7 @@ class _Column:
     @property
     def most(self) -> int:
         """Signs on one line."""
-        return max(map(len, (self.head, *self.cells)))
+        return max(len(line) for text in (self.head, *self.cells) for line in text.splitlines() or [""])
 
     @property
     def least(self) -> int:
