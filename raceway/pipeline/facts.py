@@ -66,9 +66,10 @@ def _computed(result: Result) -> list[Fact]:
     bearing: Tables = scene.source["bearing"]
     kind = f"{scene.bodies.name} bodies, {scene.contact.kind}, {scene.integrator.kind}"
     steps = f"{cost['steps']} steps" if cost["steps"] else "static"
+    compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
     rows: list[Fact] = [
         ("bearing", str(bearing.get("preset") or "own geometry"), kind),
-        ("cost", number(cost["wall_s"], "s", 3), f"{steps}; of it {cost['compile_s']:.2g} s compiling"),
+        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
     ]
     if count:
         rows.append((f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0]))

@@ -8,10 +8,12 @@ from pathlib import Path
 
 import pytest
 
+import raceway as rw
 from raceway.plugins.reports.pictures import new_figure
 from raceway.studies.many.page import Page
 from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES
+from validation.command_line import MINIMAL
 
 #: The page of `view` has pictures; those two take longest to write.
 MARKS = {"view": [pytest.mark.slow, pytest.mark.needs("pyvista")], "study article": [pytest.mark.slow]}
@@ -46,6 +48,16 @@ def test_a_page_is_whole_at_both_widths_and_asks_for_nothing(browser, page, name
         look = browser.look(path, width)
         assert look.faults() == [], f"{width} px"
         assert look.found["images"] or look.found["drawings"]
+
+
+@pytest.mark.needs("browser")
+def test_tables_of_a_notebook_are_whole_at_both_widths(browser, tmp_path):
+    plan, check = rw.plan(MINIMAL), rw.check({"bearing": {"preset": "B7206X"}})
+    shown = [rw.run(MINIMAL), rw.compare(MINIMAL, {"load.axial": [400, 1000]}), rw.Scene.from_toml(MINIMAL), plan, check]
+    path = tmp_path / "notebook.html"
+    path.write_text(f"<!doctype html><meta charset='utf-8'>{''.join(one._repr_html_() for one in shown)}", encoding="utf-8")
+    for width in WIDTHS:
+        assert browser.look(path, width).faults() == [], f"{width} px"
 
 
 @pytest.mark.slow
