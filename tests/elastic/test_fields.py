@@ -39,6 +39,7 @@ def test_von_mises_and_shear_of_uniaxial_and_pure_shear_stress():
     assert fields.largest_shear == pytest.approx([1.5, 2.0], rel=1e-14)
 
 
+@pytest.mark.needs("pyvista")
 def test_the_files_hold_the_fields(result, tmp_path):
     import pyvista
 
