@@ -117,7 +117,8 @@ _HOOKS: dict[Any, Any] = {
 
 #: Types of keys whose numbers may be text with a unit; counts have none.
 _WORDS = (float | str, str | float)
-_MEASURED = (float, float | None, tuple[float, float], tuple[float, ...], tuple[tuple[float, float], ...] | None, *_WORDS)
+_LISTS = (tuple[float, float], tuple[float, ...], tuple[tuple[float, float], ...] | None)
+_MEASURED = (float, float | None, *_LISTS, *_WORDS)
 
 
 def without_units(value: object, attribute: Any) -> Any:
@@ -132,10 +133,16 @@ def without_units(value: object, attribute: Any) -> Any:
     if not unit or attribute.type not in _MEASURED:
         return value
     if isinstance(value, list | tuple):
-        return [without_units(inner, attribute) for inner in value]
-    if not isinstance(value, str) or (attribute.type in _WORDS and not is_quantity(value)):
+        return [_without(unit, inner) for inner in value]
+    if attribute.type in _LISTS or (attribute.type in _WORDS and not (isinstance(value, str) and is_quantity(value))):
         return value
-    return number_in(unit, value)
+    return _without(unit, value)
+
+
+def _without(unit: str, value: object) -> object:
+    if isinstance(value, list | tuple):
+        return [_without(unit, inner) for inner in value]
+    return number_in(unit, value) if isinstance(value, str) else value
 
 
 def table_without_units(table: Tables, cls: type) -> Tables:
