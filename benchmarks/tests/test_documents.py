@@ -4,7 +4,32 @@ from __future__ import annotations
 
 import re
 
-from benchmarks.documents import README, SCENE, SHOWN, scene_page, screen, shown_scene, shown_screen
+import pytest
+
+from benchmarks.documents import (
+    COMMANDS,
+    DRAWING,
+    EXAMPLE,
+    LEAVING_OUT,
+    README,
+    ROOT,
+    SCENE,
+    SHOWN,
+    STABILITY,
+    VERSIONS,
+    commands,
+    drawing,
+    promises,
+    scene_page,
+    screen,
+    shown_example,
+    shown_scene,
+    shown_screen,
+)
+from benchmarks.documents.versions import with_versions
+from benchmarks.evidence import _files
+from raceway.scene.schema import keys
+from raceway.scene.tables import TABLES
 
 
 def test_the_scene_page_is_what_the_declarations_say():
@@ -21,8 +46,47 @@ def test_the_readme_shows_the_screen_of_the_scene_that_it_shows():
 
     text = README.read_text(encoding="utf-8")
     assert shown_scene(text) == SHOWN.read_text(encoding="utf-8"), "run python -m benchmarks.documents"
+    assert shown_example(text) == EXAMPLE.read_text(encoding="utf-8"), "run python -m benchmarks.documents"
     shown = shown_screen(text)
     assert "tangent kyy" in exact(shown)[1] and "balls of" in exact(shown)[0]
     now = screen()
     assert exact(shown) == exact(now), "run python -m benchmarks.documents"
     assert words(shown) == words(now), "run python -m benchmarks.documents"
+
+
+def test_the_page_of_commands_is_what_they_say_of_themselves():
+    assert COMMANDS.read_text(encoding="utf-8") == commands.page(), "run python -m benchmarks.documents"
+    assert {"raceway run", "raceway study rig"} <= {name for name, _ in commands.walk(commands.main, "raceway")}
+
+
+def test_the_table_of_versions_is_that_of_the_package():
+    text = VERSIONS.read_text(encoding="utf-8")
+    assert with_versions(text, ROOT) == text, "run python -m benchmarks.documents"
+    assert "numba 0." in text and "extra `docs`" in text
+
+
+def test_the_drawing_explains_keys_that_there_are(tmp_path):
+    assert set(drawing.KEYS) <= {field.name for field in keys(TABLES["bearing"])}
+    drawing.draw(tmp_path / "drawn.svg")
+    told = texts(DRAWING)
+    assert told == texts(tmp_path / "drawn.svg"), "run python -m benchmarks.documents"
+    assert not [key for key in drawing.KEYS if not [text for text in told if key in text]]
+
+
+@pytest.mark.parametrize(
+    ("name", "draw", "path"),
+    [
+        ("stability", promises.draw_stability, STABILITY),
+        ("leave_out", promises.draw_leaving_out, LEAVING_OUT),
+    ],
+)
+def test_the_pictures_of_the_promises_are_those_of_the_reports(name, draw, path, tmp_path):
+    report = _files.read()[name]
+    draw(report, tmp_path / "drawn.svg")
+    assert texts(path) == texts(tmp_path / "drawn.svg"), "run python -m benchmarks.documents"
+    assert len(texts(path)) > 20
+
+
+def texts(path):
+    """The texts of a picture: drawn as outlines, each stands as a comment beside its own."""
+    return re.findall(r"<!-- (.*?) -->", path.read_text(encoding="utf-8"), re.DOTALL)

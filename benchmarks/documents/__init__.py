@@ -1,7 +1,13 @@
-"""Documents made from the program itself: ``python -m benchmarks.documents`` writes docs/scene.md and README's screen.
+"""Documents made from the program itself: ``python -m benchmarks.documents`` writes them.
 
 docs/scene.md holds every key of a scene with unit, default, rule and meaning, read from the declarations that the
-program checks scenes with.  README shows the scene examples/minimal.toml and what ``raceway run`` prints of it.
+program checks scenes with (here).  README shows the scene examples/minimal.toml, what ``raceway run`` prints of it, and
+examples/k_over_speed.py (here).
+
+commands  docs/command_line.md: the help of every command
+versions  the table of docs/versions.md, from pyproject.toml
+drawing   docs/pictures/parameters.svg: what the keys of [bearing] mean
+promises  docs/pictures/stability.svg, leaving_out.svg: from their reports
 """
 
 from __future__ import annotations
@@ -21,11 +27,18 @@ from raceway.scene.file import STUDY_TABLES
 from raceway.scene.schema import keys
 from raceway.scene.tables import TABLES
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SCENE = ROOT / "docs" / "scene.md"
 README = ROOT / "README.md"
+COMMANDS = ROOT / "docs" / "command_line.md"
+VERSIONS = ROOT / "docs" / "versions.md"
+DRAWING = ROOT / "docs" / "pictures" / "parameters.svg"
+STABILITY = ROOT / "docs" / "pictures" / "stability.svg"
+LEAVING_OUT = ROOT / "docs" / "pictures" / "leaving_out.svg"
 SHOWN = ROOT / "examples" / "minimal.toml"
+EXAMPLE = ROOT / "examples" / "k_over_speed.py"
 _SCENE = re.compile(r"(<!-- scene -->\n```toml\n)(.*?)(```\n<!-- /scene -->)", re.DOTALL)
+_EXAMPLE = re.compile(r"(<!-- example -->\n```python\n)(.*?)(```\n<!-- /example -->)", re.DOTALL)
 _SCREEN = re.compile(r"(<!-- screen -->\n```\n)(.*?)(```\n<!-- /screen -->)", re.DOTALL)
 
 _HEAD = """# The scene file
@@ -44,6 +57,8 @@ table.key=value` changes one key for one run. Made by `python -m benchmarks.docu
 `raceway/scene/tables.py` and in the plug-ins; do not edit by hand.
 
 `raceway new-scene` writes a scene with comments to start from.
+
+![a bearing in section, along its axis, and pairs of rows, with the keys that say their measures](pictures/parameters.svg)
 
 `title` is a string; by default the name of the file. What `--set` changes stands in its second line, by key, on screens,
 pictures and pages, and in the name of the folder of the results, so that no run overwrites another's.
@@ -134,8 +149,9 @@ def screen() -> str:
 
 
 def with_screen(text: str, shown: str) -> str:
-    """The README with its scene and the screen of that scene replaced."""
-    scene = SHOWN.read_text(encoding="utf-8")
+    """The README with its example, its scene and the screen of that scene replaced."""
+    scene, example = SHOWN.read_text(encoding="utf-8"), EXAMPLE.read_text(encoding="utf-8")
+    text = _EXAMPLE.sub(lambda match: match[1] + example + match[3], text)
     text = _SCENE.sub(lambda match: match[1] + scene + match[3], text)
     return _SCREEN.sub(lambda match: match[1] + shown + match[3], text)
 
@@ -146,16 +162,13 @@ def shown_scene(text: str) -> str:
     return found[2] if found else ""
 
 
+def shown_example(text: str) -> str:
+    """The lines of Python that a README shows."""
+    found = _EXAMPLE.search(text)
+    return found[2] if found else ""
+
+
 def shown_screen(text: str) -> str:
     """The screen that a README shows."""
     found = _SCREEN.search(text)
     return found[2] if found else ""
-
-
-def main() -> None:
-    SCENE.write_text(scene_page(), encoding="utf-8")
-    README.write_text(with_screen(README.read_text(encoding="utf-8"), screen()), encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

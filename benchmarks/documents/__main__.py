@@ -1,0 +1,24 @@
+"""``python -m benchmarks.documents``: write every document that is made from the program."""
+
+from __future__ import annotations
+
+from benchmarks import documents
+from benchmarks.documents import commands, drawing, promises, versions
+from benchmarks.evidence import _files
+
+
+def main() -> None:
+    documents.SCENE.write_text(documents.scene_page(), encoding="utf-8")
+    documents.COMMANDS.write_text(commands.page(), encoding="utf-8")
+    text = documents.VERSIONS.read_text(encoding="utf-8")
+    documents.VERSIONS.write_text(versions.with_versions(text, documents.ROOT), encoding="utf-8")
+    text = documents.README.read_text(encoding="utf-8")
+    documents.README.write_text(documents.with_screen(text, documents.screen()), encoding="utf-8")
+    drawing.draw(documents.DRAWING)
+    reports = _files.read()
+    promises.draw_stability(reports["stability"], documents.STABILITY)
+    promises.draw_leaving_out(reports["leave_out"], documents.LEAVING_OUT)
+
+
+if __name__ == "__main__":
+    main()
