@@ -17,6 +17,7 @@ import attrs
 
 from benchmarks.evidence import Row
 from benchmarks.evidence._age import ROOT, listed
+from benchmarks.evidence._chosen import CHOSEN, chosen
 
 FOLDER = ROOT / "docs" / "reports"
 #: What stands for the limit of a row that nothing is asked of.
@@ -134,12 +135,15 @@ def holding(data: dict[str, Any]) -> str:
 
 def documents() -> list[Path]:
     """Documents that may hold blocks: README.md and everything under docs but the reports themselves."""
-    pages = [path for path in sorted((ROOT / "docs").rglob("*.md")) if FOLDER not in path.parents]
+    pages = [
+        path for path in sorted((ROOT / "docs").rglob("*.md")) if not {FOLDER, ROOT / "docs" / "_build"} & {*path.parents}
+    ]
     return [path for path in [ROOT / "README.md", *pages] if path.is_file()]
 
 
 def render(text: str, reports: dict[str, dict[str, Any]], older: Container[str] = (), links: str = "docs/reports/") -> str:
-    """A document's text with every block made anew; ``evidence:summary`` is the table of reports, with a mark at the older ones.
+    """A document's text with every block made anew; ``evidence:summary`` is the table of reports, with a mark at the older ones,
+    and the blocks of ``_chosen`` show rows of several.
 
     Raises
     ------
@@ -149,9 +153,14 @@ def render(text: str, reports: dict[str, dict[str, Any]], older: Container[str] 
 
     def block(match: re.Match[str]) -> str:
         name = match[2]
-        if name != "summary" and name not in reports:
+        if name == "summary":
+            body = summary(reports, older, links)
+        elif name in CHOSEN:
+            body = chosen(name, reports, links)
+        elif name in reports:
+            body = table(reports[name])
+        else:
             raise KeyError(f"a block asks for the report '{name}'; there are {', '.join(reports)}")
-        body = summary(reports, older, links) if name == "summary" else table(reports[name])
         return f"{match[1]}{body}\n{match[4]}"
 
     return _BLOCK.sub(block, text)

@@ -1,0 +1,73 @@
+"""A few rows of the reports, chosen for a reader without time, in words that need no context."""
+
+from __future__ import annotations
+
+from typing import Any
+
+#: Block -> (report, the row's quantity, what it says).
+CHOSEN = {
+    "five": (
+        (
+            "identified_stiffness",
+            "tilt locked, 400 N, 10980 r/min, with centrifugal force, newmark: K [N/um]",
+            "K of a B7206C against a periodic solve by independent code [N/µm]",
+        ),
+        (
+            "verify",
+            "published numbers: largest relative error against its tolerance: nsk-7206C-stiffness",
+            "largest relative difference from the maker's stiffness table, 7206C pairs",
+        ),
+        ("error_estimate", "8 steps a turn", "relative error of Z in coarse time steps: as stated, and as it is"),
+        ("precision", "solve time for K within 0.01 % [ms]", "time to solve for K within 0.01 % [ms]"),
+        ("stability", "rows that are not as expected", "expectations of stiff and extreme cases that are not met"),
+    ),
+    "promise_precision": (
+        ("precision", "solve time for K within 1 % [ms]", "time to solve for K within 1 % [ms]"),
+        ("precision", "solve time for K within 0.01 % [ms]", "within 0.01 % [ms]"),
+        (
+            "precision",
+            "bound of the reference over the error of the best transient row",
+            "bound of the reference, over the smallest error that is held against it",
+        ),
+    ),
+    "promise_stability": (
+        ("stability", "rows that are not as expected", "expectations that are not met"),
+        (
+            "stability",
+            "observed over predicted stable step, less 1: small motions of the bearing",
+            "stable step of the bearing, observed over predicted, less 1",
+        ),
+        (
+            "stability",
+            "energy's trend in a million steps, newmark, hertz, all contacts stay closed",
+            "trend of the energy in a million undamped steps",
+        ),
+    ),
+    "promise_leaving_out": (
+        ("leave_out", "rules with a measured saving", "rules whose saving was measured"),
+        ("leave_out", "planning, the kind of bodies that takes longest [ms]", "time to plan a scene [ms]"),
+    ),
+}
+
+
+def chosen(block: str, reports: dict[str, dict[str, Any]], links: str) -> str:
+    """The rows of a block as a Markdown table; ``links`` is the folder of the reports as seen from the document.
+
+    Raises
+    ------
+    KeyError
+        A report or a row that is not there.
+    """
+    from benchmarks.evidence._files import shown
+
+    lines = ["| what | number | limit | holds | report |", "|---|---|---|---|---|"]
+    for name, quantity, words in CHOSEN[block]:
+        rows = [row for row in reports[name]["rows"] if row["quantity"] == quantity]
+        if len(rows) != 1:
+            raise KeyError(f"the report '{name}' has {len(rows)} rows of {quantity!r}")
+        (row,) = rows
+        value = f"{row['value']:.6g}" if isinstance(row["value"], float) and row["value"] > 100 else shown(row["value"])
+        note = f" {row['note'].partition(';')[0]}" if row["note"].startswith("of ") else ""
+        cells = words, value + note, row["limit"], "yes" if row["ok"] else "**no**", f"[{name}]({links}{name}.md)"
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
