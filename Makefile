@@ -12,7 +12,7 @@ CHEAP := depth expected_values orders tangent verify
 APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
-.PHONY: help demo test test-all lint evidence reports-cheap mutants constraints apt-line clean
+.PHONY: help demo test test-all lint docs evidence reports-cheap mutants constraints apt-line clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1 :\2/p' Makefile | while IFS=: read -r name words; do printf '%-20s%s\n' "$$name" "$$words"; done
@@ -31,6 +31,11 @@ lint: $(VENV)/.all ## ruff, import-linter, mypy
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy
+
+docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials run; in an environment of its own, which has ROSS
+	rm -rf docs/api/generated docs/_build
+	$(VENV)-docs/bin/sphinx-build -W --keep-going -E -q -b html docs docs/_build/html
+	@echo "open docs/_build/html/index.html"
 
 evidence: $(VENV)/.all ## every number that README and docs show, computed again
 	$(BIN)/python -m benchmarks.evidence
@@ -57,12 +62,18 @@ $(VENV)/.all: $(VENV)/.python pyproject.toml constraints.txt
 	$(INSTALL) -e '.[all]'
 	touch $@ $(VENV)/.base
 
+$(VENV)-docs/.installed: $(VENV)/.python pyproject.toml constraints.txt
+	@echo "installing Sphinx and ROSS into $(VENV)-docs: some minutes"
+	$(PYTHON) -m venv $(VENV)-docs
+	$(VENV)-docs/bin/python -m pip install -q -c constraints.txt -e '.[sweep,view,ross,docs]'
+	touch $@
+
 constraints: $(VENV)/.python ## constraints.txt, kept where pyproject.toml allows; UPGRADE=--upgrade takes the newest versions
 	$(BIN)/python -m pip install -q uv
-	$(BIN)/uv pip compile -q $(UPGRADE) --universal --python-version 3.11 --extra all --no-annotate --custom-compile-command 'make constraints' -o constraints.txt pyproject.toml
+	$(BIN)/uv pip compile -q $(UPGRADE) --universal --python-version 3.11 --extra all --extra docs --no-annotate --custom-compile-command 'make constraints' -o constraints.txt pyproject.toml
 
 apt-line: ## what installs the system libraries that some tests need, as root on Debian
 	@echo $(APT_LINE)
 
 clean: ## without environment and outputs
-	rm -rf $(VENV) raceway-out build dist
+	rm -rf $(VENV) $(VENV)-docs raceway-out build dist docs/_build docs/api/generated
