@@ -1,0 +1,217 @@
+"""Every command and listing of README and docs is run in its order, or made by the program; every link leads somewhere."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import raceway
+from raceway import scene_from_dict
+from raceway.scene.file import STUDY_TABLES
+from raceway.scene.tables import TABLES
+from tests.snippets import PAGES, ROOT, Listing, anchors, links, listings
+
+_ENVIRONMENT = "makes a virtual environment; continuous integration does it"
+_THREE = "three terminals; tests/test_dask.py does it"
+#: Commands that no test runs, each with the reason.
+NOT_RUN = {
+    "make demo": _ENVIRONMENT,
+    "make test": "runs this test",
+    "make": "lists targets",
+    "make test-all": "runs this test",
+    "make lint": "continuous integration does it",
+    "make docs": _ENVIRONMENT,
+    "make evidence": "hours; makes the reports of this checkout",
+    "make reports-cheap": "continuous integration does it",
+    ".ci/other_pythons": _ENVIRONMENT,
+    "python3 -m venv .venv": _ENVIRONMENT,
+    ".venv/bin/pip install .": _ENVIRONMENT,
+    ".venv/bin/pip install '.[pictures]'": _ENVIRONMENT,
+    ".venv/bin/pip install '.[view]'": _ENVIRONMENT,
+    "pip install '.[sweep]'": _ENVIRONMENT,
+    ".venv/bin/pip install '.[sweep]'": _ENVIRONMENT,
+    ".venv/bin/pip install '.[all]'": _ENVIRONMENT,
+    "python -m venv .venv-ross && .venv-ross/bin/pip install -e '.[sweep,ross]'": _ENVIRONMENT,
+    "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m benchmarks.evidence ross": "writes a report of this checkout",
+    ".venv/bin/python -m benchmarks.documents": "writes documents of this checkout; benchmarks/tests compare them",
+    ".venv/bin/python -m benchmarks.evidence NAME": "writes a report of this checkout",
+    '.venv/bin/python -m benchmarks.evidence --list "why"': "writes the list of older reports of this checkout",
+    "dask scheduler --host 127.0.0.1": _THREE,
+    "OMP_NUM_THREADS=1 dask worker tcp://127.0.0.1:8786 --nworkers 2 --nthreads 1": _THREE,
+    "raceway sweep examples/b7206.toml --set integrator.kind=periodic --grid excitation.speed_rpm=10980:15000:41 "
+    "--grid load.axial=400:2000:17 --executor dask --scheduler tcp://127.0.0.1:8786 --out raceway-out/map": _THREE,
+    "cd raceway-power && pip install -e . && pytest": "tests/test_scaffold.py does it",
+    "python -m benchmarks.against_calculix --scene benchmarks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
+}
+#: Commands of many minutes whose answer is a report, which names them: run by make evidence.
+BY_EVIDENCE = {
+    "raceway study article": "article",
+    "raceway study article --bodies rigid --friction 0": "article",
+    "raceway stability": "stability",
+    "python -m benchmarks.against_calculix --json": "elastic",
+    "raceway run benchmarks/b7206_elastic_60k.toml": "elastic",
+}
+#: Pages of more than some seconds; their commands run with the slow tests.
+SLOW = {
+    "CONTRIBUTING",
+    "article",
+    "cluster",
+    "compare",
+    "elastic",
+    "identify",
+    "map",
+    "mesh",
+    "nodal_contact",
+    "plotting",
+    "precision",
+    "rig",
+}
+SLOW |= {"ross", "stability", "sweep", "view"}
+#: Listings of Python in other hands: tests/test_docs.py; ROSS is in the environment of make docs, whose tutorial does the same.
+ELSEWHERE = {"plugins": "", "ross": "ross"}
+#: Languages of listings that nothing runs: text, and what the site reads.
+SHOWN = {"text", "{toctree}", "{eval-rst}"}
+
+LISTINGS = {page: listings(page) for page in PAGES}
+ASKED = [command for found in LISTINGS.values() for listing in found for command in listing.commands()]
+
+
+def runs(page: Path) -> bool:
+    return any(listing.commands() or listing.language in ("python", "toml") for listing in LISTINGS[page])
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder as the root of a checkout looks to the commands."""
+    for name in ("examples", "benchmarks"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "page", [pytest.param(p, id=p.stem, marks=[pytest.mark.slow] * (p.stem in SLOW)) for p in PAGES if runs(p)]
+)
+def test_commands_and_listings_run_in_their_order(page, folder):
+    namespace = {}
+    for listing in LISTINGS[page]:
+        if listing.file:
+            (folder / listing.file).write_text(listing.text, encoding="utf-8")
+        elif listing.language == "toml":
+            read(listing)
+        elif listing.language == "python" and not elsewhere(listing):
+            exec(compile(listing.text, f"{page.name}:{listing.line}", "exec"), namespace)
+        for command in listing.commands():
+            if command not in NOT_RUN and command not in BY_EVIDENCE:
+                output = run(command)
+                assert "has no effect" not in output, f"{page.name} shows a command that warns: {command}"
+
+
+def elsewhere(listing: Listing) -> bool:
+    """Whether a listing is run elsewhere: every one of its page, or those with a word."""
+    word = ELSEWHERE.get(listing.page.stem)
+    return word is not None and (not word or re.search(rf"import {word}\b|needs {word.upper()}\b", listing.text) is not None)
+
+
+def read(listing: Listing) -> None:
+    """Part of a scene: its keys and values are right; of another file: it is TOML."""
+    tables = tomllib.loads(listing.text)
+    if set(tables) <= {*TABLES, *STUDY_TABLES, "title"}:
+        whole = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+        scene_from_dict({**whole, **tables})
+
+
+def run(command: str) -> str:
+    """What a command prints, in a process of its own as a reader starts it; it must succeed."""
+    words = shlex.split(command)
+    name = Path(words[0]).name
+    assert name in ("raceway", "python"), f"no test knows how to run {command!r}"
+    started = [sys.executable, *(("-m", "raceway") if name == "raceway" else ()), *words[1:]]
+    variables = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONSAFEPATH": "1"}
+    ended = subprocess.run(started, capture_output=True, text=True, env=variables, check=False)
+    assert ended.returncode == 0, f"{command}\n{ended.stdout}{ended.stderr}"
+    return ended.stdout + ended.stderr
+
+
+def test_what_is_not_run_is_listed_and_the_list_holds_nothing_else():
+    assert not [command for command in (*NOT_RUN, *BY_EVIDENCE) if command not in ASKED]
+    assert {page.stem for page in PAGES if runs(page)} >= SLOW
+
+
+@pytest.mark.parametrize("command", BY_EVIDENCE)
+def test_commands_of_reports_are_those_that_the_reports_name(command):
+    report = json.loads((ROOT / "docs" / "reports" / f"{BY_EVIDENCE[command]}.json").read_text(encoding="utf-8"))
+    assert command in {row["command"].removesuffix(" --json").removesuffix(" --out DIR") for row in report["rows"]} | {
+        row["command"] for row in report["rows"]
+    }
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_indented_blocks_are_commands_and_fenced_ones_say_their_language(page):
+    for listing in LISTINGS[page]:
+        assert listing.language in {"", "console", "python", "toml", *SHOWN} or listing.language.startswith("{include}")
+        for command in listing.commands():
+            first = command.split()[0].rpartition("=")[0] and command.split()[1] or command.split()[0]
+            assert Path(first).name in {"raceway", "python", "python3", "pip", "make", "dask", "cd", "other_pythons"}, (
+                f"{page.name}:{listing.line}: a command for a shell, or a block fenced as text? {command}"
+            )
+
+
+EVERY_PAGE = sorted({*PAGES, *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").glob("*/README.md")})
+EVERY_PAGE = [page for page in EVERY_PAGE if "_build" not in page.parts]
+
+
+def test_every_link_leads_to_a_file_and_a_heading():
+    missing = []
+    for page in EVERY_PAGE:
+        for line, target in links(page):
+            path, _, anchor = target.partition("#")
+            file = (page.parent / path).resolve() if path else page
+            if not file.exists() or (anchor and anchor not in anchors(file)):
+                missing.append(f"{page.relative_to(ROOT)}:{line}: {target}")
+    assert not missing
+
+
+def test_the_gallery_shows_every_picture():
+    shown = {(ROOT / "docs" / target).resolve() for _, target in links(ROOT / "docs" / "gallery.md")}
+    pictures = {path for path in (ROOT / "docs" / "pictures").rglob("*") if path.suffix in (".png", ".svg", ".gif")}
+    assert pictures and pictures <= shown
+
+
+def test_the_reference_names_every_public_name_once():
+    page = (ROOT / "docs" / "api" / "index.md").read_text(encoding="utf-8")
+    named = [line.strip() for line in page.splitlines() if line.startswith("   ") and line.strip().isidentifier()]
+    assert sorted(named) == sorted(set(named)) == sorted(raceway.__all__)
+
+
+def test_the_citation_has_the_version_and_the_licence():
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"version: {raceway.__version__}\n" in citation and "license: MIT\n" in citation
+
+
+@pytest.mark.parametrize(
+    ("shell", "says"), [("bash", "complete -o"), ("zsh", "#compdef raceway"), ("fish", "complete --no-files")]
+)
+def test_the_shell_completes_as_the_page_of_commands_says(shell, says):
+    page = (ROOT / "docs" / "command_line.md").read_text(encoding="utf-8")
+    assert f"_RACEWAY_COMPLETE={shell}_source raceway" in page
+    assert says in completion(f"{shell}_source")
+
+
+def test_completion_knows_commands():
+    assert "plain,plan\n" in completion("bash_complete", COMP_WORDS="raceway pl", COMP_CWORD="1")
+
+
+def completion(instruction: str, **words: str) -> str:
+    """What the program tells a shell."""
+    start = "import sys; sys.argv[0] = 'raceway'; from raceway.__main__ import main; main()"
+    variables = {**os.environ, "PYTHONPATH": str(ROOT), "_RACEWAY_COMPLETE": instruction, **words}
+    return subprocess.run([sys.executable, "-c", start], capture_output=True, text=True, env=variables, check=False).stdout
