@@ -1,4 +1,4 @@
-"""Dynamic stiffness of rolling bearings under axial load and rotor unbalance, with the error and cost of every number.
+"""Dynamic stiffness of ball bearings under axial load and rotor unbalance, with the error and cost of every number.
 
 cli            the command line: ``raceway``
 front          what ``import raceway`` offers for one scene: run, plan, check, evolve

@@ -82,7 +82,7 @@ class CommandsByName(Commands):
 @click.version_option(__version__, prog_name="raceway")
 @click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")
 def main() -> None:
-    """Dynamic stiffness of rolling bearings under axial load and rotor unbalance, with error and cost.
+    """Dynamic stiffness of ball bearings under axial load and rotor unbalance, with error and cost.
 
     A scene is a TOML file with SI units; ten lines are enough.
 

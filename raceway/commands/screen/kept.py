@@ -20,7 +20,7 @@ def cache_screen(found: ReadTables) -> RenderableType:
         size = f"{folder['bytes'] / 2**20:.1f} MiB"
         rows.append((folder["name"], size, f"{folder['kernels']} kernels{', current' if folder['current'] else ''}"))
     if not any(folder["current"] for folder in found["folders"]):
-        rows.append((found["current"], "empty", "current: the next run compiles, which takes some ten seconds"))
+        rows.append((found["current"], "empty", "current: the next run compiles, which takes some 20 s of a processor"))
     total, most = found["arrays_bytes"] / 2**20, found["arrays_limit_bytes"] / 2**20
     rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {found['arrays_root']}"))
     arrays = sorted(found["arrays"], key=lambda entry: -entry["used"])
