@@ -1,8 +1,8 @@
 """Documents made from the program itself: ``python -m benchmarks.documents`` writes them.
 
 docs/scene.md holds every key of a scene with unit, default, rule and meaning, read from the declarations that the
-program checks scenes with (here).  README shows the scene examples/minimal.toml, what ``raceway run`` prints of it, and
-examples/k_over_speed.py (here).
+program checks scenes with (here).  README shows the scene examples/minimal.toml, the answer that ``raceway run`` prints of it,
+and examples/k_over_speed.py (here).
 
 commands  docs/command_line.md: the help of every command
 versions  the table of docs/versions.md, from pyproject.toml
@@ -148,12 +148,20 @@ def screen() -> str:
     return "\n".join(lines) + "\n"
 
 
+def answer(shown: str) -> str:
+    """What a reader of two minutes wants of a screen: title to damping, the total error, the wall time; ... for the rest."""
+    head = shown.partition("Equilibrium under")[0]
+    lines = [line for line in shown.splitlines(keepends=True) if re.match(r"Relative error|  total|Cost|  wall time", line)]
+    error, total, cost, wall = lines
+    return f"{head}...\n{error}{total}...\n{cost}{wall}...\n"
+
+
 def with_screen(text: str, shown: str) -> str:
-    """The README with its example, its scene and the screen of that scene replaced."""
+    """The README with its example, its scene and the answer on the screen of that scene replaced."""
     scene, example = SHOWN.read_text(encoding="utf-8"), EXAMPLE.read_text(encoding="utf-8")
     text = _EXAMPLE.sub(lambda match: match[1] + example + match[3], text)
     text = _SCENE.sub(lambda match: match[1] + scene + match[3], text)
-    return _SCREEN.sub(lambda match: match[1] + shown + match[3], text)
+    return _SCREEN.sub(lambda match: match[1] + answer(shown) + match[3], text)
 
 
 def shown_scene(text: str) -> str:
@@ -169,6 +177,6 @@ def shown_example(text: str) -> str:
 
 
 def shown_screen(text: str) -> str:
-    """The screen that a README shows."""
+    """The part of a screen that a README shows."""
     found = _SCREEN.search(text)
     return found[2] if found else ""
