@@ -57,6 +57,8 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
 
     from raceway.scene.catalogue import preset as known
 
+    if Path(preset).suffix == ".toml":
+        raise RacewayError(f"`{preset}` names a file, and a bearing is wanted: raceway new-scene B7206C --out {preset}")
     known(preset)
     file = Path(f"{preset}.toml") if out is None else out
     if file.exists():

@@ -14,13 +14,13 @@ from raceway.studies.compare.causes import IN_SHORT
 def compare_screen(
     title: str, rows: Sequence[ReadTables], words: Sequence[str], files: Sequence[str], more: bool = False
 ) -> RenderableType:
-    """What decides, a line for each point, and what causes what in words.
+    """What decides, a line for each point, and what causes what in words; without one that decides, all words first.
 
     Parameters
     ----------
     more : whether there are more words than these
     """
-    first = [text for text in words if text.startswith(IN_SHORT)]
+    first = [text for text in words if text.startswith(IN_SHORT)] or words
     rest = [text for text in words if text not in first]
     parts: list[RenderableType] = [Words(title, "bold"), *map(Words, first)]
     parts += [rows_table(rows), *map(Words, rest)]

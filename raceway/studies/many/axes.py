@@ -79,7 +79,7 @@ def parse_axes(
                 mistakes.append(Mistake(axis.key, None, f"overlaps with the axis `{other.key}`: vary one of them"))
         axes.append(axis)
     if not axes and not mistakes:
-        raise SceneError.at(option, None, f"nothing is varied; an axis {_FORM}")
+        raise SceneError.at(option, None, f"nothing is varied; an axis {_FORM}, in Python {{'load.axial': [400, 1000]}}")
     total = math.prod(len(axis.values) for axis in axes)
     if total > most:
         sizes = " x ".join(str(len(axis.values)) for axis in axes)

@@ -163,8 +163,12 @@ class RossTable(Shown):
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())
         ends = [(*_words(row),) for row in (rows[0], rows[-1])]
         same = [("everywhere", "", text) for text in constant]
-        notes = [("note", "", text) for text in self.notes]
-        return f"{self.tag}, coefficients for ROSS {self.file.generation}\n{over}", [*ends, *same, *notes]
+        # What may make the numbers wrong for a rotor leads: of a text of 15 lines the last notes fall away.
+        notes = sorted(
+            self.notes, key=lambda note: "next to nothing" not in note and "in these numbers: the tangent" not in note
+        )
+        told = [("note", "", text) for text in notes]
+        return f"{self.tag}, coefficients for ROSS {self.file.generation}\n{over}", [*ends, *same, *told]
 
 
 def _words(row: dict[str, str]) -> Fact:
