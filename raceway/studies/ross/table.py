@@ -133,7 +133,7 @@ class RossTable(Shown):
 
         Parameters
         ----------
-        names : of stiffnesses [N/um], or of dampings [N s/m]
+        names : of stiffnesses [N/µm], or of dampings [N s/m]
         ax : matplotlib axes; new ones without
 
         Raises
