@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from raceway import build_model, make_plan, scene_from_dict
 from raceway.bodies.model import Model
+from raceway.framework.registry import default_registry
 from tests.figures import outside
 from validation.tables import b7206c
 
@@ -46,6 +47,18 @@ def built():
         return build_model(scene, make_plan(scene))
 
     return build
+
+
+@pytest.fixture(autouse=True)
+def plug_ins_leave_with_their_test():
+    """One-off files stay in the registry of the process: the next test would meet them."""
+    registry = default_registry()
+    plugins, entries = set(registry.manager.get_plugins()), {key: list(found) for key, found in registry.entries.items()}
+    yield
+    for plugin in set(registry.manager.get_plugins()) - plugins:
+        registry.manager.unregister(plugin)
+    registry.entries.clear()
+    registry.entries.update(entries)
 
 
 @pytest.fixture(autouse=True)

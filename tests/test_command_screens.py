@@ -146,7 +146,12 @@ def test_every_command_is_looked_at():
     assert {name.partition(",")[0] for name in COMMANDS} == set(RUNNABLE)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+def marked(names):
+    """Parameters; ``view`` draws with pyvista."""
+    return [pytest.param(one, marks=[pytest.mark.needs("pyvista")] if one == "view" else []) for one in names]
+
+
+@pytest.mark.parametrize("name", marked(COMMANDS))
 def test_a_screen_fits_80_columns_and_breaks_no_number(name, seen, folder):
     shown, found, _ = look(name, seen, folder)
     narrow, wide = at(COLUMNS, shown), at(1000, shown)
@@ -164,7 +169,7 @@ def test_a_screen_fits_80_columns_and_breaks_no_number(name, seen, folder):
         assert all(line in found.stdout.replace("\u00a0", " ") for line in narrow if line.strip())
 
 
-@pytest.mark.parametrize("name", [name for name in COMMANDS if name.partition(",")[0] not in QUICK])
+@pytest.mark.parametrize("name", marked(name for name in COMMANDS if name.partition(",")[0] not in QUICK))
 def test_a_command_that_may_last_shows_progress_and_tells_what_it_does(name, seen, folder):
     _, found, drawn = look(name, seen, folder)
     assert "━" in drawn or "╸" in drawn, drawn  # a bar

@@ -330,7 +330,13 @@ def documented(name):
     return rw if name in VALUES else getattr(rw, name)
 
 
-@pytest.mark.parametrize("name", rw.__all__)
+#: Names whose examples draw with pyvista.
+DRAWN = ("View", "view")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(one, marks=[pytest.mark.needs("pyvista")] if one in DRAWN else []) for one in rw.__all__]
+)
 def test_a_public_name_has_words_and_an_example_that_runs(name, monkeypatch):
     monkeypatch.chdir(ROOT)
     one = documented(name)

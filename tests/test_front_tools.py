@@ -251,6 +251,7 @@ def test_columns_that_are_alike_are_one():
     assert "kxx = 60 N/µm at all points" in constant
 
 
+@pytest.mark.needs("pyvista")
 def test_a_view_of_a_result_keeps_its_pictures_in_memory(tmp_path):
     found = rw.view(rw.run(STATIC))
     assert found.files == [] and all(content[:4] == b"\x89PNG" for content in found.pictures.values())
