@@ -119,7 +119,8 @@ def end(code: int) -> NoReturn:
 
 def _end_in_order(code: int) -> NoReturn:
     """As Python ends, but for taking itself apart: meanwhile it answers no signal, and the process would die of one."""
-    threading._shutdown()  # type: ignore[attr-defined]  # typeshed knows public names only
+    # Waits for threads, as the interpreter does when it ends; there is no public name for that, and typeshed knows no other.
+    threading._shutdown()  # type: ignore[attr-defined]
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError):  # a reader that has gone; closed

@@ -23,7 +23,7 @@ class Shown:
     __slots__ = ()
 
     def _shown(self) -> tuple[str, Sequence[Fact]]:
-        """Title, whose first line is bold, and facts in the order of their weight."""
+        """Title, whose first line is bold, and facts in the order of their weight: the one duty of who shows itself."""
         raise NotImplementedError
 
     def __repr__(self) -> str:

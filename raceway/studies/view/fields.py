@@ -45,6 +45,7 @@ class Fields:
     @classmethod
     def of(cls, result: Result) -> Fields:
         """Of a result with elastic bodies."""
+        # ``traits.every_node``, by which the caller chooses, is true of these bodies alone.
         bodies: ElasticBodies = result.model.bearing  # type: ignore[assignment]
         ring: Any = result.model.system
         assembly = bodies.bearing.system.assembly
