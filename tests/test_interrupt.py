@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -71,6 +72,29 @@ def test_ctrl_c_is_not_lost_in_a_callback_or_a_finalizer(arrive):
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
+@pytest.mark.parametrize("number", CODES)
+def test_an_interruption_that_a_library_swallows_is_raised_again(number):
+    with pytest.raises(KeyboardInterrupt), Interrupts():
+        with suppress(BaseException):
+            signal.raise_signal(number)
+        for _ in range(6000):
+            time.sleep(0.01)
+
+
+def test_an_interruption_that_is_being_answered_is_not_raised_again():
+    steps = []
+    with pytest.raises(KeyboardInterrupt), Interrupts():
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            try:
+                raise ValueError("in between")
+            except ValueError:
+                time.sleep(1.3)  # it is looked for twice meanwhile
+                steps.append("in order")
+    assert steps == ["in order"]
+
+
 def test_a_handler_of_the_caller_and_other_threads_are_left_alone():
     seen = []
     before = signal.signal(signal.SIGINT, lambda *_: seen.append(1))
@@ -124,7 +148,7 @@ def test_nohup_is_respected():
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM])
 def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_path):
-    words = ["sweep", ARTICLE, "--set", "integrator.turns=40", "--grid", "load.axial=400:2000:24", "--out", tmp_path / "s"]
+    words = ["sweep", ARTICLE, "--set", "integrator.turns=40", "--grid", "load.axial=400:2000:60", "--out", tmp_path / "s"]
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
     end = time.monotonic() + 100.0

@@ -1,7 +1,8 @@
 """Ctrl-C and a request to end (SIGTERM, SIGHUP) that are not lost where Python drops exceptions.  Part of ``raceway.cli``.
 
 The compiler of the kernels calls back into Python, and an exception that is raised in such a callback or in a finalizer is
-printed and forgotten.  A signal that arrives there is delivered again a moment later.
+printed and forgotten.  A signal that arrives there is delivered again a moment later, and one whose exception nobody handles
+any more and nobody has answered, which a library swallowed, is delivered again until it is.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from typing import NoReturn, Self
 
 #: Time after which a signal is delivered again [s]: longer than a callback, short for a person.
 _AGAIN_S = 0.05
+#: Time after which an interruption that was raised is looked for [s].
+_LOOK_S = 0.5
 #: Time that libraries get to end their own threads and processes once the command was stopped [s].
 _LEAVING_S = 3.0
 #: Time in which a supervisor that asks again is not heard [s].
@@ -69,6 +72,7 @@ class Interrupts:
         self._timer: threading.Timer | None = None
         self._before: dict[signal.Signals, Callable[[int, FrameType | None], object] | int | None] = {}
         self._until = 0.0
+        self._looking = False
 
     def __enter__(self) -> Self:
         global _first, _told
@@ -88,16 +92,42 @@ class Interrupts:
 
     def _arrived(self, number: int, frame: FrameType | None) -> None:
         global _first
-        if drops_exceptions(frame):
-            self._timer = threading.Timer(_AGAIN_S, _thread.interrupt_main, (number,))
-            self._timer.daemon = True
-            self._timer.start()
+        looking, self._looking = self._looking, False
+        if looking and (_told or _unwinding()):
+            self._later(_LOOK_S, self._look, number)
             return
-        again = _first is not None and number != signal.SIGINT and time.monotonic() < self._until
+        if drops_exceptions(frame):
+            self._later(_AGAIN_S, self._look if looking else _thread.interrupt_main, number)
+            return
+        self._later(_LOOK_S, self._look, number)
+        again = not looking and _first is not None and number != signal.SIGINT and time.monotonic() < self._until
         if _first is None:
             _first, self._until = number, time.monotonic() + _ORDER_S
         if not again:
             raise KeyboardInterrupt
+
+    def _later(self, seconds: float, what: Callable[[signal.Signals], None], number: int) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = threading.Timer(seconds, what, (signal.Signals(number),))
+        self._timer.daemon = True
+        self._timer.start()
+
+    def _look(self, number: signal.Signals) -> None:
+        """See in the main thread whether the interruption is still on its way."""
+        if not _told:
+            self._looking = True
+            _thread.interrupt_main(number)
+
+
+def _unwinding() -> bool:
+    """Whether the main thread is putting something in order because of an interruption."""
+    why = sys.exc_info()[1]
+    while why is not None:
+        if isinstance(why, KeyboardInterrupt):
+            return True
+        why = why.__context__
+    return False
 
 
 def end(code: int) -> NoReturn:

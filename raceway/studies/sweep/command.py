@@ -81,6 +81,7 @@ def sweep(given: SweepOptions) -> int:
       raceway sweep examples/steady_orbit.toml --list points.csv \\
           --executor joblib --workers 4
     """
+    from raceway.studies.sweep import open_store
     from raceway.studies.sweep import sweep as study
     from raceway.studies.sweep.front import executor_of, prepared_sweep
     from raceway.studies.sweep.store import exists
@@ -97,18 +98,17 @@ def sweep(given: SweepOptions) -> int:
     if resume and not exists(folder):
         warn(f"`{folder}` holds no sweep to go on with: it is begun anew", label="")
     prepared = prepared_sweep(tables, points, folder, resume, given.plugins)
-    stopped: BaseException | None = None
-    with show_progress(remaining=True, waiting=f"waiting for {given.scheduler}" if given.scheduler else None) as progress:
-        from raceway.studies.sweep import open_store
-
-        try:
+    waiting = f"waiting for {given.scheduler}" if given.scheduler else None
+    try:
+        with show_progress(remaining=True, waiting=waiting) as progress:
             store = study(prepared, chosen, given.retry_failed, progress)
-        except (KeyboardInterrupt, RacewayError) as why:
-            if not (folder / "points.sqlite").is_file():
-                raise
-            store, stopped = open_store(folder), why
+    except (KeyboardInterrupt, RacewayError) as why:
+        if not (folder / "points.sqlite").is_file():
+            raise
+        with open_store(folder) as store:
+            return _show(store, given.as_csv, given.as_json, why)
     with store:
-        return _show(store, given.as_csv, given.as_json, stopped)
+        return _show(store, given.as_csv, given.as_json, None)
 
 
 def _show(store: Store, as_csv: bool, as_json: bool, stopped: BaseException | None) -> int:
