@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from raceway.core.elastic.bed import bed_blocks
 from raceway.core.elastic.body import Body
 from raceway.core.elastic.cage import Cage
-from raceway.core.elastic.contacts.surface import surface_points
 from raceway.core.linear.rigid_motions import MOTIONS, rigid_motions
 
 if TYPE_CHECKING:
@@ -176,10 +176,8 @@ class Assembly:
         for index, body in enumerate(self.bodies):
             if body.foundation is None:
                 continue
-            quads, stiffness = body.foundation
-            p = surface_points(body.points, quads)
-            w = stiffness * p.area[:, None, None] * p.weights[:, :, None] * p.weights[:, None, :]
-            nodes = p.nodes + self.starts[index]
+            nodes, w = bed_blocks(body)
+            nodes = nodes + self.starts[index]
             i = np.broadcast_to(nodes[:, :, None], w.shape).ravel()
             j = np.broadcast_to(nodes[:, None, :], w.shape).ravel()
             rows, columns = ((3 * k[:, None] + np.arange(3)).ravel() for k in (i, j))

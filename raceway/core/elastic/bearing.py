@@ -12,7 +12,9 @@ from raceway.core.elastic.bearing_data import BearingData
 from raceway.core.elastic.body import Body, Frame
 from raceway.core.elastic.cage import Cage, cage_rows
 from raceway.core.elastic.contacts.gap import CIRCLE
+from raceway.core.elastic.contacts.nodal import NodalContact
 from raceway.core.elastic.stepped import Seen
+from raceway.core.elastic.superelements.solver import CondensedSolver
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.elastic.touching import nodal_contact, resultant_contact
 from raceway.core.hexahedron.operator import HexOperator
@@ -58,7 +60,10 @@ class ElasticBearing:
         self._centrifugal = assembly.reduced(outward)
         load = self._centrifugal.copy()
         load[:5] += setup.load
-        self.system = ElasticSystem(assembly, contact, setup.modulus, load)
+        condensed = None
+        if isinstance(contact, NodalContact):
+            condensed = CondensedSolver(assembly, contact, setup.azimuth)
+        self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed=condensed)
 
     @property
     def ball_count(self) -> int:

@@ -98,6 +98,11 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
         if done > 0:
             forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous, 0.3 * tolerance / relative))
         previous = size
+        if system.condensed is not None:
+            y = y + system.increment(1.0, 0.0, 0.0, rest)
+            system.locate(y)
+            rest = system.load - system.static_internal(y)
+            continue
         step = system.solve(1.0, 0.0, 0.0, rest, tolerance=forcing)
         y, rest = _along(system, y, step, rest, tolerance * scale)
         if system.locate(y):

@@ -91,7 +91,7 @@ class SteppedElastic:
         return np.asarray(self.system.internal(t, dt, u, v))
 
     def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray) -> np.ndarray:
-        return np.asarray(self.system.solve(c_k, c_c, c_m, right))
+        return np.asarray(self.system.increment(c_k, c_c, c_m, right))
 
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         return np.asarray(self.system.mass_times(a))

@@ -11,6 +11,7 @@ from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.solver import LinearSolver
 from raceway.core.elastic.statics import TOLERANCE, Settled, settle
+from raceway.core.elastic.superelements.solver import CondensedSolver
 from raceway.errors import ConvergenceError, MeshError
 
 #: Relative residual of the linear solves of a time step: Newton's next iteration takes the rest.
@@ -28,6 +29,7 @@ class ElasticSystem:
     modulus : E* of the contacts [Pa]
     load : (size,) constant forces [N, N m]
     excitation : function of t -> (frame unknowns,) forces on the first frame's motions, or None
+    condensed : solver by superelements, of a bearing in nodal contact; None: conjugate gradients
     """
 
     conservative = True
@@ -39,12 +41,14 @@ class ElasticSystem:
         modulus: float,
         load: np.ndarray,
         excitation: Callable[[float], np.ndarray] | None = None,
+        condensed: CondensedSolver | None = None,
     ) -> None:
         self.assembly, self.contact, self.load = assembly, contact, np.array(load, dtype=float)
         self.excitation = excitation
         #: Called with the relative residual of every iteration of ``settle``.
         self.on_residual: Callable[[float], None] | None = None
-        self.solver = LinearSolver(assembly, contact, modulus)
+        self.condensed = condensed
+        self.solver: LinearSolver | CondensedSolver = condensed or LinearSolver(assembly, contact, modulus)
         self.size = assembly.size
         m = assembly.frame_size
         # Moments count as the force at the arm of the rotations: columns of rotations hold lengths, of translations ones.
@@ -52,6 +56,8 @@ class ElasticSystem:
         self._weight = np.concatenate([np.where(reach > 0.0, 1.0 / np.maximum(reach, 1e-30), 0.0), np.ones(self.size - m)])
         self._u = np.zeros(3 * assembly.nodes)
         self._y = np.zeros(self.size)
+        #: Velocities (3 nodes,), step and share of places with which contact forces were evaluated last.
+        self._at: tuple[np.ndarray | None, float, float] = (None, 0.0, 0.0)
         self._element_step: float | None = None
         self._refuse_overlap()
 
@@ -73,7 +79,8 @@ class ElasticSystem:
         self._y, self._u = y.copy(), a.nodal(y)
         out = a.internal(y, self._u)
         if self.contact is not None:
-            out += a.reduced(self.contact.evaluate(dt, self._u, a.nodal(np.ascontiguousarray(v)) if dt > 0.0 else None))
+            self._at = a.nodal(np.ascontiguousarray(v)) if dt > 0.0 else None, dt, 0.0
+            out += a.reduced(self.contact.evaluate(dt, self._u, self._at[0]))
         m = a.frame_size
         out[:m] += a.frame_damping @ v[:m]
         return out
@@ -84,6 +91,7 @@ class ElasticSystem:
         self._y, self._u = y.copy(), a.nodal(y)
         out = a.internal(y, self._u)
         if self.contact is not None:
+            self._at = None, 0.0, share
             out += a.reduced(self.contact.evaluate(0.0, self._u, None, share))
         return out
 
@@ -91,6 +99,13 @@ class ElasticSystem:
         self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = LINEAR_TOLERANCE
     ) -> np.ndarray:
         return self.solver.solve(c_k, c_c, c_m, right, tolerance)
+
+    def increment(self, c_k: float, c_c: float, c_m: float, right: np.ndarray) -> np.ndarray:
+        """(size,) increment by which the forces of the last ``internal`` change by ``right``; without superelements by their tangents."""
+        if self.condensed is None:
+            return self.solve(c_k, c_c, c_m, right)
+        v, dt, share = self._at
+        return self.condensed.increment(c_k, c_c, c_m, right, self._u, v, dt, share, locates=dt == 0.0)
 
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         m = self.assembly.frame_size

@@ -89,6 +89,7 @@ class HexOperator:
             )
         self.cells: NDArray[np.uint32] = np.ascontiguousarray(numbers, dtype=np.uint32)
         self.formulation, self.hourglass, self.density = formulation, float(hourglass), float(density)
+        self._material = young, poisson, density
         lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
         shear = young / (2.0 * (1.0 + poisson))
         #: (3,) lambda, mu, and hourglass (lambda + 2 mu) [Pa].
@@ -101,6 +102,10 @@ class HexOperator:
         last = self._ranges[-1]
         self._parts = np.zeros(3 * int(last[4] + last[3] - last[2]))
         self._work = np.zeros(WORK * len(self._ranges))
+
+    def of_mesh(self, points: ArrayLike, cells: ArrayLike) -> HexOperator:
+        """The same material and formulation on another mesh."""
+        return HexOperator(points, cells, *self._material, self.formulation, self.hourglass)
 
     @property
     def bytes(self) -> int:

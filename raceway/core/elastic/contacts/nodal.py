@@ -73,6 +73,8 @@ class NodalContact(Contact):
         super().__init__(place, area, counts, surfaces, law, params, state_size, damping, friction)
         self.outside = np.zeros(len(area))
         self._projected = np.full((len(area), 3), np.inf)
+        #: (n, 8) nodes of the assembly that a point's motion is interpolated from, and their weights.
+        self.nodes, self.weights = np.zeros((len(area), 8), dtype=np.int64), np.zeros((len(area), 8))
         self._short = np.zeros(len(area))
         self._weights: csr_matrix = None
         self.update(self.place)
@@ -106,7 +108,7 @@ class NodalContact(Contact):
         from scipy.sparse import csr_array, kron
 
         n = len(self.area)
-        columns, weights = np.empty((n, 8), dtype=np.int64), np.empty((n, 8))
+        columns, weights = self.nodes, self.weights
         begin = 0
         for pair, count in zip(self.pairs, self.counts, strict=True):
             part = slice(begin, begin + count)
@@ -117,7 +119,7 @@ class NodalContact(Contact):
             columns[part, 4:], weights[part, 4:] = pair.facets.quads[facet] + pair.first_node, -values
         self._projected = where.copy()
         rows = np.arange(0, 8 * n + 1, 8)
-        one = csr_array((weights.ravel(), columns.ravel(), rows), shape=(n, self._nodes))
+        one = csr_array((weights.ravel().copy(), columns.ravel().copy(), rows), shape=(n, self._nodes))
         self._weights, self.move = abs(one), kron(one, np.eye(3), format="csr")
         return True
 

@@ -1,0 +1,81 @@
+"""Equal balls seen from the nodes of their contacts, with their cage: what forces there and of the cage do to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from raceway.core.elastic.superelements.loose import Loose, turned
+
+
+class Balls:
+    """Copies of one ball.
+
+    Parameters
+    ----------
+    loose : Loose
+    apply : function of displacements (3 n, m) of the first copy -> forces, the springs of ``loose`` left out
+    rows : (c, 3 n) mean motions of the first copy that the cage holds;  stiffness : (c,) [N/m, N m/rad]
+
+    Attributes
+    ----------
+    flexibility : (3 k + e, 3 k + e) of the first copy: contacts' nodes, then mean motions of the contacts' nodes and of the cage
+    springs : (e,) stiffness of what acts on these motions: minus the springs of ``loose``, and the cage's
+    """
+
+    def __init__(
+        self, loose: Loose, apply: Callable[[np.ndarray], np.ndarray], rows: np.ndarray, stiffness: np.ndarray
+    ) -> None:
+        self.loose, self._apply = loose, apply
+        self.response = loose.solved(np.ascontiguousarray(rows.T), apply)
+        places = loose.unknowns
+        size, held, caged = len(places), loose.motions.shape[1], len(rows)
+        outputs = np.zeros((size, held + caged))
+        outputs[:, :held] = loose.flexibility @ loose.motions
+        outputs[:, held:] = self.response[places]
+        corner = np.zeros((held + caged, held + caged))
+        corner[:held] = loose.motions.T @ outputs
+        corner[held:, :held] = corner[:held, held:].T
+        corner[held:, held:] = rows @ self.response
+        self.flexibility = np.block([[loose.flexibility, outputs], [outputs.T, corner]])
+        self.springs = np.concatenate([np.full(held, -loose.hold), stiffness])
+        self.size = size
+
+    @property
+    def count(self) -> int:
+        return len(self.loose.nodes)
+
+    def of_copy(self, copy: int) -> np.ndarray:
+        """``flexibility`` of a copy where it lies."""
+        turn, n = self.loose.part.copies.turns[copy], self.size
+        out = self.flexibility.copy()
+        out[:n, :n] = turned(out[:n, :n], turn)
+        out[:n, n:] = (turn @ out[:n, n:].reshape(-1, 3, out.shape[0] - n)).reshape(n, -1)
+        out[n:, :n] = out[:n, n:].T
+        return out
+
+    def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Motions (copies, 3 k + e) under nodal forces (3 nodes,) alone, and what ``backward`` needs."""
+        loads, carried = self.loose.forward(force)
+        out = np.empty((self.count, len(self.flexibility)))
+        local = self.loose.to_first(loads)
+        moved = local @ self.flexibility[: self.size, : self.size]
+        out[:, : self.size] = self.loose.to_copies(moved)
+        held = self.loose.motions.shape[1]
+        out[:, self.size : self.size + held] = moved @ self.loose.motions
+        out[:, self.size + held :] = self.loose.part.gathered(force, float).T @ self.response
+        return out, carried
+
+    def backward(self, carried: np.ndarray, moved: np.ndarray, forces: np.ndarray, out: np.ndarray) -> None:
+        """Displacements of all nodes, into ``out`` (3 nodes,).
+
+        Parameters
+        ----------
+        moved : (copies, 3 k) of the contacts' nodes;  forces : (copies, e) on the other motions
+        """
+        held = self.loose.motions.shape[1]
+        cage = forces[:, held:] @ self.response.T  # (copies, 3 n)
+        places = self.loose.unknowns
+        local = self.loose.to_first(moved) + cage[:, places]
+        self.loose.part.spread(self.loose.inner(carried, local) - cage.T, out)

@@ -1,0 +1,122 @@
+"""The superelements of a bearing: what is equal is factored once, with the nodes that its contacts may touch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway.core.elastic.assembly import Assembly
+from raceway.core.elastic.bed import bed_of_cells
+from raceway.core.elastic.contacts.nodal import NodalContact
+from raceway.core.elastic.superelements.balls import Balls
+from raceway.core.elastic.superelements.closed import Closed
+from raceway.core.elastic.superelements.copies import Copies, same_bodies, sectors
+from raceway.core.elastic.superelements.interface import Interface
+from raceway.core.elastic.superelements.loose import Loose
+from raceway.core.elastic.superelements.part import OnFront, Part
+from raceway.core.elastic.superelements.rings import Ring
+
+
+def interface_of(
+    assembly: Assembly, contact: NodalContact, azimuth: np.ndarray, mass: float, on_front: OnFront | None = None
+) -> Interface:
+    """Superelements of c K + d M.
+
+    Parameters
+    ----------
+    assembly : inner ring, outer ring, balls
+    azimuth : (Z,) of the balls [rad]
+    mass : d / c [1/s2]
+    """
+    wanted = _touched(contact, assembly.nodes)
+    rings = [_ring(assembly, index, wanted, azimuth, mass, on_front) for index in (0, 1)]
+    bodies = [(body.points, np.asarray(body.operator.cells)) for body in assembly.bodies[2:]]
+    groups = []
+    for copies, members in same_bodies(bodies, azimuth, assembly.starts[2:-1]):
+        groups.append((_balls(assembly, copies, members[0], wanted, mass, on_front), members))
+    return Interface(rings, groups, assembly.nodes)
+
+
+def _touched(contact: NodalContact, nodes: int) -> np.ndarray:
+    """(nodes,) bool, which of them contacts may touch: under their points, and a facet further on the rings."""
+    out = np.zeros(nodes, dtype=bool)
+    out[contact.nodes.ravel()] = True
+    for pair in contact.pairs:
+        quads = pair.facets.quads + pair.first_node
+        out[quads[out[quads].any(axis=1)].ravel()] = True
+    return out
+
+
+def _ring(
+    assembly: Assembly, index: int, wanted: np.ndarray, azimuth: np.ndarray, mass: float, on_front: OnFront | None
+) -> Ring:
+    body, rows, first = assembly.bodies[index], assembly.part(index), int(assembly.starts[index])
+    free = np.zeros(3 * assembly.nodes, dtype=bool)
+    free[assembly.free] = True
+    free = free[rows].reshape(-1, 3).all(axis=1)
+    cells = np.asarray(body.operator.cells, dtype=np.int64)
+    seat = np.zeros(len(free), dtype=bool)
+    bed = None if body.foundation is None else bed_of_cells(body)
+    if body.foundation is not None:
+        seat[body.foundation[0].ravel()] = True
+    own = wanted[rows.start // 3 : rows.stop // 3]
+    copies = sectors(body.points, cells, azimuth, np.column_stack([free, seat]), first)
+    if copies is not None:
+        touched = np.unique(np.concatenate([np.flatnonzero(own[part - first]) for part in copies.nodes]))
+        cut = np.concatenate([copies.before, copies.behind])
+        if np.isin(touched, cut).any():
+            copies = None
+    if copies is None:
+        copies = Copies.single(body.points, cells, first)
+        touched = np.flatnonzero(own)
+    local = copies.nodes[0] - first
+    touched = touched[free[local[touched]]]
+    if bed is not None:
+        bed = _of_part(bed, cells, local, copies.cells)
+    part = Part(copies, body.operator, touched, free[local], mass, bed, on_front)
+    element = Loose(part) if len(copies.turns) == 1 else Closed(part)
+    inertia = mass * np.repeat(body.operator.lumped_mass() * free, 3)
+    ride = assembly.carried[rows] if body.frame is not None else np.zeros((rows.stop - rows.start, 0))
+
+    def apply(moved: np.ndarray) -> np.ndarray:
+        out = np.zeros_like(moved)
+        own = moved[rows]
+        force = body.operator.internal_force(own.reshape(-1, 3)).ravel() + inertia * own
+        for foundation, _ in assembly.foundations:
+            force += (foundation[rows][:, rows]) @ own
+        out[rows] = force * np.repeat(free, 3)
+        return out
+
+    return Ring(element, rows, ride, apply, inertia, 3 * assembly.nodes)
+
+
+def _of_part(
+    bed: tuple[np.ndarray, np.ndarray], cells: np.ndarray, local: np.ndarray, part: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The cells of a sector that stand on the bed, numbered in it."""
+    key = {tuple(row): k for k, row in enumerate(local[part])}
+    found = [(key[row], matrix) for row, matrix in zip(map(tuple, cells[bed[0]]), bed[1], strict=True) if row in key]
+    return np.array([k for k, _ in found], dtype=np.int64), np.array([matrix for _, matrix in found])
+
+
+def _balls(
+    assembly: Assembly, copies: Copies, first: int, wanted: np.ndarray, mass: float, on_front: OnFront | None
+) -> Balls:
+    index = first + 2
+    body, rows = assembly.bodies[index], assembly.part(index)
+    touched = np.unique(np.concatenate([np.flatnonzero(wanted[nodes]) for nodes in copies.nodes]))
+    part = Part(copies, body.operator, touched, np.ones(len(body.points), dtype=bool), mass, None, on_front)
+    hold = 0.0
+    if mass == 0.0:  # of the order of the contacts' nodes' own
+        hold = float(np.trace(part.fronts.schur)) / len(part.fronts.schur)
+    loose = Loose(part, hold)
+    rows_of_cage, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
+    if assembly.cage is not None:
+        rows_of_cage = assembly.cage.rows[4 * first : 4 * first + 4, rows].toarray()
+        stiffness = assembly.cage.stiffness[4 * first : 4 * first + 4]
+    inertia = mass * np.repeat(body.operator.lumped_mass(), 3)[:, None]
+
+    def apply(moved: np.ndarray) -> np.ndarray:
+        force = [body.operator.internal_force(column.reshape(-1, 3)).ravel() for column in moved.T]
+        return np.stack(force, axis=1) + inertia * moved
+
+    return Balls(loose, apply, rows_of_cage, stiffness)

@@ -1,0 +1,108 @@
+"""Bodies that share no node with each other: balls, or one ring as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from raceway.core.elastic.superelements.part import Part
+from raceway.core.linear.rigid_motions import rigid_motions
+
+#: Solutions in single precision, each with the residual of those before: five digits more each.
+_REFINED = 3
+
+
+class Loose:
+    """Copies of a part, each seen from the nodes of its contacts.
+
+    Parameters
+    ----------
+    part : Part
+    hold : stiffness [N/m] of springs on the six mean motions of the contacts' nodes, where nothing else holds the body; the caller
+        takes them off again
+
+    Attributes
+    ----------
+    flexibility : (3 k, 3 k) of one copy in the frame of the first, with the springs [m/N]
+    motions : (3 k, 6) what the springs act on, orthonormal; (3 k, 0) where ``hold`` is zero
+    """
+
+    def __init__(self, part: Part, hold: float = 0.0) -> None:
+        self.part, self.hold = part, hold
+        order = part.places(part.contact)
+        stiffness = part.fronts.schur[np.ix_(order, order)]
+        self._order = order
+        self.motions = np.zeros((part.size, 0))
+        if hold > 0.0:
+            self.motions = np.linalg.qr(rigid_motions(part.copies.points[part.contact]))[0]
+            stiffness = stiffness + hold * self.motions @ self.motions.T
+        self.flexibility = _inverse(stiffness)
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """(copies, k) numbers of the contacts' nodes."""
+        return self.part.nodes
+
+    @property
+    def unknowns(self) -> np.ndarray:
+        """(3 k,) of the contacts' nodes among those of the first copy."""
+        return np.asarray(self.part.fronts.kept[self._order])
+
+    def to_first(self, values: np.ndarray) -> np.ndarray:
+        """Vectors (copies, 3 k) at the contacts' nodes, in the frame of the first copy."""
+        return turned_vectors(values, self.part.copies.turns.transpose(0, 2, 1))
+
+    def to_copies(self, values: np.ndarray) -> np.ndarray:
+        """The way back."""
+        return turned_vectors(values, self.part.copies.turns)
+
+    def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What nodal forces (3 nodes,) are on the contacts' nodes (copies, 3 k), and what ``backward`` needs."""
+        values = self.part.gathered(force)
+        self.part.fronts.forward(values)
+        return self.to_copies(values[self.unknowns].T.astype(float)), values
+
+    def backward(self, carried: np.ndarray, moved: np.ndarray, out: np.ndarray) -> None:
+        """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (copies, 3 k)."""
+        self.part.spread(self.inner(carried, self.to_first(moved)), out)
+
+    def inner(self, carried: np.ndarray, moved: np.ndarray) -> np.ndarray:
+        """(3 n, copies) displacements in the frame of the first copy, of those of the contacts (copies, 3 k) there."""
+        carried[self.unknowns] = moved.T
+        self.part.fronts.backward(carried)
+        return carried
+
+    def solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """(3 n, m) displacements of the first copy under forces (3 n, m), refined with ``apply``, which knows no springs."""
+        found, places = np.zeros_like(force), self.unknowns
+        for _ in range(_REFINED):
+            rest = force - apply(found)
+            rest[places] -= self.hold * self.motions @ (self.motions.T @ found[places])
+            values = np.ascontiguousarray(rest, dtype=np.float32)
+            self.part.fronts.forward(values)
+            moved = self.flexibility @ values[places].astype(float)
+            found += self.inner(values, moved.T)
+        return found
+
+
+def turned(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Q A Q^T of a (3 k, 3 k) matrix, Q the turn (3, 3) of every node."""
+    k = len(matrix) // 3
+    half = (turn @ matrix.reshape(k, 3, 3 * k)).reshape(3 * k, k, 3)
+    return np.ascontiguousarray((half @ turn.T).reshape(3 * k, 3 * k))
+
+
+def turned_vectors(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
+    """Vectors (copies, 3 k) of the nodes, turned copy by copy."""
+    return np.einsum("cab,cnb->cna", turns, values.reshape(len(turns), -1, 3)).reshape(len(turns), -1)
+
+
+def _inverse(matrix: np.ndarray) -> np.ndarray:
+    """Of a symmetric positive definite matrix."""
+    from scipy.linalg import cho_factor
+    from scipy.linalg.lapack import dpotri
+
+    factor, lower = cho_factor(matrix, lower=True)
+    found = dpotri(factor, lower=lower)[0]
+    return np.asarray(np.tril(found) + np.tril(found, -1).T)

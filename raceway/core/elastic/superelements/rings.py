@@ -1,0 +1,81 @@
+"""A ring seen from the nodes of its contacts and from the frame that it is fastened to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from raceway.core.elastic.superelements.closed import Closed
+from raceway.core.elastic.superelements.loose import Loose
+
+#: Solutions in single precision, each with the residual of those before: five digits more each.
+_REFINED = 3
+
+
+class Ring:
+    """One ring, its displacement u = R q + w of the frame's motions q and of w, which is zero on the seat.
+
+    Parameters
+    ----------
+    element : Loose | Closed
+    part : rows of the ring among all nodes' (3 nodes,)
+    ride : (3 n, m) R at the nodes that are not tied; m = 0 without a frame
+    apply : function of w (3 nodes,) -> c K w + d M w;  inertia : (3 n,) d / c times the nodes' masses
+
+    Attributes
+    ----------
+    follow : (3 n, m) R - W, W the displacement by which the ring falls behind its frame for its inertia
+    flexibility : (3 k, 3 k) of w at the contacts' nodes [m/N]
+    carried : (3 k, m) ``follow`` there
+    """
+
+    def __init__(
+        self,
+        element: Loose | Closed,
+        part: slice,
+        ride: np.ndarray,
+        apply: Callable[[np.ndarray], np.ndarray],
+        inertia: np.ndarray,
+        size: int,
+    ) -> None:
+        self.element, self.part = element, part
+        self.flexibility = element.flexibility
+        behind = np.zeros_like(ride)
+        if inertia.any():
+            for k in range(ride.shape[1]):
+                force = np.zeros(size)
+                force[part] = inertia * ride[:, k]
+                behind[:, k] = self._solved(force, apply)[part]
+        self.follow = ride - behind
+        places = (3 * element.nodes.reshape(-1, 1) + np.arange(3)).ravel() - part.start
+        self.carried = self.follow[places]
+        #: (m, m) what the frame's matrix loses to the ring's inertia: R^T M W d / c; what it gains from the free nodes is in it.
+        self.added = ride.T @ (inertia[:, None] * self.follow)
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """(contacts' nodes,) their numbers."""
+        return np.asarray(self.element.nodes.ravel())
+
+    def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, Any]:
+        """Displacements (3 k,) under nodal forces (3 nodes,) with the frame held, forces (m,) on it, and what ``backward`` needs."""
+        loads, carried = self.element.forward(force)
+        return self.flexibility @ loads.ravel(), self.follow.T @ force[self.part], carried
+
+    def backward(self, carried: Any, moved: np.ndarray, frame: np.ndarray, out: np.ndarray) -> None:
+        """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (3 k,) and of the frame (m,)."""
+        own = moved - self.carried @ frame
+        self.element.backward(carried, own.reshape(len(self.element.nodes), -1), out)
+        out[self.part] += self.follow @ frame
+
+    def _solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        found = np.zeros_like(force)
+        for _ in range(_REFINED):
+            loads, carried = self.element.forward(force - apply(found))
+            step = np.zeros_like(force)
+            moved = self.flexibility @ loads.ravel()
+            self.element.backward(carried, moved.reshape(loads.shape), step)
+            found += step
+        return found

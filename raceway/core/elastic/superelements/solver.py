@@ -1,0 +1,217 @@
+"""Elastic bodies in contact, solved exactly: all that is linear once, Newton's method in the contacts alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import attrs
+import numpy as np
+
+from raceway.core.elastic.assembly import Assembly
+from raceway.core.elastic.contacts.nodal import NodalContact
+from raceway.core.elastic.superelements.bearing import interface_of
+from raceway.core.elastic.superelements.interface import Interface, Motions
+from raceway.core.elastic.superelements.tangent import BallTangent
+from raceway.errors import ConvergenceError
+
+#: Iterations of a step of all bodies in the contacts, trials of a line search, and the slope over the first at which it ends.
+NEWTON_LIMIT, TRIALS, FLAT = 40, 12, 0.9
+#: Unbalanced forces of the contacts over what balances at which Newton's method ends: solutions have six digits before refinement.
+TOLERANCE = 1e-10
+
+
+class CondensedSolver:
+    """Steps of c_k K + c_c C + c_m M with contacts, every node of every body an unknown.
+
+    Parameters
+    ----------
+    assembly : Assembly of inner ring, outer ring and balls;  contact : NodalContact
+    azimuth : (Z,) of the balls [rad]
+
+    Attributes
+    ----------
+    iterations, solves, setups : of Newton's method in the contacts, of all bodies, and factorisations
+    """
+
+    def __init__(self, assembly: Assembly, contact: NodalContact, azimuth: np.ndarray) -> None:
+        self.assembly, self.contact, self.azimuth = assembly, contact, azimuth
+        self.iterations, self.solves, self.setups = 0, 0, 0
+        self._interfaces: dict[float, Interface] = {}
+
+    def interface(self, mass: float) -> Interface:
+        """Superelements of K + mass * M, made at the first call; those of statics and of one step are kept."""
+        if mass not in self._interfaces:
+            for other in [known for known in self._interfaces if known != 0.0 and mass != 0.0]:
+                del self._interfaces[other]
+            self._interfaces[mass] = interface_of(self.assembly, self.contact, self.azimuth, mass)
+            self.setups += 1
+        return self._interfaces[mass]
+
+    def forget(self) -> None:
+        """Nothing: superelements do not know the contacts."""
+
+    def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = 0.0) -> np.ndarray:
+        """(size,) solution with the tangents of the last contact forces, to six digits."""
+        return _Step(self, c_k, c_c, c_m, right).linear()
+
+    def frame_compliance(self) -> np.ndarray:
+        """(m, m) motions of the frame under unit forces on it, all bodies in balance, with the tangents of the last contact forces."""
+        m = self.assembly.frame_size
+        step = _Step(self, 1.0, 0.0, 0.0, np.zeros(self.assembly.size), quiet=True)
+        columns = [step._linearised(attrs.evolve(step.alone, frame=force))[1] for force in np.eye(m)]
+        return np.stack(columns, axis=1)
+
+    def increment(
+        self,
+        c_k: float,
+        c_c: float,
+        c_m: float,
+        right: np.ndarray,
+        u: np.ndarray,
+        v: np.ndarray | None,
+        dt: float,
+        share: float = 0.0,
+        locates: bool = False,
+    ) -> np.ndarray:
+        """(size,) increment by which forces change by ``right``: those of the contacts themselves, not their tangents.
+
+        Parameters
+        ----------
+        u, v : (3 nodes,) displacements and velocities at which the last contact forces were evaluated;  dt : with this step [s]
+        share : with this share (``Contact.evaluate``)
+        locates : whether places on the second surfaces are looked up meanwhile
+        """
+        return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt, share, locates)
+
+
+class _Step:
+    """One right side, eliminated down to the contacts."""
+
+    def __init__(self, solver: CondensedSolver, c_k: float, c_c: float, c_m: float, right: np.ndarray, quiet: bool = False) -> None:
+        a = self.a = solver.assembly
+        self.solver, self.contact = solver, solver.contact
+        self.face, self.rate, self.scale = solver.interface(c_m / c_k), c_c / c_k, c_k
+        m = a.frame_size
+        self.force = np.zeros(3 * a.nodes)
+        self.force[a.free] = right[m:] / c_k
+        self.unknown = a.frame_free
+        face = self.face
+        added = sum(ring.added for ring in face.rings if ring.added.size)
+        self.frame = a.frame_stiffness + self.rate * a.frame_damping + c_m / c_k * a.frame_mass + added
+        nodes, balls = np.empty((len(face.numbers), 3)), np.zeros((face.ball_count, face.extra))
+        on_frame, self.carried = right[:m] / c_k, []
+        if quiet:  # no forces on the bodies
+            self.alone = Motions(np.zeros_like(nodes), balls, on_frame)
+            return
+        for ring in face.rings:
+            moved, force, carried = ring.forward(self.force)
+            nodes[face.place[ring.nodes]] = moved.reshape(-1, 3)
+            on_frame[: len(force)] += force
+            self.carried.append(carried)
+        for group, members in face.groups:
+            moved, carried = group.forward(self.force)
+            nodes[face.place[group.loose.nodes]] = moved[:, : group.size].reshape(len(members), -1, 3)
+            balls[members] = moved[:, group.size :]
+            self.carried.append(carried)
+        self.alone = Motions(nodes, balls, on_frame)
+        solver.solves += 1
+
+    def linear(self) -> np.ndarray:
+        force, frame = self._linearised(self.alone)
+        return self._whole(self._moved(force, frame), force)
+
+    def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float, share: float, locates: bool) -> np.ndarray:
+        """Newton's method with a line search; every state balances all forces but those of the contacts."""
+        numbers, contact = self.face.numbers, self.contact
+        start = self._contact_force()
+
+        def unbalanced(state: Motions, force: Motions) -> np.ndarray:
+            here = u.copy()
+            here.reshape(-1, 3)[numbers] += state.nodes
+            rate = None
+            if v is not None:
+                rate = v.copy()
+                rate.reshape(-1, 3)[numbers] += self.rate * state.nodes
+            contact.evaluate(dt, here, rate)
+            return force.nodes - (self._contact_force() - start)
+
+        force, frame = self._linearised(self.alone)
+        state = self._moved(force, frame)
+        rest = unbalanced(state, force)
+        for _ in range(NEWTON_LIMIT):
+            if locates and contact.update(contact.place + (contact.move @ self._with(u, state)).reshape(-1, 3)):
+                rest = unbalanced(state, force)
+            size = np.abs(start + force.nodes).max()
+            if np.abs(rest).max() <= TOLERANCE * max(size, 1e-300):
+                return self._whole(state, force)
+            if not np.isfinite(rest).all():
+                raise ConvergenceError("forces are not finite.")
+            self.solver.iterations += 1
+            back = self.face.moved(Motions(rest, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
+            driver = Motions(back.nodes, back.balls, self.face.on_frame(rest))
+            pressed, turned = self._linearised(driver)
+            change = Motions(pressed.nodes - rest, pressed.balls, turned)
+            way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
+            slope = float((way.nodes * rest).sum())
+            part, short, beyond, at_short, at_beyond = 1.0, 0.0, np.inf, slope, 0.0
+            for _ in range(TRIALS):
+                trial, tried = state.plus(part, way), force.plus(part, change)
+                left = unbalanced(trial, tried)
+                now = float((way.nodes * left).sum())
+                if abs(now) <= FLAT * abs(slope) or now > 0.0 and np.isinf(beyond):
+                    break
+                if now > 0.0:
+                    short, at_short = part, now
+                else:
+                    beyond, at_beyond = part, now
+                part = short + (beyond - short) * min(max(at_short / (at_short - at_beyond), 0.1), 0.9)
+            state, force, rest = trial, tried, left
+        raise ConvergenceError(
+            f"Newton's residual in the contacts stands at {np.abs(rest).max() / size:.1e} of the largest force after {NEWTON_LIMIT} iterations."
+        )
+
+    def _with(self, u: np.ndarray, state: Motions) -> np.ndarray:
+        here = u.copy()
+        here.reshape(-1, 3)[self.face.numbers] += state.nodes
+        return here
+
+    def _contact_force(self) -> np.ndarray:
+        """(n, 3) internal forces of the contacts on the contacts' nodes, as last evaluated."""
+        contact, place = self.contact, self.face.place
+        chosen = np.flatnonzero(contact.force.any(axis=1))
+        out = np.zeros((len(self.face.numbers), 3))
+        rows = place[contact.nodes[chosen]]
+        if (rows < 0).any():
+            raise ConvergenceError("a contact has left the nodes that its bodies were reduced to.")
+        for a in range(8):
+            np.add.at(out, rows[:, a], -contact.weights[chosen, a, None] * contact.force[chosen])
+        return out
+
+    def _linearised(self, driver: Motions) -> tuple[Motions, np.ndarray]:
+        """With the tangents of the last contact forces."""
+        contact, face = self.contact, self.face
+        blocks = contact.stiffness + self.rate * contact.rate_stiffness
+        chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
+        nodes, weights, blocks = face.place[contact.nodes[chosen]], contact.weights[chosen], blocks[chosen]
+        ball = contact.pair[chosen] % face.ball_count
+        tangents = {}
+        for k in range(face.ball_count):
+            own = ball == k
+            tangents[k] = BallTangent.of(nodes[own], weights[own], blocks[own])
+        return face.linearised(driver, tangents, self.frame, self.unknown)
+
+    def _moved(self, force: Motions, frame: np.ndarray) -> Motions:
+        back = self.face.moved(Motions(-force.nodes, -force.balls, frame), frame)
+        return Motions(self.alone.nodes + back.nodes, self.alone.balls + back.balls, frame)
+
+    def _whole(self, state: Motions, force: Motions) -> np.ndarray:
+        """(size,) all unknowns."""
+        a, face = self.a, self.face
+        out = np.zeros(3 * a.nodes)
+        for ring, carried in zip(face.rings, self.carried, strict=False):
+            frame = state.frame[: ring.carried.shape[1]]
+            ring.backward(carried, state.nodes[face.place[ring.nodes]].ravel(), frame, out)
+        for (group, members), carried in zip(face.groups, self.carried[len(face.rings) :], strict=True):
+            moved = state.nodes[face.place[group.loose.nodes]].reshape(len(members), -1)
+            group.backward(carried, moved, force.balls[members], out)
+        return np.concatenate([state.frame, out[a.free]])
