@@ -38,11 +38,12 @@ def interface_of(
 
 def _touched(contact: NodalContact, nodes: int) -> np.ndarray:
     """(nodes,) bool, which of them contacts may touch: under their points, and a facet further on the rings."""
-    out = np.zeros(nodes, dtype=bool)
-    out[contact.nodes.ravel()] = True
+    under = np.zeros(nodes, dtype=bool)
+    under[contact.nodes.ravel()] = True
+    out = under.copy()
     for pair in contact.pairs:
         quads = pair.facets.quads + pair.first_node
-        out[quads[out[quads].any(axis=1)].ravel()] = True
+        out[quads[under[quads].any(axis=1)].ravel()] = True
     return out
 
 

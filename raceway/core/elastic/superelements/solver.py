@@ -87,7 +87,9 @@ class CondensedSolver:
 class _Step:
     """One right side, eliminated down to the contacts."""
 
-    def __init__(self, solver: CondensedSolver, c_k: float, c_c: float, c_m: float, right: np.ndarray, quiet: bool = False) -> None:
+    def __init__(
+        self, solver: CondensedSolver, c_k: float, c_c: float, c_m: float, right: np.ndarray, quiet: bool = False
+    ) -> None:
         a = self.a = solver.assembly
         self.solver, self.contact = solver, solver.contact
         self.face, self.rate, self.scale = solver.interface(c_m / c_k), c_c / c_k, c_k
