@@ -24,7 +24,7 @@ def bed_of_cells(body: Body) -> tuple[np.ndarray, np.ndarray]:
     on_bed = np.zeros(len(body.points), dtype=bool)
     on_bed[quads.ravel()] = True
     near = np.flatnonzero(on_bed[cells].sum(axis=1) >= 4)
-    owner = {}
+    owner: dict[int, list[int]] = {}
     for cell in near:
         for node in cells[cell][on_bed[cells[cell]]]:
             owner.setdefault(int(node), []).append(int(cell))

@@ -10,6 +10,7 @@ import numpy as np
 
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.stepped import SteppedElastic
+from raceway.core.elastic.superelements.solver import CondensedSolver
 from raceway.core.ring.increment import AT_ONCE, Increment
 from raceway.core.ring.ring import Evaluation
 from raceway.core.ring.surrogate import SteppedRing
@@ -185,13 +186,12 @@ class ElasticRing(SteppedRing):
         Of solutions u_k with errors e_k under forces f_k: f_i u_k + f_k u_i - u_i A u_k = f_i A^-1 f_k - e_i A e_k.
         """
         system = self.bodies.system
-        found = np.empty((5, system.size))
         with self._letting_free(np.ones(5, dtype=bool)):
-            if system.condensed is not None:
-                compliance = system.condensed.frame_compliance()
+            if isinstance(system.solver, CondensedSolver):
+                compliance = system.solver.frame_compliance()
             else:
-                for k, force in enumerate(np.eye(5, system.size)):
-                    found[k] = system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR)
+                forces = np.eye(5, system.size)
+                found = np.stack([system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR) for force in forces])
                 image = system.solver.image(1.0, 0.0, 0.0)
                 compliance = found[:, :5] + found[:, :5].T - found @ np.stack([image(u) for u in found], axis=1)
         stiffness = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness

@@ -53,7 +53,7 @@ def _ring(
     body, rows, first = assembly.bodies[index], assembly.part(index), int(assembly.starts[index])
     free = np.zeros(3 * assembly.nodes, dtype=bool)
     free[assembly.free] = True
-    free = free[rows].reshape(-1, 3).all(axis=1)
+    free = np.asarray(free[rows].reshape(-1, 3).all(axis=1))
     cells = np.asarray(body.operator.cells, dtype=np.int64)
     seat = np.zeros(len(free), dtype=bool)
     bed = None if body.foundation is None else bed_of_cells(body)

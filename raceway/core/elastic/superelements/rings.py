@@ -74,8 +74,9 @@ class Ring:
         found = np.zeros_like(force)
         for _ in range(_REFINED):
             loads, carried = self.element.forward(force - apply(found))
+            back: Any = carried
             step = np.zeros_like(force)
             moved = self.flexibility @ loads.ravel()
-            self.element.backward(carried, moved.reshape(loads.shape), step)
+            self.element.backward(back, moved.reshape(loads.shape), step)
             found += step
         return found
