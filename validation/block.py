@@ -12,6 +12,7 @@ from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.stepping.protocol import Observation, State
 from raceway.core.stepping.record import Motion
+from raceway.core.threads import ThreadPool
 from validation.reference import elastic
 
 YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0
@@ -51,6 +52,7 @@ class Block:
         self.area = share * sides[0] * sides[1]
         self.friction = CoulombFriction(coefficient, np.full(len(self.base), stick), symmetric) if coefficient else None
         self.normal = np.tile([0.0, 0.0, 1.0], (len(self.base), 1))
+        self.threads = ThreadPool(1)
 
     def begin(self, motion: Motion) -> State:
         assert motion.whole is not None
@@ -60,7 +62,7 @@ class Block:
 
     def motion(self, state: State) -> Motion:
         s = state.copy()
-        whole = {"u": s.u, "v": s.v, "a": s.a, "rest": s.rest}
+        whole = {"u": s.u, "v": s.v, "a": s.a, "rest": -self.mass_times(s.a) if s.rest is None else s.rest}
         if self.friction is not None:
             whole |= self.friction.state()
         still = np.zeros((0, 2))
@@ -120,11 +122,8 @@ class Block:
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         return self.masses * a
 
-    def damping_times(self, v: np.ndarray) -> np.ndarray:
-        return np.zeros_like(v)
-
-    def divide_mass(self, r: np.ndarray, c: float = 0.0) -> np.ndarray:
-        return r / self.masses
+    def accelerations(self, outer: np.ndarray, inner: np.ndarray, a: np.ndarray, c: float) -> np.ndarray:
+        return (outer - inner) / self.masses
 
     def measure(self, r: np.ndarray) -> float:
         return float(np.linalg.norm(r))

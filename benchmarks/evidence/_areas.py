@@ -24,7 +24,7 @@ AREAS = {
         core/ring/kernels/between core/ring/kernels/condensed core/ring/kernels/structural core/ring/kernels/structural_rows""",
     "revolution": "core/revolution storage/array_cache",
     "elastic": "bodies/elastic core/elastic core/ring/stepped core/stepping",
-    "solids": "core/hexahedron core/linear core/ring/address",
+    "solids": "core/hexahedron core/linear core/ring/address core/threads",
     "mesh": "bodies/mesh_fit bodies/mesh_plan bodies/meshing core/mesh data/meshes plugins/formats plugins/meshers",
     "kernels": "core/jit core/signatures framework/plugin_kernel storage/kernel_files",
     "plan": "framework/probe pipeline/allowance planning",

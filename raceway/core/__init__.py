@@ -2,6 +2,7 @@
 
 jit            the one decorator for compiled kernels
 signatures     types of the kernels that are passed as function pointers
+threads        threads that share work, and how many there are
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping
 contact_laws, excitations   compiled kernels of the built-in plug-ins
 ring           the compiled bearing: five coordinates of the inner ring, balls condensed out

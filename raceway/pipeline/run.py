@@ -251,7 +251,7 @@ def _cost(simulations: list[Simulation], times: dict[str, float], error_s: float
         "steps": sum(one.whole.counts["steps"] for one in simulations),
         "newton_iterations": sum(one.whole.counts["evaluations"] for one in simulations),
         "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,
-        "threads": 1,
+        "threads": max((one.whole.counts.get("threads", 1) for one in simulations), default=1),
     }
 
 

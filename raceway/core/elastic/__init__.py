@@ -3,6 +3,9 @@
 body        one body: mesh, material, supports
 assembly    the unknowns of all bodies in one vector, rigid frames included; linear forces, masses, energies
 cage        an ideal cage: mean azimuth and mean rotation of each ball
+body_forces   internal forces of all bodies, shared by threads
+mean_motions  mean motions of bodies and the forces on them, block by block
+unknowns      copies between unknowns and nodal vectors
 contacts    forces between two bodies
 touching    the contacts of a ball bearing, of either kind
 solver      conjugate gradients with multigrid and the rigid frames' own coordinates

@@ -8,11 +8,19 @@ import numpy as np
 
 from raceway.core.elastic.bed import bed_blocks
 from raceway.core.elastic.body import Body
+from raceway.core.elastic.body_forces import BodyForces, fitting_threads
 from raceway.core.elastic.cage import Cage
+from raceway.core.elastic.mean_motions import MeanMotions
+from raceway.core.elastic.unknowns import Selection, gather, spread
 from raceway.core.linear.rigid_motions import MOTIONS, rigid_motions
+from raceway.core.threads import ThreadPool
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from scipy.sparse import csr_matrix
+
+    from raceway.core.elastic.contacts.contact import Contact
 
 
 class Assembly:
@@ -27,6 +35,8 @@ class Assembly:
     -----
     All displacements U (3 nodes,) follow from the unknowns y (size,) by U = G y: free nodes are unknowns, tied ones follow
     their frame, held ones are zero.  Forces on the unknowns are G^T F.
+
+    Inside ``with assembly.threads:`` threads share the work of all bodies; digits do not depend on how many there are.
     """
 
     def __init__(self, bodies: list[Body], cage: Cage | None = None) -> None:
@@ -68,7 +78,13 @@ class Assembly:
         self.free_mass = mass[self.free]
         self.frame_mass = self.frame_mass + self._tie.T @ (mass[self.tied, None] * self._tie)
         self.foundations = self._beds()
+        self._seats = [self._seat(*bed) for bed in self.foundations]
         self._stiffness: csr_matrix = None
+        #: Threads that share the work while they are open.
+        self.threads = ThreadPool(fitting_threads(sum(len(body.operator.cells) for body in bodies)))
+        self._forces = BodyForces([body.operator for body in bodies], self.starts)
+        self._means = None if cage is None else MeanMotions(cage.rows)
+        self._near: tuple[object, Selection] | None = None
 
     def carried_tied(self) -> np.ndarray:
         """(3 nodes, frame_size) displacement of the tied nodes, the others zero."""
@@ -82,32 +98,70 @@ class Assembly:
 
     def nodal(self, y: np.ndarray) -> np.ndarray:
         """U = G y, (3 nodes,)."""
-        out = np.zeros(3 * self.nodes)
-        out[self.free] = y[self.frame_size :]
+        out, values = np.zeros(3 * self.nodes), y[self.frame_size :]
+        self.threads.do_shares(len(self.free), lambda a, b: spread(a, b, self.free, values, out))
         if self.frame_size:
             out[self.tied] = self._tie @ y[: self.frame_size]
         return out
 
     def reduced(self, force: np.ndarray) -> np.ndarray:
         """G^T F, (size,)."""
-        return np.concatenate([self._tie.T @ force[self.tied], force[self.free]])
+        out = np.empty(self.size)
+        out[: self.frame_size] = self._tie.T @ force[self.tied]
+        values = out[self.frame_size :]
+        self.threads.do_shares(len(self.free), lambda a, b: gather(a, b, self.free, force, values))
+        return out
 
-    def internal(self, y: np.ndarray, u: np.ndarray, v_frame: np.ndarray | None = None) -> np.ndarray:
-        """(size,) forces of bodies, beds, cage and frames at y, U = G y, without matrices of the bodies."""
-        force = np.empty(3 * self.nodes)
-        for index, body in enumerate(self.bodies):
-            rows = self.part(index)
-            body.operator.internal_force(u[rows], out=force[rows].reshape(-1, 3))
-        if self.cage is not None:
-            force += self.cage.internal(u)
+    def internal(self, y: np.ndarray, u: np.ndarray, beside: Callable[[], None] | None = None) -> np.ndarray:
+        """(size,) forces of bodies, beds, cage and frames at y, U = G y, without matrices of the bodies.
+
+        Parameters
+        ----------
+        beside : work that is done at the same time
+        """
+        means = self._means
+        moved = np.empty(0 if means is None else means.count)
+        first = [beside] if beside else []
+        self._forces.compute(u, self.threads, first + ([] if means is None else means.jobs(u, moved)))
+        amounts = moved if self.cage is None else self.cage.stiffness * moved
+        out = np.empty(self.size)
+        values = out[self.frame_size :]
+
+        def join(force: np.ndarray, begin: int, end: int) -> None:
+            if means is not None:
+                means.add(begin, end, amounts, force)
+            gather(*np.searchsorted(self.free, (begin, end)), self.free, force, values)
+
+        force = self._forces.sum(self.threads, join)
+        out[: self.frame_size] = self._tie.T @ force[self.tied]
         frame = self.frame_stiffness @ y[: self.frame_size]
-        for foundation, ride in self.foundations:
-            pull = foundation @ (u - ride @ y[: self.frame_size])
-            force += pull
+        for matrix, ride, seat in self._seats:
+            pull = matrix @ (u[seat.entries] - ride @ y[: self.frame_size])
+            seat.add(pull, out)
             frame -= ride.T @ pull
-        out = self.reduced(force)
         out[: self.frame_size] += frame
         return out
+
+    def forces(
+        self, dt: float, y: np.ndarray, v: np.ndarray, contact: Contact | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Internal forces (size,) at y and velocities v (size,) after a step dt [s], with those of contacts; and U = G y."""
+        u = self.nodal(y)
+        if contact is None:
+            return self.internal(y, u), u
+        near, at = contact.near, self._at(contact)
+        rate = at.nodal(v) if dt > 0.0 else None
+        pressing: list[np.ndarray] = []
+        out = self.internal(y, u, lambda: pressing.append(contact.evaluate_near(dt, u[near.entries], rate)))
+        at.add(pressing[0], out)
+        return out, u
+
+    def _at(self, contact: Contact) -> Selection:
+        """The entries that a contact's places hang on; looked up anew when they have changed."""
+        near = contact.near
+        if self._near is None or self._near[0] is not near:
+            self._near = near, Selection.of(near.entries, self.free, self.tied, self._tie)
+        return self._near[1]
 
     def stiffness(self) -> csr_matrix:
         """(3 nodes, 3 nodes) sparse stiffness of bodies and beds, made at the first call."""
@@ -167,6 +221,12 @@ class Assembly:
         """(6,) resultant of nodal forces (3 nodes,) on a body about the origin of its points' mean."""
         rows = self.part(index)
         return np.asarray(rigid_motions(self.bodies[index].points).T @ r[rows])
+
+    def _seat(self, foundation: csr_matrix, ride: np.ndarray) -> tuple[csr_matrix, np.ndarray, Selection]:
+        """A bed at its own entries alone: matrix (k, k), the frame's motion (k, frame_size), and the entries."""
+        entries = np.flatnonzero(np.diff(foundation.indptr))
+        seat = Selection.of(entries, self.free, self.tied, self._tie)
+        return foundation[entries][:, entries].tocsr(), np.ascontiguousarray(ride[entries]), seat
 
     def _beds(self) -> list[tuple[csr_matrix, np.ndarray]]:
         """For each bed its matrix (3 nodes, 3 nodes) and the frame's motion that it acts against (3 nodes, frame_size)."""

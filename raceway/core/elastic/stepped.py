@@ -9,6 +9,7 @@ import numpy as np
 
 from raceway.core.stepping.protocol import Observation, State
 from raceway.core.stepping.record import Motion
+from raceway.core.stepping.vectors import divide
 
 if TYPE_CHECKING:
     from raceway.core.elastic.system import ElasticSystem
@@ -42,6 +43,7 @@ class SteppedElastic:
         self.ball_count = ball_count
         self.conservative = contact is None or contact.friction is None
         self.size: int = system.size
+        self.threads = system.assembly.threads
         if look is None and contact is not None:
             self.ball_count = (len(contact.counts) + 1) // 2
 
@@ -56,7 +58,8 @@ class SteppedElastic:
 
     def motion(self, state: State) -> Motion:
         s, contact = state.copy(), self.system.contact
-        whole = {name: getattr(s, name) for name in _UNKNOWNS}
+        rest = -self.mass_times(s.a) if s.rest is None else s.rest
+        whole = dict(zip(_UNKNOWNS, (s.u, s.v, s.a, rest), strict=True))
         if contact is not None:
             whole |= {"projected": contact.projected.copy(), "memory": contact.memory.copy()}
             if contact.friction is not None:
@@ -85,7 +88,11 @@ class SteppedElastic:
         return out
 
     def external(self, t: float, scale: float) -> np.ndarray:
-        return np.asarray(self.system.external(t, scale))
+        load, force = self.system.load, self.system.outer_force(t)
+        out = np.empty(self.size)
+        self.threads.do_shares(self.size, lambda first, last: np.copyto(out[first:last], load[first:last]))
+        out[: len(force)] += scale * force
+        return out
 
     def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         return np.asarray(self.system.internal(t, dt, u, v))
@@ -96,11 +103,18 @@ class SteppedElastic:
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         return np.asarray(self.system.mass_times(a))
 
-    def damping_times(self, v: np.ndarray) -> np.ndarray:
-        return np.asarray(self.system.damping_times(v))
-
-    def divide_mass(self, r: np.ndarray, c: float = 0.0) -> np.ndarray:
-        return np.asarray(self.system.divide_mass(r, c))
+    def accelerations(self, outer: np.ndarray, inner: np.ndarray, a: np.ndarray, c: float) -> np.ndarray:
+        """In place of ``inner``: masses of nodes are lumped, those of the frames a small matrix."""
+        assembly = self.system.assembly
+        m, free = assembly.frame_size, assembly.frame_free
+        frame = np.zeros(m)
+        if free.any():
+            rest = outer[:m] - inner[:m] + c * (assembly.frame_damping @ a[:m])
+            frame[free] = np.linalg.solve((assembly.frame_mass + c * assembly.frame_damping)[np.ix_(free, free)], rest[free])
+        masses, outside, inside = assembly.free_mass, outer[m:], inner[m:]
+        self.threads.do_shares(len(masses), lambda first, last: divide(first, last, outside, inside, masses))
+        inner[:m] = frame
+        return inner
 
     def measure(self, r: np.ndarray) -> float:
         return float(self.system.measure(r))

@@ -56,7 +56,7 @@ class ElasticSystem:
         self._weight = np.concatenate([np.where(reach > 0.0, 1.0 / np.maximum(reach, 1e-30), 0.0), np.ones(self.size - m)])
         self._u = np.zeros(3 * assembly.nodes)
         self._y = np.zeros(self.size)
-        #: Velocities (3 nodes,), step and share of places with which contact forces were evaluated last.
+        #: Velocities (size,), step and share of places with which contact forces were evaluated last.
         self._at: tuple[np.ndarray | None, float, float] = (None, 0.0, 0.0)
         self._element_step: float | None = None
         self._refuse_overlap()
@@ -75,12 +75,8 @@ class ElasticSystem:
 
     def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         a = self.assembly
-        y = np.ascontiguousarray(u)
-        self._y, self._u = y.copy(), a.nodal(y)
-        out = a.internal(y, self._u)
-        if self.contact is not None:
-            self._at = a.nodal(np.ascontiguousarray(v)) if dt > 0.0 else None, dt, 0.0
-            out += a.reduced(self.contact.evaluate(dt, self._u, self._at[0]))
+        out, self._u = a.forces(dt, np.ascontiguousarray(u), v, self.contact)
+        self._at = v if dt > 0.0 else None, dt, 0.0
         m = a.frame_size
         out[:m] += a.frame_damping @ v[:m]
         return out
@@ -105,7 +101,8 @@ class ElasticSystem:
         if self.condensed is None:
             return self.solve(c_k, c_c, c_m, right)
         v, dt, share = self._at
-        return self.condensed.increment(c_k, c_c, c_m, right, self._u, v, dt, share, locates=dt == 0.0)
+        rate = None if v is None else self.assembly.nodal(np.ascontiguousarray(v))
+        return self.condensed.increment(c_k, c_c, c_m, right, self._u, rate, dt, share, locates=dt == 0.0)
 
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         m = self.assembly.frame_size
@@ -167,7 +164,7 @@ class ElasticSystem:
         if self.contact is not None:
             self.contact.commit()
             # Between steps only: within one, places that jump would keep Newton from converging.
-            self.contact.update(self.contact.place + (self.contact.move @ self._u).reshape(-1, 3))
+            self.contact.update(self.contact.where)
 
     def rollback(self) -> None:
         if self.contact is not None:

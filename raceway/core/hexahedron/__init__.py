@@ -8,7 +8,6 @@ ranges       the division of a mesh into parts, their sum, the central-differenc
 strain       strain-displacement matrices of all four formulations
 stiffness    element stiffness matrices and their sum
 point_force  internal force of the eight-point formulations
-threads      threads that share the ranges
 recovery     stresses and hourglass energy
 sparse       sparse matrices of a mesh
 mass         lumped and consistent masses

@@ -17,7 +17,7 @@ from raceway.core.hexahedron.sparse import assemble
 from raceway.core.hexahedron.stable import stable_step
 from raceway.core.hexahedron.stiffness import stiffnesses
 from raceway.core.hexahedron.strain import KINDS
-from raceway.core.hexahedron.threads import Job, ThreadPool
+from raceway.core.threads import Job, ThreadPool
 from raceway.errors import MeshError
 
 if TYPE_CHECKING:
@@ -112,13 +112,18 @@ class HexOperator:
         """Memory of the arrays that the force needs, nodal vectors of the caller aside."""
         return sum(a.nbytes for a in (self.points, self.cells, self.element_masses, self._parts, self._work))
 
+    @property
+    def range_sizes(self) -> NDArray[np.int64]:
+        """Elements of each range: what one thread computes at a time."""
+        return np.asarray(self._ranges[:, 1] - self._ranges[:, 0])
+
     def internal_force(self, u: ArrayLike, out: Floats | None = None, threads: int = 1) -> Floats:
         """(n, 3) Internal forces K u [N] of displacements u (n, 3) [m]; ``out`` is overwritten and returned if given."""
         flat = self._flat(u)
         f = np.empty_like(self.points) if out is None else out
         with ThreadPool(threads) as pool:
-            pool.do(len(self._ranges), self._force_job(flat))
-            pool.do_shares(len(self.points), lambda a, b: add_parts(a, b, self._ranges, self._parts, f.reshape(-1)))
+            pool.do(len(self._ranges), self.force_job(flat))
+            pool.do_shares(len(self.points), lambda a, b: self.add_parts(a, b, f.reshape(-1)))
         return f
 
     def advance(
@@ -143,7 +148,7 @@ class HexOperator:
             Internal forces [N] at the start of the last step.
         """
         flat_u, flat_v, outer, f = u.reshape(-1), v.reshape(-1), self._flat(load), np.zeros(self.points.size)
-        job = self._force_job(flat_u)
+        job = self.force_job(flat_u)
 
         def move(first: int, last: int) -> None:
             add_parts_and_move(first, last, self._ranges, self._parts, outer, inverse_mass, f, dt, flat_u, flat_v)
@@ -198,12 +203,16 @@ class HexOperator:
         """Stable step of central differences with the lumped mass [s], from the elements' eigenvalues."""
         return stable_step(self.element_stiffness, self.element_masses)
 
-    def _force_job(self, u: Floats) -> Job:
-        """The work on one range, by its number."""
+    def force_job(self, u: Floats) -> Job:
+        """The forces of one range of elements, by its number, at u (3 n,) [m]; ``add_parts`` sums them when all are there."""
         if self.formulation == "one_point":
             x = self.points.reshape(-1)
             return lambda r: range_force(r, self._ranges, self.cells, x, u, self.moduli, self._work, self._parts)
         return lambda r: range_point_force(self._kind, r, self._ranges, self.cells, self.points, u, self.moduli, self._parts)
+
+    def add_parts(self, first: int, last: int, f: Floats) -> None:
+        """Forces of the nodes ``first`` to ``last - 1`` into f (3 n,) [N], from those of the ranges."""
+        add_parts(first, last, self._ranges, self._parts, f)
 
     def _flat(self, values: ArrayLike) -> Floats:
         flat = np.ascontiguousarray(values, dtype=np.float64).reshape(-1)

@@ -40,12 +40,6 @@ def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
     return np.array(rows, dtype=np.int64)
 
 
-def share(count: int, threads: int) -> list[tuple[int, int]]:
-    """Edges (start, end) that share ``count`` things among threads."""
-    edges = np.linspace(0, count, threads + 1).astype(int)
-    return list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
-
-
 @jit(void(int64, int64, int64[:, ::1], VECTOR, VECTOR), releases=True)
 def add_parts(first, last, ranges, parts, f):  # type: ignore[no-untyped-def]
     """Forces of the nodes ``first`` to ``last - 1``: the sum over the ranges, in their order."""

@@ -10,6 +10,7 @@ from raceway.core.ring.increment import Increment
 from raceway.core.stepping.protocol import Observation, State
 from raceway.core.stepping.record import Motion
 from raceway.core.stepping.states import check_start
+from raceway.core.threads import ThreadPool
 
 #: Growth of the tangent's diagonal that asks for the stable step anew.
 _STIFFER = 1.02
@@ -44,18 +45,20 @@ class SteppedBearing:
         self._guess: np.ndarray | None = None
         self._stiffest = np.zeros(5)
         self._damping: np.ndarray = system.damping
+        self.threads = ThreadPool(1)
 
     def begin(self, motion: Motion) -> State:
         check_start(self.system, motion)
         self._ball, self._before = motion.ball.copy(), motion.ball_before.copy()
         self._memory = (self.system.law_state if motion.memory is None else motion.memory).copy()
         self.rollback()
-        rest = -self.system.mass @ motion.a if motion.rest is None else motion.rest.copy()
+        rest = -self.mass_times(motion.a) if motion.rest is None else motion.rest.copy()
         return State(motion.q.copy(), motion.v.copy(), motion.a.copy(), rest)
 
     def motion(self, state: State) -> Motion:
         s = state.copy()
-        return Motion(s.u, s.v, s.a, self._ball.copy(), self._before.copy(), s.rest, self._memory.copy())
+        rest = -self.mass_times(s.a) if s.rest is None else s.rest
+        return Motion(s.u, s.v, s.a, self._ball.copy(), self._before.copy(), rest, self._memory.copy())
 
     def outer_force(self, t: float) -> np.ndarray:
         return np.asarray(self.system.outer_force(t))
@@ -88,11 +91,8 @@ class SteppedBearing:
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         return np.asarray(self.system.mass @ a)
 
-    def damping_times(self, v: np.ndarray) -> np.ndarray:
-        return np.asarray(self._damping @ v)
-
-    def divide_mass(self, r: np.ndarray, c: float = 0.0) -> np.ndarray:
-        return self._free_solve(self.system.mass + c * self._damping, r)
+    def accelerations(self, outer: np.ndarray, inner: np.ndarray, a: np.ndarray, c: float) -> np.ndarray:
+        return self._free_solve(self.system.mass + c * self._damping, outer - inner + c * (self._damping @ a))
 
     def measure(self, r: np.ndarray) -> float:
         return float(np.abs(r * self._weight).max())

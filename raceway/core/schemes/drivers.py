@@ -84,6 +84,7 @@ def integrate(
             f"integrator '{name}' has no driver `{missing_driver(scheme, ring is not None)}`, which these bodies need"
         )
     stepper: SteppedSystem = system.stepped() if isinstance(system, Ring) else system
-    recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
-    scheme.stepped(stepper, recorder)
-    return recorder.record()
+    with stepper.threads:
+        recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
+        scheme.stepped(stepper, recorder)
+        return recorder.record()

@@ -4,6 +4,7 @@ protocol            what such a system must do, as numbered duties
 record              schedule, start and record of a time integration
 recorder            sampled steps become a ``Record``; progress; failures with the last good state
 states              shapes of states that compiled kernels take
+vectors             passes of explicit steps over long vectors
 implicit            Newmark's method and generalised-alpha: Newton with a line search
 central_difference  explicit steps, without matrices
 quasi_static        the motion as a series of equilibria

@@ -12,6 +12,8 @@ from raceway.errors import ConvergenceError, RacewayError, StabilityError
 
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
 BOUND = 1.0
+#: Entries of vectors that are summed together: of long ones by one thread at a time, always the same.
+_BLOCK = 16384
 #: Seconds between two reports of progress.
 _REPORT_S = 0.1
 
@@ -54,23 +56,25 @@ class Recorder:
         """(size,) constant load and excitation under the ramp."""
         return self.system.external(t, ramp(t, self.schedule.ramp))
 
-    def accept(self, state: State, velocity: np.ndarray | None = None) -> None:
+    def accept(self, state: State, velocity: np.ndarray | None = None, outer: np.ndarray | None = None) -> None:
         """Commit a step, keep it in the record where its turn is, and report progress.
 
         Parameters
         ----------
         velocity : (size,) what the record shows; None for ``state.v``
+        outer : (size,) what ``load`` gave for the step's end, where the loop has it still
 
         Raises
         ------
         StabilityError
             A displacement or rotation that no bearing makes, or that is no number.
         """
-        if not np.abs(state.u).max() < BOUND:
+        outer = self.load(self.time_of(self._done + 1)) if outer is None else outer
+        largest, work = self._passed(state, outer)
+        if not largest < BOUND:
             raise self.unbounded()
         system, schedule = self.system, self.schedule
-        outer = self.load(self.time_of(self._done + 1))
-        self._work += float(0.5 * (self._outer + outer) @ (state.u - self.state.u))
+        self._work += work
         self._outer = outer
         penetration, peak, _ = system.contacts()
         self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
@@ -118,11 +122,26 @@ class Recorder:
             counts={
                 "steps": self.schedule.steps,
                 "evaluations": self.evaluations,
+                "threads": self.system.threads.count,
                 "max_penetration_m": self._penetration,
                 "peak_contact_force_n": self._peak,
             },
             energies={name: np.array([one.energies[name] for one in seen]) for name in (first.energies if first else ())},
         )
+
+    def _passed(self, state: State, outer: np.ndarray) -> tuple[float, float]:
+        """Largest displacement of a step, and the work of the mean outer forces on its way [J]."""
+        before, last = self.state.u, self._outer
+        count = -(-len(outer) // _BLOCK)
+        largest, work = np.empty(count), np.empty(count)
+
+        def one(number: int) -> None:
+            part = slice(_BLOCK * number, _BLOCK * (number + 1))
+            largest[number] = np.abs(state.u[part]).max()
+            work[number] = 0.5 * (last[part] + outer[part]) @ (state.u[part] - before[part])
+
+        self.system.threads.do(count, one)
+        return float(largest.max()), float(work.sum())
 
     def unbounded(self) -> StabilityError:
         """The error for a motion that grows without bound."""

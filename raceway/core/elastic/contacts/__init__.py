@@ -5,6 +5,7 @@ facets      facets under points of a surface, with weights
 gap         distance from the exact surfaces, its normal and curvature
 interior    cells around points inside of a body, with weights
 contact     gap, normal, pressure and friction at places; nodal forces and their tangent
+near        the few nodes that places hang on
 nodal       places that are points of a surface
 resultant   contact resultants, whose law replaces the local compliance of the mesh
 footprint   nodal weights of a contact resultant, and the motion of the surface there

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.core.contact.damping import add_damping, stored_energy
-from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps
+from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps, row_sums
+from raceway.core.elastic.contacts.near import Near
 from raceway.core.elastic.contacts.traction import Friction
 
 if TYPE_CHECKING:
@@ -69,6 +70,9 @@ class Contact(ABC):
         self.force, self.stiffness, self.rate_stiffness = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
         self._stiffest = np.zeros(n)
         self.move: csr_matrix = None
+        #: (n, 3) where the places were at the last forces [m].
+        self.where = place
+        self._near: tuple[csr_matrix, Near] | None = None
 
     # What kinds of contacts differ in
 
@@ -114,8 +118,27 @@ class Contact(ABC):
         share : places less deep than this share of their pair's deepest one count as open
             Of an overlap that nothing has deformed yet, half the depth bounds the contact area.
         """
-        moved = (self.move @ u).reshape(-1, 3)
-        where = self.place + moved
+        rate = None if v is None else self.move @ v
+        self._respond(dt, self.move @ u, rate, share)
+        return np.asarray(-(self.move.T @ self.force.reshape(-1)))
+
+    @property
+    def near(self) -> Near:
+        """The displacements that the places hang on; another object when B was made anew."""
+        if self._near is None or self._near[0] is not self.move:
+            self._near = self.move, Near.of(self.move)
+        return self._near[1]
+
+    def evaluate_near(self, dt: float, u: np.ndarray, v: np.ndarray | None) -> np.ndarray:
+        """(k,) forces as ``evaluate`` gives them, at the entries of ``near`` alone, of displacements and velocities (k,) there."""
+        move = self.near.move
+        self._respond(dt, move @ u, None if v is None else move @ v, 0.0)
+        return np.asarray(-(move.T @ self.force.reshape(-1)))
+
+    def _respond(self, dt: float, u: np.ndarray, v: np.ndarray | None, share: float) -> None:
+        """Forces and tangents of the places, from their displacements and velocities (3 n,) against the second bodies."""
+        moved = u.reshape(-1, 3)
+        where = self.where = self.place + moved
         gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
         gap = self.gap
         if share > 0.0:
@@ -123,7 +146,7 @@ class Contact(ABC):
             gap = np.where(gap > share * np.minimum(deepest, 0.0)[self.pair], np.maximum(gap, 0.0), gap)
         rate = np.zeros(len(gap))
         if v is not None and dt > 0.0:
-            rate = np.einsum("ia,ia->i", (self.move @ v).reshape(-1, 3), self.normal)
+            rate = np.einsum("ia,ia->i", v.reshape(-1, 3), self.normal)
         gap = self.press(gap, rate, dt)
         if dt > 0.0:
             add_damping(self.damping, gap, rate, self.pressure, self.d_gap, self.d_rate)
@@ -139,7 +162,6 @@ class Contact(ABC):
             traction, tangent = self.friction.evaluate(moved, self.normal, self.pressure, self.d_gap)
             self.force += self.area[:, None] * traction
             self.stiffness += self.area[:, None, None] * tangent
-        return np.asarray(-(self.move.T @ self.force.reshape(-1)))
 
     def tangent_times(self, blocks: np.ndarray, u: np.ndarray) -> np.ndarray:
         """(3 nodes,) B^T D B u with blocks D (n, 3, 3)."""
@@ -185,7 +207,9 @@ class Contact(ABC):
 
     def _sizes(self) -> np.ndarray:
         """(n,) largest row sum of each point's stiffness [N/m]."""
-        return np.asarray(np.abs(self.stiffness).sum(axis=2).max(axis=1))
+        out = np.empty(len(self.area))
+        row_sums(self.stiffness, out)
+        return out
 
     def commit(self) -> None:
         self.refuse()

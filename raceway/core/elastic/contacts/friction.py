@@ -23,16 +23,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numba import float64, void
+from numba import boolean, float64, void
 
 from raceway.core.jit import jit
-from raceway.core.signatures import MATRIX, VECTOR
+from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 #: Columns of the tangent's coefficients: across and along the slip [N/m3], and mu dp/dg [N/m3].
 ACROSS, ALONG, COUPLING = range(3)
 
 
-@jit(void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, MATRIX, MATRIX, MATRIX, VECTOR))
+@jit(void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, MATRIX, MATRIX, MATRIX, VECTOR), releases=True)
 def return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, lost):  # type: ignore[no-untyped-def]
     """Resistances of n points, their tangents and what they lost.
 
@@ -84,6 +84,20 @@ def return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resis
         lost[i] = given / k
 
 
+@jit(void(MATRIX, MATRIX, MATRIX, boolean, CUBE), releases=True)
+def tangents(factors, direction, normal, symmetric, out):  # type: ignore[no-untyped-def]
+    """Minus the derivatives (n, 3, 3) of the tractions by the shift, from what ``return_map`` found [N/m3]."""
+    for i in range(out.shape[0]):
+        for a in range(3):
+            for b in range(3):
+                slip = direction[i, a] * direction[i, b]
+                beside = (1.0 if a == b else 0.0) - normal[i, a] * normal[i, b] - slip
+                total = factors[i, 0] * beside + factors[i, 1] * slip
+                if not symmetric:
+                    total += factors[i, 2] * direction[i, a] * normal[i, b]
+                out[i, a, b] = total
+
+
 class CoulombFriction:
     """Coulomb friction of n points against the other surface.
 
@@ -125,13 +139,9 @@ class CoulombFriction:
             pressure, d_gap, normal, self._place - self.place, self.committed, self.coefficient, self.stick,
             self._trial, self._direction, self._factors, self._lost,
         )  # fmt: skip
-        tau = self._direction
-        across, along, coupling = (self._factors[:, c, None, None] for c in (ACROSS, ALONG, COUPLING))
-        slip, press = tau[:, :, None] * tau[:, None, :], normal[:, :, None] * normal[:, None, :]
-        tangent = across * (np.eye(3) - press - slip) + along * slip
-        if not self.symmetric:
-            tangent = tangent + coupling * tau[:, :, None] * normal[:, None, :]
-        return -self._trial, np.asarray(tangent)
+        tangent = np.empty((len(normal), 3, 3))
+        tangents(self._factors, self._direction, normal, self.symmetric, tangent)
+        return -self._trial, tangent
 
     @property
     def slipping(self) -> np.ndarray:

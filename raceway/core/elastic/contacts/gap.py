@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import int64, void
+from numba import boolean, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
@@ -25,7 +25,7 @@ def groove(centre: np.ndarray, circle: float, radius: float) -> np.ndarray:
     return np.array([1.0, *centre, circle, radius, 0.0, 0.0])
 
 
-@jit(void(MATRIX, int64[::1], MATRIX, VECTOR, MATRIX, CUBE))
+@jit(void(MATRIX, int64[::1], MATRIX, VECTOR, MATRIX, CUBE), releases=True)
 def gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-def]
     """Signed distance from a surface, its gradient and its second derivative.
 
@@ -67,7 +67,7 @@ def gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-d
                 bend[i, a, b] = -(along[a] * along[b] / d + mr / r * around[a] * around[b])
 
 
-@jit(void(VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, CUBE, MATRIX, CUBE, CUBE))
+@jit(void(VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, CUBE, MATRIX, CUBE, CUBE), releases=True)
 def forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stiffness, damping):  # type: ignore[no-untyped-def]
     """Forces (n, 3) [N] on the points and minus their derivatives by place and velocity (n, 3, 3) [N/m, N s/m].
 
@@ -83,3 +83,24 @@ def forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stif
                 nn = normal[i, a] * normal[i, b]
                 stiffness[i, a, b] = -w * (d_gap[i] * nn + pressure[i] * bend[i, a, b])
                 damping[i, a, b] = -w * d_rate[i] * nn
+
+
+@jit(void(CUBE, VECTOR), releases=True)
+def row_sums(stiffness, out):  # type: ignore[no-untyped-def]
+    """Largest row sum (n,) of the sizes of matrices (n, 3, 3)."""
+    for i in range(stiffness.shape[0]):
+        out[i] = 0.0
+        for a in range(3):
+            total = abs(stiffness[i, a, 0]) + abs(stiffness[i, a, 1]) + abs(stiffness[i, a, 2])
+            if not total <= out[i]:  # what is no number is kept
+                out[i] = total
+
+
+@jit(boolean(MATRIX, MATRIX, VECTOR), releases=True)
+def has_moved(where, before, far):  # type: ignore[no-untyped-def]
+    """Whether a point (n, 3) has moved along an axis by more than ``far`` (n,)."""
+    for i in range(where.shape[0]):
+        for a in range(3):
+            if abs(where[i, a] - before[i, a]) > far[i]:
+                return True
+    return False

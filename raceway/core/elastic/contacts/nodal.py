@@ -9,6 +9,7 @@ import numpy as np
 
 from raceway.core.elastic.contacts.contact import Contact
 from raceway.core.elastic.contacts.facets import Facets
+from raceway.core.elastic.contacts.gap import has_moved
 from raceway.core.elastic.contacts.surface import SurfacePoints
 from raceway.core.elastic.contacts.traction import Friction
 
@@ -75,7 +76,8 @@ class NodalContact(Contact):
         self._projected = np.full((len(area), 3), np.inf)
         #: (n, 8) nodes of the assembly that a point's motion is interpolated from, and their weights.
         self.nodes, self.weights = np.zeros((len(area), 8), dtype=np.int64), np.zeros((len(area), 8))
-        self._short = np.zeros(len(area))
+        #: (n,) how far points may be from where they were projected [m].
+        self._far = np.zeros(len(area))
         self._weights: csr_matrix = None
         self.update(self.place)
 
@@ -102,8 +104,8 @@ class NodalContact(Contact):
 
     def update(self, where: np.ndarray) -> bool:
         """Look up where the points lie on the second surface; whether anything changed."""
-        away = np.abs(where - self._projected).max(axis=1)
-        if not (away > _MOVED * self._short).any():
+        where = np.ascontiguousarray(where, dtype=float)
+        if not has_moved(where, self._projected, self._far):
             return False
         from scipy.sparse import csr_array, kron
 
@@ -114,7 +116,7 @@ class NodalContact(Contact):
             part = slice(begin, begin + count)
             begin += count
             facet, values, self.outside[part] = pair.facets.locate(where[part])
-            self._short[part] = pair.facets.short[facet]
+            self._far[part] = _MOVED * pair.facets.short[facet]
             columns[part, :4], weights[part, :4] = pair.points.nodes, pair.points.weights
             columns[part, 4:], weights[part, 4:] = pair.facets.quads[facet] + pair.first_node, -values
         self._projected = where.copy()

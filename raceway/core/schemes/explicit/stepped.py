@@ -6,6 +6,7 @@ import numpy as np
 
 from raceway.core.stepping.protocol import State, SteppedSystem
 from raceway.core.stepping.recorder import Recorder
+from raceway.core.stepping.vectors import finish, predict
 from raceway.errors import ConvergenceError, StabilityError
 
 
@@ -18,25 +19,31 @@ def central_difference(system: SteppedSystem, recorder: Recorder) -> None:
         A step above the stable limit, with the limit: of the start, or of a later state whose contacts have closed or
         stiffened; or a motion that grows without bound.
     """
-    dt = recorder.schedule.dt
     _refuse_long_step(system, recorder)
+    guess = np.empty(system.size)
     for step in range(1, recorder.schedule.steps + 1):
-        t, before = recorder.time_of(step), recorder.state
-        half = before.v + 0.5 * dt * before.a
-        u = before.u + dt * half
-        guess = before.v + dt * before.a
-        recorder.evaluations += 1
-        try:
-            rest = recorder.load(t) - system.internal(t, dt, u, guess)
-        except ConvergenceError as why:
-            raise recorder.stalled([], str(why)) from why
-        if system.stiffened():
-            _compare(system.stable_step(), system, recorder, f" at t = {t:.6g} s, where contacts have closed or stiffened")
-        # The constant damping acts on the velocity of the step's end, contacts that depend on the rate see the guess.
-        a = system.divide_mass(rest + 0.5 * dt * system.damping_times(before.a), 0.5 * dt)
-        if not np.isfinite(a).all():
-            raise recorder.unbounded()
-        recorder.accept(State(u, half + 0.5 * dt * a, a, -system.mass_times(a)))
+        _step(system, recorder, recorder.time_of(step), guess)
+
+
+def _step(system: SteppedSystem, recorder: Recorder, t: float, guess: np.ndarray) -> None:
+    """The step that ends at time t; ``guess`` (size,) is work space."""
+    dt, size, threads, before = recorder.schedule.dt, system.size, system.threads, recorder.state
+    start = [np.ascontiguousarray(values) for values in (before.u, before.v, before.a)]
+    u, v = np.empty(size), np.empty(size)  # v is that at half the step, until ``finish``
+    threads.do_shares(size, lambda first, last: predict(first, last, dt, *start, v, u, guess))
+    recorder.evaluations += 1
+    try:
+        internal = system.internal(t, dt, u, guess)
+    except ConvergenceError as why:
+        raise recorder.stalled([], str(why)) from why
+    if system.stiffened():
+        _compare(system.stable_step(), system, recorder, f" at t = {t:.6g} s, where contacts have closed or stiffened")
+    # The constant damping acts on the velocity of the step's end, contacts that depend on the rate see the guess.
+    outer = recorder.load(t)
+    a = np.ascontiguousarray(system.accelerations(outer, internal, before.a, 0.5 * dt))
+    if not all(threads.do_shares(size, lambda first, last: finish(first, last, dt, a, v))):
+        raise recorder.unbounded()
+    recorder.accept(State(u, v, a), outer=outer)
 
 
 def _refuse_long_step(system: SteppedSystem, recorder: Recorder) -> None:

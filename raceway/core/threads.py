@@ -1,0 +1,101 @@
+"""Threads that share numbered jobs; kernels let each other run (``jit(releases=True)``), so plain Python threads do."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
+from typing import TypeVar
+
+T = TypeVar("T")
+#: Work on one thing, by its number.
+Job = Callable[[int], None]
+#: Variables of the environment that bound the threads of a program, as numba and OpenMP read them.
+BOUNDS = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS")
+
+
+def usable_cores() -> int:
+    """Cores that this process may use: those that the system gives it, at most what the variables ``BOUNDS`` say."""
+    count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    for name in BOUNDS:
+        said = os.environ.get(name, "").split(",")[0].strip()  # OpenMP takes a list, a number for each level
+        if said.isdigit() and int(said) > 0:
+            count = min(count, int(said))
+    return count
+
+
+def share(count: int, threads: int) -> list[tuple[int, int]]:
+    """Edges (start, end) that share ``count`` things among threads."""
+    edges = [count * k // threads for k in range(threads + 1)]
+    return list(zip(edges[:-1], edges[1:], strict=True))
+
+
+class ThreadPool:
+    """Threads that share numbered jobs while the pool is open; the caller is one of them, and works alone before and after.
+
+    Parameters
+    ----------
+    count : threads, the caller's included
+
+    Notes
+    -----
+    ``with pool:`` opens it, again inside too; the threads end where the outermost one ends, also by an exception.  Jobs are
+    begun in their order by whoever is free: put long ones first.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self._pool: ThreadPoolExecutor | None = None
+        self._entered = 0
+
+    def __enter__(self) -> ThreadPool:
+        if not self._entered and self.count > 1:
+            self._pool = ThreadPoolExecutor(self.count - 1, thread_name_prefix="raceway")
+        self._entered += 1
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._entered -= 1
+        if not self._entered and self._pool is not None:
+            pool, self._pool = self._pool, None
+            pool.shutdown()
+
+    def do(self, count: int, job: Job) -> None:
+        """Jobs 0 to count - 1; returns when all are done.
+
+        Raises
+        ------
+        What a job raised; none is running any more, and none that had not begun was begun.
+        """
+        queue = iter(range(count))
+
+        def work() -> None:
+            try:
+                for number in queue:  # Python hands each number to one thread
+                    job(number)
+            except BaseException:
+                for _ in queue:
+                    pass
+                raise
+
+        if self._pool is None:
+            work()
+            return
+        others = [self._pool.submit(work) for _ in range(min(self.count, count) - 1)]
+        try:
+            work()
+        finally:
+            wait(others)
+        for one in others:
+            one.result()
+
+    def do_shares(self, count: int, job: Callable[[int, int], T]) -> list[T]:
+        """What ``job(first, last)`` returns on equal shares of ``count`` things."""
+        shares = share(count, self.count if self._pool is not None else 1)
+        found: list[T] = [None] * len(shares)  # type: ignore[list-item]
+
+        def one(number: int) -> None:
+            found[number] = job(*shares[number])
+
+        self.do(len(shares), one)
+        return found
