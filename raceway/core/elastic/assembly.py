@@ -85,6 +85,7 @@ class Assembly:
         self._forces = BodyForces([body.operator for body in bodies], self.starts)
         self._means = None if cage is None else MeanMotions(cage.rows)
         self._near: tuple[object, Selection] | None = None
+        self._u = np.zeros(3 * self.nodes)
 
     def carried_tied(self) -> np.ndarray:
         """(3 nodes, frame_size) displacement of the tied nodes, the others zero."""
@@ -96,9 +97,9 @@ class Assembly:
         """Rows of a body's displacements in U."""
         return slice(3 * int(self.starts[index]), 3 * int(self.starts[index + 1]))
 
-    def nodal(self, y: np.ndarray) -> np.ndarray:
-        """U = G y, (3 nodes,)."""
-        out, values = np.zeros(3 * self.nodes), y[self.frame_size :]
+    def nodal(self, y: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+        """U = G y, (3 nodes,); ``out`` is one of before, to be overwritten."""
+        out, values = np.zeros(3 * self.nodes) if out is None else out, y[self.frame_size :]
         self.threads.do_shares(len(self.free), lambda a, b: spread(a, b, self.free, values, out))
         if self.frame_size:
             out[self.tied] = self._tie @ y[: self.frame_size]
@@ -145,8 +146,8 @@ class Assembly:
     def forces(
         self, dt: float, y: np.ndarray, v: np.ndarray, contact: Contact | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Internal forces (size,) at y and velocities v (size,) after a step dt [s], with those of contacts; and U = G y."""
-        u = self.nodal(y)
+        """Internal forces (size,) at y and velocities v (size,) after a step dt [s], with those of the contacts; U = G y until the next call."""
+        u = self.nodal(y, self._u)
         if contact is None:
             return self.internal(y, u), u
         near, at = contact.near, self._at(contact)
@@ -191,7 +192,7 @@ class Assembly:
 
     def hourglass_energy(self, u: np.ndarray) -> float:
         """The part that hourglass control holds [J]."""
-        return sum(b.operator.hourglass_energy(u[self.part(i)]) for i, b in enumerate(self.bodies))
+        return self._forces.hourglass_energy(u, self.threads)
 
     def loose_motions(self, contacts: list[tuple[int, int]]) -> list[str]:
         """Rigid motions that nothing holds: for each body in words; ``contacts`` are pairs of bodies that touch and so hold each other.

@@ -71,3 +71,15 @@ class BodyForces:
 
         pool.do(len(self._parts), work)
         return force
+
+    def hourglass_energy(self, u: np.ndarray, pool: ThreadPool) -> float:
+        """The part of the strain energy at u (3 nodes,) that hourglass control holds [J]."""
+        found = np.empty(len(self._queue))
+
+        def work(number: int) -> None:
+            body, r = self._queue[number]
+            part = slice(3 * self._starts[body], 3 * self._starts[body + 1])
+            found[number] = self._operators[body].range_hourglass_energy(r, u[part])
+
+        pool.do(len(self._queue), work)
+        return float(found.sum())

@@ -3,12 +3,12 @@
 operator     HexOperator: one mesh with its material, the face of this package
 shape        shape functions, Gauss rules, mean gradients by numpy
 modes        an element's fields as sums of its eight modes, in scalars
-one_point    the fast kernel: exact mean gradient, hourglass control, blocks of 16
+one_point    the fast kernel: exact mean gradient, hourglass control and its energy, blocks of 16
 ranges       the division of a mesh into parts, their sum, the central-difference update
 strain       strain-displacement matrices of all four formulations
 stiffness    element stiffness matrices and their sum
 point_force  internal force of the eight-point formulations
-recovery     stresses and hourglass energy
+recovery     stresses
 sparse       sparse matrices of a mesh
 mass         lumped and consistent masses
 stable       the stable step from element eigenvalues

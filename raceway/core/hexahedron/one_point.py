@@ -33,7 +33,7 @@ WORK = 48 * WIDTH
 _W = float64[::1]
 
 
-_THREE, _FOUR, _SIX, _SEVEN = (types.UniTuple(float64, count) for count in (3, 4, 6, 7))
+_THREE, _FOUR, _SIX, _SEVEN, _EIGHT = (types.UniTuple(float64, count) for count in (3, 4, 6, 7, 8))
 
 
 @jit(_SEVEN(_W, uint64), inline=True)
@@ -162,3 +162,37 @@ def range_force(r, ranges, cells, x, u, moduli, work, f):
                 f[n] += work[at]
                 f[n + uint64(1)] += work[at + uint64(128)]
                 f[n + uint64(2)] += work[at + uint64(256)]
+
+
+@jit(_EIGHT(uint32[:, ::1], int64, uint64, _W), inline=True)
+def _nodes(cells, e, k, a):
+    """Component k of the nodal values of an element."""
+    e, three = uint64(e), uint64(3)
+    return (
+        a[three * cells[e, 0] + k], a[three * cells[e, 1] + k], a[three * cells[e, 2] + k], a[three * cells[e, 3] + k],
+        a[three * cells[e, 4] + k], a[three * cells[e, 5] + k], a[three * cells[e, 6] + k], a[three * cells[e, 7] + k],
+    )  # fmt: skip
+
+
+@jit(float64(int64, int64[:, ::1], uint32[:, ::1], _W, _W, _W), releases=True)
+def range_hourglass_energy(r, ranges, cells, x, u, moduli):
+    """Energy [J] that the hourglass control of one range of elements holds; arguments as of ``range_force``.
+
+    Notes
+    -----
+    kappa / 16 sum_ai (gamma_a . u_i)^2 an element: half of what its forces do on u.
+    """
+    total = 0.0
+    for e in range(ranges[r, 0], ranges[r, 1]):
+        place = modes(_nodes(cells, e, uint64(0), x)), modes(_nodes(cells, e, uint64(1), x)), modes(_nodes(cells, e, uint64(2), x))
+        b = (
+            gradient_modes(place[1], place[2]), gradient_modes(place[2], place[0]), gradient_modes(place[0], place[1]),
+        )  # fmt: skip
+        over = 1.0 / mean_gradient(b[0], place[0])
+        squares = 0.0
+        for k in range(3):
+            moved = modes(_nodes(cells, e, uint64(k), u))
+            q = _hourglass(1.0, _gradient(over, b, moved), moved, place)
+            squares += q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
+        total += 0.5 * (moduli[2] / 64.0) * over * (square(b[0]) + square(b[1]) + square(b[2])) * squares
+    return total

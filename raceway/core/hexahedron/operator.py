@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from raceway.core.hexahedron.mass import element_masses, nodal_volumes
-from raceway.core.hexahedron.one_point import WORK, range_force
+from raceway.core.hexahedron.one_point import WORK, range_force, range_hourglass_energy
 from raceway.core.hexahedron.point_force import range_point_force
 from raceway.core.hexahedron.ranges import add_parts, add_parts_and_move, divide
-from raceway.core.hexahedron.recovery import HourglassEnergy, centre_stress
+from raceway.core.hexahedron.recovery import centre_stress
 from raceway.core.hexahedron.shape import Floats
 from raceway.core.hexahedron.sparse import assemble
 from raceway.core.hexahedron.stable import stable_step
@@ -96,7 +96,6 @@ class HexOperator:
         self.moduli: Floats = np.array([lame, shear, hourglass * (lame + 2.0 * shear)])
         #: (m, 8) Shares of the nodes' lumped masses [kg].
         self.element_masses: Floats = density * nodal_volumes(self.points, self.cells)
-        self._hourglass_energy: HourglassEnergy | None = None
         self._kind = KINDS[formulation]
         self._ranges = divide(self.cells)
         last = self._ranges[-1]
@@ -193,11 +192,15 @@ class HexOperator:
 
     def hourglass_energy(self, u: ArrayLike) -> float:
         """The part of ``energy`` [J] that the hourglass control holds; 0 for the other formulations."""
+        flat = self._flat(u)
+        return float(sum(self.range_hourglass_energy(r, flat) for r in range(len(self._ranges))))
+
+    def range_hourglass_energy(self, r: int, u: Floats) -> float:
+        """``hourglass_energy`` [J] of one range of elements at u (3 n,) [m]."""
         if self.formulation != "one_point":
             return 0.0
-        if self._hourglass_energy is None:
-            self._hourglass_energy = HourglassEnergy(self.points, self.cells, self.moduli)
-        return self._hourglass_energy.of(self._flat(u).reshape(-1, 3))
+        x = self.points.reshape(-1)
+        return float(range_hourglass_energy(r, self._ranges, self.cells, x, u, self.moduli))
 
     def stable_step(self) -> float:
         """Stable step of central differences with the lumped mass [s], from the elements' eigenvalues."""

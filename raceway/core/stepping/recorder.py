@@ -8,6 +8,7 @@ import numpy as np
 
 from raceway.core.stepping.protocol import Observation, State, SteppedSystem
 from raceway.core.stepping.record import OnChunk, Record, Schedule
+from raceway.core.stepping.vectors import bounded, work
 from raceway.errors import ConvergenceError, RacewayError, StabilityError
 
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
@@ -70,11 +71,9 @@ class Recorder:
             A displacement or rotation that no bearing makes, or that is no number.
         """
         outer = self.load(self.time_of(self._done + 1)) if outer is None else outer
-        largest, work = self._passed(state, outer)
-        if not largest < BOUND:
-            raise self.unbounded()
+        done = self._passed(state, outer)
         system, schedule = self.system, self.schedule
-        self._work += work
+        self._work += done
         self._outer = outer
         penetration, peak, _ = system.contacts()
         self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
@@ -129,19 +128,28 @@ class Recorder:
             energies={name: np.array([one.energies[name] for one in seen]) for name in (first.energies if first else ())},
         )
 
-    def _passed(self, state: State, outer: np.ndarray) -> tuple[float, float]:
-        """Largest displacement of a step, and the work of the mean outer forces on its way [J]."""
-        before, last = self.state.u, self._outer
-        count = -(-len(outer) // _BLOCK)
-        largest, work = np.empty(count), np.empty(count)
+    def _passed(self, state: State, outer: np.ndarray) -> float:
+        """Work of the mean outer forces over a step [J].
+
+        Raises
+        ------
+        StabilityError
+            A displacement beyond ``BOUND``, or that is no number.
+        """
+        size = len(state.u)
+        count = -(-size // _BLOCK)
+        arrays = [np.ascontiguousarray(each, dtype=float) for each in (self._outer, outer, self.state.u, state.u)]
+        done, fine = np.empty(count), np.empty(count, dtype=bool)
 
         def one(number: int) -> None:
-            part = slice(_BLOCK * number, _BLOCK * (number + 1))
-            largest[number] = np.abs(state.u[part]).max()
-            work[number] = 0.5 * (last[part] + outer[part]) @ (state.u[part] - before[part])
+            part = _BLOCK * number, min(_BLOCK * (number + 1), size)
+            fine[number] = bounded(*part, BOUND, arrays[-1])
+            done[number] = work(*part, *arrays)
 
         self.system.threads.do(count, one)
-        return float(largest.max()), float(work.sum())
+        if not fine.all():
+            raise self.unbounded()
+        return float(done.sum())
 
     def unbounded(self) -> StabilityError:
         """The error for a motion that grows without bound."""

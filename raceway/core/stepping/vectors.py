@@ -31,6 +31,30 @@ def finish(first, last, dt, a, v):  # type: ignore[no-untyped-def]
     return bad == 0
 
 
+@jit(float64(int64, int64, VECTOR, VECTOR, VECTOR, VECTOR), releases=True)
+def work(first, last, outer_before, outer, u_before, u):  # type: ignore[no-untyped-def]
+    """Work of the mean outer force over a step, of the entries ``first`` to ``last - 1`` [J]: four sums that do not wait."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    fours = first + (last - first) // 4 * 4
+    for i in range(first, fours, 4):
+        a += (outer_before[i] + outer[i]) * (u[i] - u_before[i])
+        b += (outer_before[i + 1] + outer[i + 1]) * (u[i + 1] - u_before[i + 1])
+        c += (outer_before[i + 2] + outer[i + 2]) * (u[i + 2] - u_before[i + 2])
+        d += (outer_before[i + 3] + outer[i + 3]) * (u[i + 3] - u_before[i + 3])
+    for i in range(fours, last):
+        a += (outer_before[i] + outer[i]) * (u[i] - u_before[i])
+    return 0.5 * ((a + b) + (c + d))
+
+
+@jit(boolean(int64, int64, float64, VECTOR), releases=True)
+def bounded(first, last, bound, u):  # type: ignore[no-untyped-def]
+    """Whether the entries ``first`` to ``last - 1`` are numbers below the bound in size."""
+    beyond = 0
+    for i in range(first, last):
+        beyond += 0 if abs(u[i]) < bound else 1
+    return beyond == 0
+
+
 @jit(void(int64, int64, VECTOR, VECTOR, VECTOR), releases=True)
 def divide(first, last, outer, inner, masses):  # type: ignore[no-untyped-def]
     """Accelerations of the entries ``first`` to ``last - 1``, in place of the inner forces: (outer - inner) / masses."""

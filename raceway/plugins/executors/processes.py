@@ -126,6 +126,7 @@ class _Worker:
 def _serve(pipe: Connection, work: Work, parent: int) -> None:
     """What a process does: answer batches until it is ended."""
     end_with(parent)
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # the cores are the processes' already
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's business
     pipe.send(None)
     with suppress(EOFError, OSError):  # the parent is gone

@@ -1,0 +1,139 @@
+"""Explicit steps of elastic bodies by several threads, and the forces of a step against readable sums."""
+
+from __future__ import annotations
+
+import copy
+import threading
+from functools import cache
+
+import numpy as np
+import pytest
+
+from raceway.bodies.model import build_model
+from raceway.core.elastic.body_forces import fitting_threads
+from raceway.core.elastic.start import at_rest
+from raceway.core.schemes.drivers import integrate
+from raceway.core.stepping.record import Schedule
+from raceway.core.threads import ThreadPool
+from raceway.errors import StabilityError
+from raceway.integrators.central_difference import CentralDifference
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from tests.test_elastic_scene import EXCITED, TINY
+
+#: Friction on rigid seats; dashpots, a shaft and elastic seats, whose ring rides on its bed, with the other element.
+CASES = {
+    "friction": {"contact": {"friction": 0.1}},
+    "seats": {
+        "bodies": {"formulation": "incompatible"},
+        "contact": {"damping": 300.0},
+        "rotor": {"damping": 200.0, "transverse_inertia": 1e-4},
+        "supports": {"inner_seat": 1e14, "outer_seat": 2e14, "tilt": 3000.0},
+    },
+}
+STEPS, STEP = 12, 2e-9
+
+
+@cache
+def model_of(case: str):
+    """Model and its equilibrium."""
+    tables = copy.deepcopy(TINY) | copy.deepcopy(EXCITED)
+    for name, table in CASES[case].items():
+        tables[name] = tables.get(name, {}) | table
+    scene = scene_from_dict(tables)
+    model = build_model(scene, make_plan(scene))
+    return model, settle(model)
+
+
+def moved(case: str, threads: int, steps: int = STEPS, step: float = STEP, on_chunk=None):
+    """Record of some steps after a sudden force, all of them recorded."""
+    model, found = model_of(case)
+    assembly = model.bearing.bearing.system.assembly
+    kept, assembly.threads = assembly.threads, ThreadPool(threads)
+    try:
+        start = at_rest(model.system, found.displacement, found.ball, False)
+        return integrate(CentralDifference(), model.system, start, Schedule(step, steps, 1), on_chunk)
+    finally:
+        assembly.threads = kept
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_digits_do_not_depend_on_the_number_of_threads(case):
+    alone = moved(case, 1)
+    assert np.abs(alone.displacement[-1, 1:3]).max() > 0.0
+    if case == "friction":
+        assert np.abs(alone.final.whole["friction"]).max() > 0.0
+    for threads in (2, 3):
+        found = moved(case, threads)
+        assert found.counts["threads"] == threads
+        for name in ("displacement", "velocity", "gap", "contact_force", "ball"):
+            assert np.array_equal(getattr(found, name), getattr(alone, name)), name
+        for name, values in alone.final.whole.items():
+            assert np.array_equal(found.final.whole[name], values), name
+        for name, values in alone.energies.items():
+            assert np.array_equal(found.energies[name], values), name
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_forces_of_a_step_are_the_sums_of_their_parts(case):
+    """Against matrices and whole nodal vectors, written out; bodies, cage, frame, seats and contacts at a random state."""
+    model, found = model_of(case)
+    system = model.bearing.bearing.system
+    a, contact = system.assembly, system.contact
+    rng = np.random.default_rng(4)
+    y = model.system.equilibrium + 1e-8 * rng.standard_normal(a.size)
+    v, dt = 1e-2 * rng.standard_normal(a.size), 1e-9
+    ties = np.zeros((3 * a.nodes, a.size))
+    ties[:, : a.frame_size] = a.carried_tied()
+    ties[a.free, a.frame_size + np.arange(len(a.free))] = 1.0
+    u = ties @ y
+    assert np.array_equal(a.nodal(y), u)
+    parts = [body.operator.stiffness() @ u[a.part(k)] for k, body in enumerate(a.bodies)]
+    force = np.concatenate(parts) + a.cage.rows.T @ (a.cage.stiffness * (a.cage.rows @ u))
+    expected = np.zeros(a.size)
+    for foundation, ride in a.foundations:
+        pull = foundation @ (u - ride @ y[: a.frame_size])
+        force += pull
+        expected[: a.frame_size] -= ride.T @ pull
+    force += contact.evaluate(dt, u, ties @ v)
+    contact.rollback()
+    expected += ties.T @ force
+    expected[: a.frame_size] += a.frame_stiffness @ y[: a.frame_size] + a.frame_damping @ v[: a.frame_size]
+    with a.threads:
+        told = system.internal(0.0, dt, y, v)
+    contact.rollback()
+    # Forces of thousands of newtons an element cancel: rounding of stiffness times displacement.
+    size = max(float(np.abs(part).max()) for part in parts)
+    assert np.abs(told - expected).max() <= 1e-9 * size
+    assert np.linalg.norm(told - expected) <= 1e-10 * np.linalg.norm(expected)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_hourglass_energy_of_all_bodies_is_the_sum_of_theirs(case):
+    a = model_of(case)[0].bearing.bearing.system.assembly
+    u = 1e-7 * np.random.default_rng(5).standard_normal(3 * a.nodes)
+    wanted = sum(body.operator.hourglass_energy(u[a.part(k)]) for k, body in enumerate(a.bodies))
+    assert (wanted > 0.0) == (case == "friction")
+    assert a.hourglass_energy(u) == pytest.approx(wanted, rel=1e-13)  # ranges in another order
+
+
+def test_threads_live_over_a_run_and_end_with_it_also_where_it_fails():
+    def names() -> set[str]:
+        return {thread.name for thread in threading.enumerate() if thread.name.startswith("raceway")}
+
+    seen = []
+    moved("friction", 3, on_chunk=lambda done, total: seen.append(names()))
+    assert len(seen) >= 1
+    assert all(len(one) == 2 for one in seen)
+    assert names() == set()
+    with pytest.raises(StabilityError):
+        moved("friction", 3, step=1.0)
+    assert names() == set()
+
+
+def test_small_bodies_are_stepped_by_one_thread(monkeypatch):
+    monkeypatch.setattr("raceway.core.elastic.body_forces.usable_cores", lambda: 16)
+    assert fitting_threads(500) == 1
+    assert 1 < fitting_threads(60_000) < 16
+    assert fitting_threads(1_000_000) == 16
