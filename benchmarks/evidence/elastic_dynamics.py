@@ -12,6 +12,7 @@ import numpy as np
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._impact import Impact, expected, model, structural_compliances
 from benchmarks.evidence._kept import kept
+from benchmarks.explicit_step import measure
 from raceway import build_model, make_plan, scene_from_dict
 from raceway.bodies.model import Model
 from raceway.core.elastic.contacts.friction import CoulombFriction
@@ -246,5 +247,29 @@ def _cost() -> list[Row]:
     return out
 
 
-#: Each of them minutes of CPU time.
-PARTS = (_impact, _block, _bearing, _cost)
+def _step() -> list[Row]:
+    """An explicit step on the article's mesh, with friction: one thread against all cores."""
+    found = measure()
+    command = "python -m benchmarks.explicit_step"
+    name, threads = f"explicit step, article mesh of {found['elements']} elements, friction: ", found["threads"]
+    note = f"{found['step_us_per_element']:.3f} us an element and step; the forces alone {found['forces_us_per_element']:.3f} us"
+    out = [
+        below(name + "CPU over the forces of the elements alone, one thread", found["step_over_forces"], 2.5, command, note),
+        below(name + f"CPU with {threads} threads over one", found["cpu_ratio"], 1.25, command,
+              f"{found['all_threads_cpu_us_per_element']:.3f} us an element and step"),
+        Row(name + f"digits with {threads} threads", "the same" if found["same_digits"] else "others", "the same as with one",
+            found["same_digits"], command),
+    ]  # fmt: skip
+    quantity = name + f"wall time of one thread over that of {threads}"
+    wall = (
+        f"{found['step_wall_us_per_element']:.3f} and {found['all_threads_wall_us_per_element']:.3f} us an element and step"
+    )
+    if threads == 1 or not found["quiet"]:
+        why = "not measured: one core" if threads == 1 else "not measured: machine busy"
+        return [*out, Row(quantity, why, "for information", True, command, wall)]
+    least = 0.75 * threads if threads <= 4 else 3.0  # memory bandwidth bounds more of them
+    return [*out, Row(quantity, found["wall_ratio"], f"at least {least:g}", found["wall_ratio"] >= least, command, wall)]
+
+
+#: Each of them minutes of CPU time, but for the step.
+PARTS = (_impact, _block, _bearing, _cost, _step)

@@ -110,6 +110,24 @@ def test_forces_of_a_step_are_the_sums_of_their_parts(case):
 
 
 @pytest.mark.parametrize("case", CASES)
+def test_accelerations_are_those_of_the_whole_matrices(case):
+    """(M + c C)^-1 (outer - inner + c C a), in place of the inner forces."""
+    model, _ = model_of(case)
+    stepped, system = model.system.stepped(), model.bearing.bearing.system
+    rng, c, m = np.random.default_rng(6), 1e-4, system.assembly.frame_size
+    outer, inner, a = rng.standard_normal((3, stepped.size))
+    right = outer - inner + c * system.damping_times(a)
+    found = stepped.accelerations(outer, inner, a, c)
+    assert found is inner
+    back = system.mass_times(found) + c * system.damping_times(found)
+    free = system.assembly.unknown
+    assert np.abs(back - right)[free].max() <= 1e-13 * np.abs(right).max()
+    assert (found[:m][~system.assembly.frame_free] == 0.0).all()
+    if case == "seats":
+        assert np.abs(system.damping_times(a)).max() > 0.0
+
+
+@pytest.mark.parametrize("case", CASES)
 def test_hourglass_energy_of_all_bodies_is_the_sum_of_theirs(case):
     a = model_of(case)[0].bearing.bearing.system.assembly
     u = 1e-7 * np.random.default_rng(5).standard_normal(3 * a.nodes)

@@ -184,7 +184,11 @@ def range_hourglass_energy(r, ranges, cells, x, u, moduli):
     """
     total = 0.0
     for e in range(ranges[r, 0], ranges[r, 1]):
-        place = modes(_nodes(cells, e, uint64(0), x)), modes(_nodes(cells, e, uint64(1), x)), modes(_nodes(cells, e, uint64(2), x))
+        place = (
+            modes(_nodes(cells, e, uint64(0), x)),
+            modes(_nodes(cells, e, uint64(1), x)),
+            modes(_nodes(cells, e, uint64(2), x)),
+        )
         b = (
             gradient_modes(place[1], place[2]), gradient_modes(place[2], place[0]), gradient_modes(place[0], place[1]),
         )  # fmt: skip

@@ -28,6 +28,7 @@ def _step(system: SteppedSystem, recorder: Recorder, t: float, numbers: Numbers,
     """The state at time t, one step on."""
     am, af, beta, gamma = numbers
     before, dt = recorder.state, recorder.schedule.dt
+    rest_before = -system.mass_times(before.a) if before.rest is None else before.rest
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
     predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
     u = before.u + dt * before.v + 0.5 * dt * dt * before.a  # start from constant acceleration
@@ -44,7 +45,7 @@ def _step(system: SteppedSystem, recorder: Recorder, t: float, numbers: Numbers,
         except ConvergenceError as why:
             raise recorder.stalled(history, str(why)) from why
         inertia = system.mass_times((1.0 - am) * a + am * before.a)
-        residual = inertia + (1.0 - af) * rest + af * before.rest
+        residual = inertia + (1.0 - af) * rest + af * rest_before
         norm = system.measure(residual)
         history.append(norm)
         if not np.isfinite(norm):
