@@ -143,9 +143,7 @@ class Assembly:
         out[: self.frame_size] += frame
         return out
 
-    def forces(
-        self, dt: float, y: np.ndarray, v: np.ndarray, contact: Contact | None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def forces(self, dt: float, y: np.ndarray, v: np.ndarray, contact: Contact | None) -> tuple[np.ndarray, np.ndarray]:
         """Internal forces (size,) at y and velocities v (size,) after a step dt [s], with those of the contacts; U = G y until the next call."""
         u = self.nodal(y, self._u)
         if contact is None:
