@@ -109,3 +109,14 @@ def ball_layers(radius: float, fine: float, coarse: float, growth: float) -> np.
     """(n,) points 0 to 1 from the inner cube of a ball to its surface, where the first layer is ``fine`` thick."""
     length = (1.0 - CUBE) * radius
     return 1.0 - growing(1.0, fine / length, coarse / length, growth)[::-1]
+
+
+def unfolded(points: np.ndarray, cells: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The quarter with its mirror images about x = 0 and y = 0: points (4 n, 3), cells (4 m, 8), displacements (4 n, 3)."""
+    # Nodes in another order, so that mirrored cells are not inverted.
+    swapped = [1, 0, 3, 2, 5, 4, 7, 6]
+    for axis in (0, 1):
+        sign = np.where(np.arange(3) == axis, -1.0, 1.0)
+        cells = np.concatenate([cells, cells[:, swapped] + len(points)])
+        points, u = np.concatenate([points, sign * points]), np.concatenate([u, sign * u])
+    return points, cells, u

@@ -1,4 +1,4 @@
-"""What a result tells of elastic bodies that touch at points of their surfaces: pressures, points, and the overlap."""
+"""What a result tells of elastic bodies that touch at points of their surfaces: pressures, stresses below, and the overlap."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.report import ElasticBodies
+from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.bodies.model import Told
 from raceway.core.elastic.contacts.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
 from raceway.storage.tables import Tables
@@ -54,6 +55,7 @@ class ElasticPoints(ElasticBodies):
             "bodies": "elastic: every node of rings and balls, pressures at surface points",
             "max_penetration_m": float(left.max(initial=0.0)),
             "penetration_share": float(share.max()),
+            "subsurface": [one.table() for one in below_contacts(self, model, equilibrium)],
         }
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:

@@ -75,5 +75,7 @@ def largest_shear(semi_axes: tuple[float, float], peak_pressure: float, poisson:
     grid = np.linspace(0.0, _DEEP, _GRID + 1)
     k = int(shear(grid).argmax())
     bounds = (grid[max(k - 1, 0)], grid[min(k + 1, _GRID)])
-    found = minimize_scalar(lambda x: -float(shear(np.array([x]))[0]), bounds=bounds, method="bounded", options={"xatol": 1e-9})
+    found = minimize_scalar(
+        lambda x: -float(shear(np.array([x]))[0]), bounds=bounds, method="bounded", options={"xatol": 1e-9}
+    )
     return -float(found.fun) * peak_pressure, float(found.x) * minor

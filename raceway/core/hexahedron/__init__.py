@@ -8,7 +8,8 @@ ranges       the division of a mesh into parts, their sum, the central-differenc
 strain       strain-displacement matrices of all four formulations
 stiffness    element stiffness matrices and their sum
 point_force  internal force of the eight-point formulations
-recovery     stresses
+recovery     stresses, von Mises and largest shear stress
+stress_fit   stresses between the elements' centres
 sparse       sparse matrices of a mesh
 mass         lumped and consistent masses
 stable       the stable step from element eigenvalues

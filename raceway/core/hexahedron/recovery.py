@@ -1,4 +1,4 @@
-"""Stresses of a displacement, by numpy over batches of elements."""
+"""Stresses of a displacement, and what they come to, by numpy over batches of elements."""
 
 from __future__ import annotations
 
@@ -28,4 +28,22 @@ def centre_stress(points: Floats, cells: NDArray[np.uint32], u: Floats, moduli: 
             out[part, k] = (lame + 2.0 * shear / 3.0) * change + 2.0 * shear * (gradient[:, k, k] - trace / 3.0)
             after = (k + 1) % 3
             out[part, 3 + k] = shear * (gradient[:, k, after] + gradient[:, after, k])
+    return out
+
+
+def von_mises(stress: Floats) -> Floats:
+    """(m,) Equivalent stress [Pa] of stresses (m, 6), xx yy zz xy yz zx."""
+    xx, yy, zz, xy, yz, zx = stress.T
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + zx**2)))
+
+
+def largest_shear(stress: Floats) -> Floats:
+    """(m,) Half the difference of the outer principal stresses [Pa] of stresses (m, 6)."""
+    out = np.empty(len(stress))
+    for part in batches(len(stress)):
+        xx, yy, zz, xy, yz, zx = stress[part].T
+        matrix = np.stack([xx, xy, zx, xy, yy, yz, zx, yz, zz], axis=1).reshape(-1, 3, 3)
+        principal = np.linalg.eigvalsh(matrix)
+        out[part] = 0.5 * (principal[:, 2] - principal[:, 0])
     return out

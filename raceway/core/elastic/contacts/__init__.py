@@ -12,5 +12,7 @@ footprint   nodal weights of a contact resultant, and the motion of the surface 
 separation  compliance of the mesh under it: local part and structural part
 traction    duties of friction;  friction: Coulomb's at the points, by return mapping
 penalty     stiffness of the penalty from the bodies' own
+contact_axis  normal of a loaded contact through its centre, in each body
+stress_profile  stresses along it, and the largest shear stress
 recovery    peak pressures, approach, and penetration of the penalty
 """
