@@ -25,6 +25,10 @@ AREAS = {
     "revolution": "core/revolution storage/array_cache",
     "elastic": "bodies/elastic core/elastic core/ring/stepped core/stepping",
     "solids": "core/hexahedron core/linear core/ring/address core/threads",
+    "solids": "core/hexahedron core/linear core/ring/address",
+    "subsurface": """
+        bodies/elastic/subsurface core/contact/subsurface core/elastic/contacts/contact_axis core/elastic/contacts/stress_profile
+        core/hexahedron/stress_fit""",
     "mesh": "bodies/mesh_fit bodies/mesh_plan bodies/meshing core/mesh data/meshes plugins/formats plugins/meshers",
     "kernels": "core/jit core/signatures framework/plugin_kernel storage/kernel_files",
     "plan": "framework/probe pipeline/allowance planning",
@@ -106,6 +110,7 @@ MEASURES = {
     "speed": "rigid motion kernels",
     "stability": "rigid motion condensed elastic stability",
     "statics": "solids mesh",
+    "subsurface": "subsurface elastic solids",
     "swap": "rigid motion kernels",
     "sweep": "sweep",
     "tangent": "rigid",

@@ -96,7 +96,9 @@ class Elastic:
         parts.keep("a compliance for each ball and contact", "every node of every ball and ring is an unknown")
         why = "every node of both halves: the forces may have any direction; a half model is no part of this program"
         parts.keep("other mirror half", why)
-        parts.leave_out("stress recovery", "no stress inside the bodies is asked for")
+        why = "along the normals of the most loaded contacts, once, at rest; `raceway view` recovers the stresses of all elements"
+        why_not = "contact resultants on coarse meshes have no stresses of contacts below them"
+        parts.decide(nodal, "stress recovery", why, why_not)
 
     def unused(self, scene: Scene) -> list[tuple[str, str]]:
         """Nothing beyond what holds for all bodies."""

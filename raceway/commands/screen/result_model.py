@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from raceway.commands.screen.text import Row, number
 from raceway.storage.tables import ReadTables
 
@@ -35,6 +37,7 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
         rows.append(
             ("penetration share", number(100.0 * share, "%", 3), "of the approach, at most: what the law lets overlap")
         )
+    rows += _subsurface(model.get("subsurface") or [])
     if unbalanced is not None:
         rows.append(("unbalanced force", number(unbalanced, "N", 2), "largest, reaction against load"))
     if energies is not None:
@@ -43,6 +46,21 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
     inertia = model.get("inertia")
     if inertia is not None:
         rows += _inertia(inertia)
+    return rows
+
+
+def _subsurface(sides: Sequence[ReadTables]) -> list[Row]:
+    """The largest shear stress below the most loaded contact of each race, a row each."""
+    rows: list[Row] = []
+    for race in dict.fromkeys(str(side["race"]) for side in sides):
+        pair = [side for side in sides if side["race"] == race]
+        values = ", ".join(f"{1e-6 * side['largest_shear_pa']:.0f}" for side in pair)
+        bodies, depths = ", ".join(side["body"] for side in pair), ", ".join(f"{1e6 * side['depth_m']:.0f}" for side in pair)
+        exact = f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa at {1e6 * pair[0]['hertz_depth_m']:.0f} µm"
+        fewest = min(side["cells_to_hertz_depth"] for side in pair)
+        fine = "resolved" if all(side["resolved"] for side in pair) else "not resolved"
+        told = f"{bodies}, {depths} µm deep; {exact}; {fine}: {fewest:.2g} elements down to it"
+        rows.append((f"largest shear, {race}", f"{values} MPa", told))
     return rows
 
 

@@ -19,18 +19,21 @@ import numpy as np
 
 from raceway.core.hexahedron.shape import Floats
 
-#: Radius R in elements, and the fewest centres of a fit; it has eleven coefficients.
-_REACH, _FEWEST = 2.2, 24
+#: Coefficients; radius R in elements, the fewest centres of a fit, how much wider it is made where these do not determine all
+#: coefficients, and ratio of singular values below which they do not.
+_TERMS, _REACH, _FEWEST, _WIDER, _SINGULAR = 11, 2.5, 24, 1.2, 1e-3
+#: Depth in elements below which fits are made: a cubic needs layers above and below.
+_BELOW = 2.0
 #: Nearest centres whose mean lengths are the unit.
 _NEAREST = 8
 
 
 class StressFit:
-    """Fields known at the centres of elements.
+    """Fields known at the centres of elements below a surface.
 
     Parameters
     ----------
-    centres : (k, 3) float [m]
+    centres : (k, 3) float, the third coordinate the depth below the surface [m]
     lengths : (k, 3) float, of the elements along the axes [m], the third one into the body
     values : (k, c) float
     """
@@ -42,26 +45,35 @@ class StressFit:
         self._tree = KDTree(centres)
 
     def lengths_at(self, where: Floats) -> Floats:
-        """(n, 3) mean lengths of the elements around points (n, 3) [m]."""
+        """(n, 3) harmonic mean lengths of the elements around points (n, 3) [m]: one over them is how many fit into a metre."""
         near = self._tree.query(where, k=min(_NEAREST, len(self.centres)))[1].reshape(len(where), -1)
-        return np.asarray(self.lengths[near].mean(axis=1))
+        return np.asarray(1.0 / (1.0 / self.lengths[near]).mean(axis=1))
 
-    def at(self, where: Floats, around: Floats | None = None) -> Floats:
-        """(n, c) values at points (n, 3) [m], of fits around other ones where these are given: near a surface, deeper ones."""
-        around = where if around is None else around
+    def at(self, where: Floats) -> Floats:
+        """(n, c) values at points (n, 3) [m]; nearer to the surface than some elements, of the fit around that depth."""
         out = np.empty((len(where), self.values.shape[1]))
         fewest = min(_FEWEST, len(self.centres)) - 1
+        surface = where * [1.0, 1.0, 0.0]
+        around = np.maximum(where, surface + [0.0, 0.0, _BELOW] * self.lengths_at(surface))
         for i, unit in enumerate(self.lengths_at(around)):
             away = (self.centres - around[i]) / unit
             distance = np.sqrt(np.einsum("ka,ka->k", away, away))
             # The farthest one would have no weight.
             reach = max(_REACH, 1.01 * float(np.partition(distance, fewest)[fewest]))
-            near = np.flatnonzero(distance < reach)
-            weight = 1.0 - (distance[near] / reach) ** 2  # the root of w
-            terms = _terms(away[near]) * weight[:, None]
-            found = np.linalg.lstsq(terms, self.values[near] * weight[:, None], rcond=1e-10)[0]
+            found, rank = self._fit(away, distance, reach)
+            while rank < _TERMS and reach < distance.max():
+                reach *= _WIDER
+                found, rank = self._fit(away, distance, reach)
             out[i] = (_terms((where[i : i + 1] - around[i]) / unit) @ found)[0]
         return out
+
+    def _fit(self, away: Floats, distance: Floats, reach: float) -> tuple[Floats, int]:
+        """(terms, c) coefficients of the centres within a reach, and how many of them are determined."""
+        near = np.flatnonzero(distance < reach)
+        weight = 1.0 - (distance[near] / reach) ** 2  # the root of w
+        terms = _terms(away[near]) * weight[:, None]
+        found, _, rank, _ = np.linalg.lstsq(terms, self.values[near] * weight[:, None], rcond=_SINGULAR)
+        return found, int(rank)
 
 
 def _terms(s: Floats) -> Floats:

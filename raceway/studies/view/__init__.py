@@ -10,6 +10,7 @@ animation     a turn as a GIF
 page          the page with WebGL
 front         ``raceway.view``;  view: its answer
 fields        displacement and stress fields of elastic bodies
+contact_stress  stresses below the most loaded contacts, close up
 study         the files of one result;  command: ``raceway view``
 mesh_command  ``raceway mesh``;  mesh_picture, mesh_screen: its picture and table
 """

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from raceway.core.hexahedron.recovery import centre_stress
+from raceway.core.elastic.contacts.stress_profile import cells_near
+from raceway.core.hexahedron.recovery import centre_stress, largest_shear, von_mises
 from raceway.storage.files import write_whole
 from raceway.studies.view.mesh_picture import _png
 from raceway.studies.view.scene import new_plotter, pyvista_of, quietly
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from raceway.bodies.elastic.report import ElasticBodies
+    from raceway.core.hexahedron.operator import HexOperator
     from raceway.pipeline.result import Result
 
 _SIZE = (1600, 1200)
@@ -43,42 +46,49 @@ class Fields:
     stress: np.ndarray
 
     @classmethod
-    def of(cls, result: Result) -> Fields:
-        """Of a result with elastic bodies."""
+    def of(cls, result: Result, near: Mapping[int, tuple[np.ndarray, float]] | None = None) -> Fields:
+        """Of a result with elastic bodies: of all elements, or of those near some places.
+
+        Parameters
+        ----------
+        near : number of a body -> places (k, 3) [m] and the distance within which an element has a node [m]
+        """
         # ``traits.every_node``, by which the caller chooses, is true of these bodies alone.
         bodies: ElasticBodies = result.model.bearing  # type: ignore[assignment]
         ring: Any = result.model.system
         assembly = bodies.bearing.system.assembly
         moved = assembly.nodal(ring.equilibrium).reshape(-1, 3)
-        parts = list(zip(assembly.bodies, assembly.starts[:-1], assembly.starts[1:], strict=True))
-        operators = [body.operator for body in assembly.bodies]
-        return cls(
-            points=assembly.points,
-            cells=np.concatenate([body.operator.cells.astype(np.int64) + begin for body, begin, _ in parts]),
-            body=np.repeat(np.arange(len(operators)), [len(one.cells) for one in operators]),
-            displacement=moved,
-            stress=np.concatenate(
-                [
-                    centre_stress(one.points, one.cells, moved[begin:end], one.moduli, one.formulation)
-                    for one, (_, begin, end) in zip(operators, parts, strict=True)
-                ]
-            ),
-        )
+        parts, begin = [], 0
+        for index, (body, first, last) in enumerate(
+            zip(assembly.bodies, assembly.starts[:-1], assembly.starts[1:], strict=True)
+        ):
+            if near is not None and index not in near:
+                continue
+            part = _of_body(index, body.operator, moved[first:last], None if near is None else near[index])
+            parts.append(attrs.evolve(part, cells=part.cells + begin))
+            begin += len(part.points)
+        return cls(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in attrs.fields(cls)))
 
     @property
     def von_mises(self) -> np.ndarray:
         """(m,) equivalent stress [Pa]."""
-        xx, yy, zz, xy, yz, zx = self.stress.T
-        normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-        return np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + zx**2))
+        return von_mises(self.stress)
 
     @property
     def largest_shear(self) -> np.ndarray:
         """(m,) half the difference of the outer principal stresses [Pa]."""
-        xx, yy, zz, xy, yz, zx = self.stress.T
-        matrix = np.stack([xx, xy, zx, xy, yy, yz, zx, yz, zz], axis=1).reshape(-1, 3, 3)
-        principal = np.linalg.eigvalsh(matrix)
-        return np.asarray(0.5 * (principal[:, 2] - principal[:, 0]))
+        return largest_shear(self.stress)
+
+
+def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarray, float] | None) -> Fields:
+    points, cells = body.points, body.cells
+    if near is not None:
+        places, reach = near
+        cells = cells[np.unique(np.concatenate([cells_near(points, cells, place, reach) for place in places]))]
+        used, kept = np.unique(cells, return_inverse=True)
+        points, u, cells = points[used], u[used], kept.reshape(-1, 8)
+    stress = centre_stress(points, cells, u, body.moduli, body.formulation)
+    return Fields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
 
 
 def write_fields(result: Result, folder: Path) -> list[Path]:
@@ -90,16 +100,15 @@ def write_fields(result: Result, folder: Path) -> list[Path]:
         pyvista or its system libraries are missing, or the folder cannot be written.
     """
     pyvista = pyvista_of("")
-    fields = Fields.of(result)
-    grid = _grid(pyvista, fields)
+    grid = new_grid(pyvista, Fields.of(result))
     balls = result.equilibrium.contact_force[: result.model.system.ball_count]
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"
     image = quietly(pyvista, _section, pyvista, grid, float(result.model.azimuth[most]), title)
-    return [write_whole(_vtu(grid), folder / "fields.vtu"), write_whole(_png(image), folder / "stress.png")]
+    return [write_whole(vtu(grid), folder / "fields.vtu"), write_whole(_png(image), folder / "stress.png")]
 
 
-def _grid(pyvista: ModuleType, fields: Fields) -> Any:
+def new_grid(pyvista: ModuleType, fields: Fields) -> Any:
     """pyvista's grid with the fields in SI units, units in their names."""
     grid = pyvista.UnstructuredGrid({_HEXAHEDRON: fields.cells}, fields.points)
     grid.point_data["displacement [m]"] = fields.displacement
@@ -110,7 +119,8 @@ def _grid(pyvista: ModuleType, fields: Fields) -> Any:
     return grid
 
 
-def _vtu(grid: Any) -> bytes:
+def vtu(grid: Any) -> bytes:
+    """The content of a file for ParaView."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "fields.vtu"
         grid.save(path)

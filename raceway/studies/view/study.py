@@ -15,6 +15,7 @@ from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page
 from raceway.studies.view.animation import animate
 from raceway.studies.view.bearing import Bearing, State
+from raceway.studies.view.contact_stress import write_contact_stress
 from raceway.studies.view.contacts import contacts
 from raceway.studies.view.fields import write_fields
 from raceway.studies.view.page import view_page
@@ -75,6 +76,14 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         *fields, path = write_fields(result, folder)
         told = "von Mises stress at the elements' centres, in the plane of the axis and the most loaded ball, at rest"
         pictures["stress.png"] = path, "stress in a section of rings and ball", told
+        if not result.model.traits.resultants:
+            on_progress("drawing stress_contact.png", len(pictures), 0)
+            for path in write_contact_stress(result, folder):
+                if path.suffix == ".png":
+                    told = "Stresses below the most loaded contact of each race, at rest; Hertz's depth of the largest shear stress is marked"
+                    pictures[path.name] = path, "stress below the contacts, close up", told
+                else:
+                    fields.append(path)
     if wanted.page:
         text = {
             "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown),

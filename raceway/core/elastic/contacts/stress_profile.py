@@ -16,8 +16,6 @@ _PLACES, _FEWEST = 121, 200
 #: Where the shear stress is above this part of its largest value, a polynomial of this degree is fitted: on Hertz's own line it
 #: gives the size to 0.02 % and the depth to 0.01 %, and what the elements leave of waves is smoothed.
 _TOP, _DEGREE = 0.85, 4
-#: Elements below the surface around which the shallowest fit is made.
-_BELOW = 1.7
 
 
 @attrs.frozen(eq=False)
@@ -96,7 +94,4 @@ def stress_profile(axis: ContactAxis, body: HexOperator, u: np.ndarray, reach: f
     )
     depth = np.linspace(0.0, deep, _PLACES)
     line = np.stack([0.0 * depth, 0.0 * depth, depth], axis=1)
-    lengths = fit.lengths_at(line)
-    # A cubic needs some layers above and below.
-    around = np.maximum(line, [-np.inf, -np.inf, _BELOW * lengths[0, 2]])
-    return StressProfile(depth, fit.at(line, around), lengths)
+    return StressProfile(depth, fit.at(line), fit.lengths_at(line))

@@ -1,0 +1,144 @@
+"""Stresses below contacts at points: a ball on a groove against Hertz, a bearing's table, its picture and its file."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+
+from raceway import scene_from_dict
+from raceway.bodies.elastic.subsurface import below_contacts
+from raceway.core.elastic.contacts.contact_axis import contact_axes
+from raceway.core.elastic.contacts.stress_profile import cells_near
+from raceway.pipeline.run import run
+from validation.below_groove import below
+
+#: Three balls on some two thousand hexahedra: every path, no accuracy.
+TINY = {
+    "title": "tiny",
+    "bearing": {"preset": "B7206C", "ball_count": 3},
+    "bodies": {"kind": "elastic", "formulation": "one_point"},
+    "mesh": {
+        "kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 12, "growth": 3.0, "patch": 0.5,
+        "ball_load": 3e4,
+    },
+    "load": {"axial": 2500.0, "radial": [300.0, 0.0]},
+    "contact": {"kind": "penalty", "discretisation": "nodal", "stiffness": 3e14},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def result():
+    return run(scene_from_dict(TINY))
+
+
+@pytest.mark.parametrize("formulation", ["one_point", "full", "incompatible"])
+def test_a_ball_on_a_groove_has_hertz_s_largest_shear(formulation):
+    """6000 elements, 2.5 down to Hertz's depth: the size to 5 %, the depth of the flat maximum to 15 %."""
+    for side in below(1000.0, 4.0, formulation, growth=1.3, coarse=1.5e-3):
+        assert side.shear == pytest.approx(side.hertz_shear, rel=0.05)
+        assert side.depth == pytest.approx(side.hertz_depth, rel=0.15)
+        assert 2.0 < side.cells < 3.0
+
+
+def test_the_normal_starts_on_both_surfaces_and_goes_into_both_bodies(result):
+    bearing = result.model.bearing.bearing
+    contact, setup = bearing.system.contact, bearing.setup
+    diameter = setup.geometry.ball_diameter
+    for pair in range(6):
+        ball = pair % 3
+        centre = 0.5 * setup.geometry.pitch_diameter * setup.radial(ball)
+        of_ball, of_ring = contact_axes(contact, pair, centre, setup.turn(ball)[:, 2])
+        assert np.linalg.norm(of_ball.pole - centre) == pytest.approx(0.5 * diameter, rel=1e-12)
+        assert np.linalg.norm(of_ring.pole - of_ball.pole) < 0.05 * diameter  # the gap, and chords of millimetres
+        for axis in (of_ball, of_ring):
+            assert axis.axes @ axis.axes.T == pytest.approx(np.eye(3), abs=1e-12)
+        assert of_ball.axes[2] @ (centre - of_ball.pole) > 0.0
+        assert of_ring.axes[2] == pytest.approx(-of_ball.axes[2], abs=1e-12)
+        # The force on the ball points along its normal; points a millimetre apart turn the resultant's direction by degrees.
+        force = contact.resultants()[pair]
+        assert of_ball.axes[2] @ force / np.linalg.norm(force) > np.cos(np.radians(5.0))
+
+
+def test_the_table_names_the_most_loaded_contact_of_each_race(result):
+    found = result.to_dict()
+    table, balls = found["model"]["subsurface"], found["equilibrium"]["balls"]
+    assert [(one["race"], one["body"]) for one in table] == [
+        ("inner", "ball"), ("inner", "ring"), ("outer", "ball"), ("outer", "ring"),
+    ]  # fmt: skip
+    for one in table:
+        loads = [ball[f"load_{one['race']}_n"] for ball in balls]
+        assert one["load_n"] == max(loads) == loads[one["ball"]]
+        ball = balls[one["ball"]]
+        # Steel: of ellipses of any length 0.30 to 0.33 p0 at 0.48 to 0.79 b; of a bearing's long ones near the line's depth.
+        assert 0.30 < one["hertz_largest_shear_pa"] / ball[f"peak_pressure_{one['race']}_pa"] < 0.33
+        assert 0.70 < one["hertz_depth_m"] / ball[f"semi_minor_{one['race']}_m"] < 0.79
+        assert one["resolved"] is False and one["cells_to_hertz_depth"] < 1.0
+
+
+def test_the_line_ends_below_hertz_s_depth(result):
+    for side in below_contacts(result.model.bearing, result.model, result.equilibrium):
+        assert side.profile.depth[0] == 0.0 and side.profile.depth[-1] > 2.0 * side.hertz[1]
+
+
+def test_a_race_that_carries_nothing_is_absent(result):
+    bodies, contact = result.model.bearing, result.model.bearing.bearing.system.contact
+    nothing = type(result.equilibrium)(**{**vars_of(result.equilibrium), "contact_force": np.r_[np.zeros(3), np.ones(3)]})
+    assert {one.race for one in below_contacts(bodies, result.model, nothing)} == {"outer"}
+    pressed, contact.pressure = contact.pressure, 0.0 * contact.pressure
+    try:
+        assert contact_axes(contact, 0, np.zeros(3), np.array([0.0, 0.0, 1.0])) is None
+    finally:
+        contact.pressure = pressed
+
+
+def vars_of(frozen):
+    import attrs
+
+    return {field.name: getattr(frozen, field.name) for field in attrs.fields(type(frozen)) if field.init}
+
+
+def test_the_screen_tells_shear_and_whether_the_mesh_resolves_it(result):
+    from rich.console import Console
+
+    from raceway.commands.screen.result import run_screen
+
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(run_screen(result.to_dict(), ()))
+    text = console.export_text()
+    table = result.to_dict()["model"]["subsurface"]
+    for race, one in (("inner", table[0]), ("outer", table[2])):
+        assert f"largest shear, {race}  " in text
+        assert f"{1e-6 * one['largest_shear_pa']:.0f}, " in text
+        assert f"Hertz {1e-6 * one['hertz_largest_shear_pa']:.0f} MPa" in text
+    assert "not resolved" in text
+
+
+def test_cells_near_a_place_have_a_node_there():
+    from validation.cubes import block
+
+    mesh = block(4, 3, 2, (4.0, 3.0, 2.0))
+    points, cells = mesh.points, mesh.cells
+    near = cells_near(points, cells, np.array([0.1, 0.1, 0.1]), 0.5)
+    assert near.tolist() == [i for i, cell in enumerate(cells) if (np.linalg.norm(points[cell] - 0.1, axis=1) < 0.5).any()]
+
+
+@pytest.mark.needs("pyvista")
+def test_the_picture_and_the_file_of_the_elements_near_the_contacts(result, tmp_path):
+    import pyvista
+
+    from raceway.studies.view.contact_stress import write_contact_stress
+    from raceway.studies.view.fields import Fields
+
+    vtu, png = write_contact_stress(result, tmp_path)
+    assert (vtu.name, png.name) == ("contact.vtu", "stress_contact.png")
+    assert png.read_bytes().startswith(b"\x89PNG")
+    grid, whole = pyvista.read(vtu), Fields.of(result)
+    most = {2 + one["ball"] for one in result.to_dict()["model"]["subsurface"]}
+    assert set(np.unique(grid.cell_data["body"])) == {0, 1} | most
+    assert 0 < grid.n_cells < len(whole.cells)
+    # The same elements have the same stresses as in fields.vtu.
+    middle = {tuple(np.round(1e9 * one).astype(int)): k for k, one in enumerate(whole.points[whole.cells].mean(axis=1))}
+    chosen = [middle[tuple(np.round(1e9 * one).astype(int))] for one in grid.points[grid.cells_dict[12]].mean(axis=1)]
+    assert np.array_equal(grid.cell_data["largest shear stress [Pa]"], whole.largest_shear[chosen])
