@@ -73,7 +73,7 @@ class StressFit:
         weight = 1.0 - (distance[near] / reach) ** 2  # the root of w
         terms = _terms(away[near]) * weight[:, None]
         found, _, rank, _ = np.linalg.lstsq(terms, self.values[near] * weight[:, None], rcond=_SINGULAR)
-        return found, int(rank)
+        return np.asarray(found, dtype=np.float64), int(rank)
 
 
 def _terms(s: Floats) -> Floats:

@@ -86,7 +86,7 @@ def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarra
         places, reach = near
         cells = cells[np.unique(np.concatenate([cells_near(points, cells, place, reach) for place in places]))]
         used, kept = np.unique(cells, return_inverse=True)
-        points, u, cells = points[used], u[used], kept.reshape(-1, 8)
+        points, u, cells = points[used], u[used], kept.reshape(-1, 8).astype(np.uint32)
     stress = centre_stress(points, cells, u, body.moduli, body.formulation)
     return Fields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
 
