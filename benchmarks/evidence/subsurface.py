@@ -66,7 +66,7 @@ def _finest(where: str, side: Below, note: str = "") -> list[Row]:
 
 def _large() -> list[Row]:
     nodes, growth = list(MESHES.items())[-1]
-    why = "; the maximum is flat, and bodies whose curvature Hertz leaves out decay slower: the difference grows with the ellipse"
+    why = "; as fine in units of the ellipse, which is 2.2 times as large against the radii of ball and groove"
     out = []
     for side in below(LARGE, nodes, "incompatible", growth=growth, coarse=COARSE):
         out += _finest(f"incompatible, {side.body}, {LARGE:g} N", side, why)
