@@ -25,7 +25,6 @@ AREAS = {
     "revolution": "core/revolution storage/array_cache",
     "elastic": "bodies/elastic core/elastic core/ring/stepped core/stepping",
     "solids": "core/hexahedron core/linear core/ring/address core/threads",
-    "solids": "core/hexahedron core/linear core/ring/address",
     "subsurface": """
         bodies/elastic/subsurface core/contact/subsurface core/elastic/contacts/contact_axis core/elastic/contacts/stress_profile
         core/hexahedron/stress_fit""",
