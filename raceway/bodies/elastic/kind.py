@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.bodies.condensed.plan import section_cost
-from raceway.bodies.elastic.plan import elastic_cost, elastic_faults, memory_faults, words
+from raceway.bodies.elastic.plan import elastic_cost, elastic_faults, equal_sectors, memory_faults, words
 from raceway.bodies.mesh_plan import mesh_faults, predicted_mesh, unrefined
 from raceway.bodies.modules import EVERY_NODE, REDUCED, RIGID, of_balls
 from raceway.errors import Mistake
@@ -96,6 +96,14 @@ class Elastic:
         parts.keep("a compliance for each ball and contact", "every node of every ball and ring is an unknown")
         why = "every node of both halves: the forces may have any direction; a half model is no part of this program"
         parts.keep("other mirror half", why)
+        count = scene.bearing.ball_count
+        why = f"the {count} balls are one ball turned, and each ring {count} equal sectors: one of each is factored"
+        if nodal and equal_sectors(scene):
+            parts.leave_out("factors of equal balls and sectors", why)
+        elif nodal:
+            why = f"mesh.kind is {scene.mesh.name}: " if scene.mesh is not None else ""
+            why += "a ring is factored as a whole unless its sectors turn out to be equal, and each ball that is no turned copy"
+            parts.keep("factors of equal balls and sectors", why)
         why = "along the normals of the most loaded contacts, once, at rest; `raceway view` recovers the stresses of all elements"
         why_not = "contact resultants on coarse meshes have no stresses of contacts below them"
         parts.decide(nodal, "stress recovery", why, why_not)

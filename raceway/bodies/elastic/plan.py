@@ -11,10 +11,17 @@ from raceway.bodies.mesh_plan import predicted_mesh, refined
 from raceway.errors import Mistake
 from raceway.planning.closed_form import axial_approach
 from raceway.scene.tables import Scene
+from raceway.storage.tables import Tables
 
-#: Bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory measured at 4500 and
-#: 17 000 cells with factors, at 60 000 with multigrid).
+#: Contact resultants: bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory
+#: measured at 4500 and 17 000 cells with factors, at 60 000 with multigrid).
 _BYTES, _BYTES_A_CELL = 2.0e8, (7.5e4, 4.0e4)
+#: Pressures at points, by superelements: bytes of a cell; cells of the largest part that is factored (a ball of the article's
+#: mesh), bytes at the peak while it is, bytes and processor time of its factors.  Measured at 226 000, 526 000 and 1 064 000
+#: cells: 1.35, 3.49 and 6.87 GB, 27, 99 and 218 s.
+_POINT_BYTES, _PART_CELLS, _PEAK_BYTES, _FACTOR_BYTES, _FACTOR_S = 1.3e3, 60_288, 5.3e9, 2.4e9, 85.0
+#: Processor seconds a cell: all that is not factored, up to the equilibrium; a solution of all bodies with its contacts.
+_POINT_S, _ALL_S = 1.1e-4, 7.0e-6
 #: Share of the machine's memory that a run may take.
 _SHARE = 0.8
 #: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
@@ -24,7 +31,7 @@ _FACTORS = 60_000
 #: with multigrid at 63 000.
 _BUILD_S, _SETUP_S, _SOLVE_S = 2.0e-5, (2.0e-4, 1.5e-4), (4.0e-5, 2.2e-4)
 #: Processor seconds a cell of an explicit step, hexahedra of one point and others, and of its Python beside.
-_FORCE_S, _PYTHON_S = (2.0e-7, 6.0e-7), 1.0e-3
+_FORCE_S, _PYTHON_S = (1.5e-7, 4.9e-6), 1.0e-3
 #: Thinnest element of a ball over the width of its cells under the patch; first layer of its cells over the finest length
 #: that is asked for.  Both from meshes of 1 cell to the semi-axis, whose steps are 8.5e-9 and 2.1e-8 s by elements.
 _THINNEST, _DEPTH = 0.43, 0.6
@@ -65,6 +72,8 @@ def elastic_cost(scene: Scene) -> ElasticCost | None:
         return None
     cells, method = int(mesh["cells"]), scene.integrator.method
     unknowns = int(3.4 * cells)  # nodes of coarse bodies are more than their cells
+    if scene.contact.discretisation == "nodal":
+        return _by_superelements(scene, mesh, cells, unknowns)
     large = int(unknowns > _FACTORS)
     setup, solve = cells * _SETUP_S[large], cells * _SOLVE_S[large]
     memory = int(_BYTES + _BYTES_A_CELL[large] * cells)
@@ -77,6 +86,33 @@ def elastic_cost(scene: Scene) -> ElasticCost | None:
     step = _STEP[whole] * solve + 0.2 * (1 - whole) * setup if method.implicit else cells * _FORCE_S[plain] + _PYTHON_S
     start = 4.0 * neighbour + setup if scene.integrator.start == "orbit" else 0.0
     return ElasticCost(cells, unknowns, memory, _stable_step(scene), first, start, step)
+
+
+def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> ElasticCost:
+    """With pressures at points: equal balls and sectors are factored once, for statics and for the steps of a motion."""
+    method, count = scene.integrator.method, scene.bearing.ball_count
+    parts = {str(body["name"]): int(body["cells"]) for body in mesh["bodies"]}
+    if equal_sectors(scene):
+        parts |= {name: parts[name] // count for name in ("inner_ring", "outer_ring") if name in parts}
+    sizes = {name: n / _PART_CELLS for name, n in parts.items() if not name.startswith("ball") or name.endswith(("_00", "_0"))}
+    largest = max(sizes.values(), default=0.0)
+    factor = _FACTOR_S * sum(n**2 for n in sizes.values())
+    memory = _BYTES + _POINT_BYTES * cells + _PEAK_BYTES * largest ** (4.0 / 3.0)
+    first, solve = _IMPORTS_S + factor + _POINT_S * cells, _ALL_S * cells
+    if not method.inertial or scene.excitation is None:
+        return ElasticCost(cells, unknowns, int(memory), 0.0, first, solve, solve)
+    plain = int(scene.bodies.formulation != "one_point")
+    start = 4.0 * solve if scene.integrator.start == "orbit" else 0.0
+    step = cells * _FORCE_S[plain] + _PYTHON_S
+    if method.implicit:
+        memory += _FACTOR_BYTES * sum(n ** (4.0 / 3.0) for n in sizes.values())
+        start, step = start + factor, solve
+    return ElasticCost(cells, unknowns, int(memory), _stable_step(scene), first, start, step)
+
+
+def equal_sectors(scene: Scene) -> bool:
+    """Whether the mesh of a ring is known to be as many equal sectors as there are balls, before it is made."""
+    return scene.mesh is not None and scene.mesh.name == "structured" and scene.bearing.ball_count >= 3
 
 
 def _stable_step(scene: Scene) -> float:
