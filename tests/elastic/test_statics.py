@@ -56,6 +56,8 @@ class Stop:
     contact, on_residual = SimpleNamespace(whole=True, refuse=lambda: None), None
     SOFTER = 0.05
 
+    condensed = None
+
     def __init__(self, stiff: float, way: float) -> None:
         self.load, self.stiff, self.way = np.ones(1), stiff, way
         self.solver, self.tangent, self.evaluations = SimpleNamespace(iterations=0), 1.0, 0
