@@ -24,6 +24,8 @@ from raceway.core.linear.dissection import Dissection
 from raceway.core.signatures import CUBE
 from raceway.errors import ConvergenceError
 
+#: Pivots over the diagonal of their front below which they are rounding, 1e-15: bodies a hundred times as long as thick have 1e-8.
+_ROUNDING = 1e-12
 #: A square in Fortran's order, as LAPACK takes it.
 _SQUARE = float64[::1, :]
 
@@ -157,8 +159,9 @@ def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray,
 
     if not s:
         return front
+    diagonal = np.diagonal(front)[:s].copy()
     lower, failed = dpotrf(np.asfortranarray(front[:s, :s]), lower=1, clean=0, overwrite_a=1)
-    if failed:
+    if failed or (np.diagonal(lower) ** 2 < _ROUNDING * diagonal).any():
         raise ConvergenceError("the stiffness of a body is singular: something is held by nothing")
     across = dtrsm(1.0, lower, np.asfortranarray(front[s:, :s].T), lower=1, overwrite_b=1)
     rest = np.asfortranarray(front[s:, s:])

@@ -1,0 +1,38 @@
+"""A tiny bearing whose rings are equal sectors, solved by superelements and, unreduced, by conjugate gradients."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+
+from raceway.bodies.model import build_model
+from raceway.core.elastic.system import ElasticSystem
+from raceway.planning.plan import make_plan
+from raceway.scene.file import scene_from_dict
+from tests.test_elastic_scene import TINY
+
+
+def built(**tables):
+    """A model of three balls, eight cells around the rings for each: none that a contact may touch lies on a cut plane."""
+    merged = copy.deepcopy(TINY)
+    tables = {"mesh": {"azimuth_cells": 24}, "load": {"radial": [200.0, 100.0]}} | tables
+    for name, table in tables.items():
+        merged[name] = {**merged.get(name, {}), **table}
+    found = scene_from_dict(merged)
+    return build_model(found, make_plan(found))
+
+
+def unreduced(system):
+    """The same bodies and contacts without superelements."""
+    found = ElasticSystem(
+        system.assembly, system.contact, system.solver.assembly.bodies[0].operator.moduli[1], system.load
+    )
+    found.excitation = system.excitation
+    return found
+
+
+def start_of(model):
+    """(size,) undeformed bodies where rigid ones are in balance."""
+    ring = model.system
+    return ring._undeformed(ring.surrogate, np.zeros(5))

@@ -1,0 +1,117 @@
+"""A ring of sectors, closed harmonic by harmonic, against the same ring as a whole, and its turned and mirrored answers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.core.elastic.superelements.closed import Closed
+from raceway.core.elastic.superelements.copies import Copies, sectors
+from raceway.core.elastic.superelements.loose import Loose, turned, turned_vectors
+from raceway.core.elastic.superelements.part import Part
+from raceway.core.hexahedron.operator import HexOperator
+from tests.superelements.dense import assembled, schur, unknowns
+from validation.reference import elastic
+
+STEEL = 212e9, 0.29, 7810.0
+#: Even and odd: with and without the harmonic in which neighbours move against each other.
+COUNTS = [3, 4, 5]
+
+
+def ring_of(count, held=True):
+    """A ring of ``count`` sectors of six cells around, held at its bore, with five nodes of every sector as its contacts'."""
+    points, cells = elastic.ring(0.015, 0.02, 0.008, (3, 2, 6 * count))
+    azimuth = 2.0 * np.pi / count * np.arange(count)
+    free = np.ones(len(points), dtype=bool)
+    if held:
+        free = np.hypot(points[:, 1], points[:, 2]) > 0.0151
+    found = sectors(points, cells, azimuth, free[:, None], 0)
+    operator = HexOperator(points, cells, *STEEL, "incompatible")
+    inside = np.setdiff1d(np.flatnonzero(free[found.nodes[0]]), np.concatenate([found.before, found.behind]))
+    return operator, found, inside[3:20:4], free
+
+
+def both(count, mass=0.0):
+    operator, found, contact, free = ring_of(count)
+    closed = Closed(Part(found, operator, contact, free[found.nodes[0]], mass))
+    single = Copies.single(operator.points, np.asarray(operator.cells))
+    whole = Loose(Part(single, operator, found.nodes[:, contact].ravel(), free, mass))
+    return operator, closed, whole, free
+
+
+@pytest.mark.parametrize("mass", [0.0, 1e10])
+@pytest.mark.parametrize("count", COUNTS)
+def test_sectors_and_the_whole_ring_are_as_flexible(count, mass):
+    """Both are exact: rounding times a condition of some 1e3."""
+    operator, closed, whole, free = both(count, mass)
+    assert np.abs(closed.flexibility - whole.flexibility).max() < 1e-12 * np.abs(whole.flexibility).max()
+    kept = unknowns(closed.nodes.ravel())
+    inner = np.setdiff1d(np.flatnonzero(np.repeat(free, 3)), kept)
+    wanted = np.linalg.inv(schur(assembled(operator, mass), kept, inner))
+    assert np.abs(closed.flexibility - wanted).max() < 1e-10 * np.abs(wanted).max()
+
+
+@pytest.mark.parametrize("mass", [0.0, 1e10])
+@pytest.mark.parametrize("count", COUNTS)
+def test_forces_anywhere_are_carried_to_the_contacts_and_back(count, mass):
+    """To single precision, against a dense solution of the assembled ring; other forces on every sector."""
+    operator, closed, whole, free = both(count, mass)
+    force = np.random.default_rng(count).standard_normal((len(free), 3)) * free[:, None]
+    force = force.ravel()
+    chosen = np.flatnonzero(np.repeat(free, 3))
+    wanted = np.zeros_like(force)
+    wanted[chosen] = np.linalg.solve(assembled(operator, mass)[np.ix_(chosen, chosen)], force[chosen])
+    for element in (closed, whole):
+        loads, carried = element.forward(force)
+        moved = element.flexibility @ loads.ravel()
+        places = unknowns(element.nodes.ravel())
+        assert np.abs(moved - wanted[places]).max() < 1e-4 * np.abs(wanted).max()
+        found = np.zeros_like(force)
+        element.backward(carried, moved.reshape(loads.shape), found)
+        assert np.abs(found - wanted).max() < 1e-4 * np.abs(wanted).max()
+
+
+def test_forces_that_turn_with_the_sectors_turn_the_answer():
+    """Forces moved on by one sector and turned with it: displacements too."""
+    _, closed, _, free = both(4)
+    turns = closed.part.copies.turns
+    force = np.zeros((len(free), 3))
+    force[closed.nodes[0]] = np.random.default_rng(3).standard_normal((closed.nodes.shape[1], 3))
+    moved = []
+    for k in range(2):
+        at = np.zeros_like(force)
+        at[closed.nodes[k]] = force[closed.nodes[0]] @ turns[k].T
+        loads, _ = closed.forward(at.ravel())
+        moved.append((closed.flexibility @ loads.ravel()).reshape(4, -1))
+    again = np.roll(turned_vectors(moved[0], np.repeat(turns[1:2], 4, axis=0)), 1, axis=0)
+    assert np.abs(moved[1] - again).max() < 1e-13 * np.abs(again).max()
+
+
+def test_the_flexibility_is_symmetric():
+    _, closed, _, _ = both(5)
+    assert np.abs(closed.flexibility - closed.flexibility.T).max() < 1e-13 * np.abs(closed.flexibility).max()
+
+
+def test_turned_matrices_are_those_of_turned_vectors():
+    rng = np.random.default_rng(1)
+    matrix, vector = rng.standard_normal((12, 12)), rng.standard_normal((1, 12))
+    turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
+    wanted = turned_vectors((matrix @ vector[0])[None], turn[None])[0]
+    assert turned(matrix, turn) @ turned_vectors(vector, turn[None])[0] == pytest.approx(wanted, rel=1e-12)
+
+
+def test_a_bed_under_some_cells_is_in_the_factors():
+    """Springs of 1e9 N/m at the nodes of three cells: the dense matrix with them."""
+    operator, found, contact, free = ring_of(3)
+    single = Copies.single(operator.points, np.asarray(operator.cells))
+    nodes = found.nodes[:, contact].ravel()
+    cells, springs = np.array([5, 40, 41, 5]), 1e9 * np.ones((4, 1, 1)) * np.eye(24)
+    whole = Loose(Part(single, operator, nodes, free, 0.0, (cells, springs)))
+    matrix = assembled(operator)
+    for cell in cells:
+        places = unknowns(np.asarray(operator.cells[cell], dtype=np.int64))
+        matrix[places, places] += 1e9
+    kept = unknowns(nodes)
+    inner = np.setdiff1d(np.flatnonzero(np.repeat(free, 3)), kept)
+    wanted = np.linalg.inv(schur(matrix, kept, inner))
+    assert np.abs(whole.flexibility - wanted).max() < 1e-10 * np.abs(wanted).max()
