@@ -1,0 +1,113 @@
+"""Equilibria by superelements against the unreduced system: every node of every body, iterated to eleven digits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.core.elastic.superelements.closed import Closed
+from raceway.core.elastic.superelements.loose import Loose
+from tests.superelements.bearings import built, start_of, unreduced
+
+#: Of Newton's residual over the forces that balance; the iterated solver needs some ten iterations to it.
+TIGHT = 1e-11
+SCENES = {
+    "one_point": {},
+    "incompatible": {"bodies": {"formulation": "incompatible"}},
+    "free to tilt": {"supports": {"tilt": "free"}},
+    "on beds": {"supports": {"inner_seat": 1e12, "outer_seat": 2e12, "tilt": "free"}},
+    "four balls": {"bearing": {"ball_count": 4}, "mesh": {"azimuth_cells": 32}},
+    # Four cells around for each ball: contacts may touch the cut planes, and rings are whole.
+    "whole rings": {"mesh": {"azimuth_cells": 12}},
+    "turning": {"excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0}},
+}
+
+
+@pytest.fixture(params=SCENES, scope="module")
+def settled(request):
+    """The system of a scene with its equilibrium, and that of the unreduced system with the contacts' forces there."""
+    model = built(**SCENES[request.param])
+    system, guess = model.bearing.bearing.system, start_of(model)
+    plain = unreduced(system)
+    there = plain.settle(guess, TIGHT).y
+    forces = system.contact.resultants().copy()
+    tangent = stiffness_by_differences(plain, there)
+    found = system.settle(guess, TIGHT)
+    return request.param, model, found, there, forces, tangent
+
+
+def stiffness_by_differences(system, y):
+    """(m, m) of the frame's free motions: compliance by central differences of equilibria under one per cent of the load, unreduced."""
+    chosen = np.flatnonzero(system.assembly.frame_free)
+    kept, compliance = system.load.copy(), np.empty((len(chosen), len(chosen)))
+    reach = np.array([1.0, 1.0, 1.0, 0.01, 0.01])[chosen]
+    for column, motion in enumerate(chosen):
+        step, moved = 1e-2 * reach[column], []
+        for sign in (1.0, -1.0):
+            system.load = kept.copy()
+            system.load[motion] += sign * step
+            moved.append(system.settle(y, TIGHT).y[chosen])
+        compliance[:, column] = (moved[0] - moved[1]) / (2.0 * step)
+    system.load = kept
+    return np.linalg.inv(compliance)
+
+
+def test_rings_are_sectors_unless_contacts_may_touch_their_cuts(settled):
+    name, model, *_ = settled
+    face = model.bearing.bearing.system.solver.interface(0.0)
+    assert {type(ring.element) for ring in face.rings} == {Loose if name == "whole rings" else Closed}
+    assert [members for _, members in face.groups] == [list(range(model.system.ball_count))]
+
+
+def test_displacements_and_contact_forces_are_those_of_the_unreduced_system(settled):
+    """1e-11 of the forces, times a softness of some hundred where rings are free to tilt."""
+    _, model, found, there, forces, _ = settled
+    system = model.bearing.bearing.system
+    system.static_internal(found.y)
+    assert np.abs(found.y - there).max() < 1e-8 * np.abs(there).max()
+    assert np.abs(found.y[:5] - there[:5]).max() < 1e-8 * np.abs(there[:5]).max()
+    assert np.abs(system.contact.resultants() - forces).max() < 1e-8 * np.abs(forces).max()
+
+
+def test_all_forces_balance_by_the_kernels_without_matrices(settled):
+    _, model, found, *_ = settled
+    system = model.bearing.bearing.system
+    rest = (system.load - system.static_internal(found.y)) * system.assembly.unknown
+    assert system.measure(rest) < 1e-9 * system.force_scale()
+    assert np.linalg.norm(rest[5:]) < 1e-9 * np.linalg.norm(system.contact.resultants(), axis=1).max()
+
+
+def test_each_solution_adds_five_digits(settled):
+    """Single precision, 1e-7, times a condition of a hundred; contacts are in balance at each: two refinements, no Newton."""
+    _, _, found, *_ = settled
+    for before, after in zip(found.residuals[:-1], found.residuals[1:], strict=True):
+        assert after < max(1e-4 * before, 1e-11)
+    assert found.iterations <= 3
+
+
+def test_the_stiffness_of_the_ring_is_that_of_equilibria_nearby(settled):
+    """Motions that are free, the others held as in the scene; 1e-2 N of 2500 N: (1e-5)^2 of truncation, 1e-8 / 1e-5 of tolerance."""
+    _, model, found, _, _, wanted = settled
+    system = model.bearing.bearing.system
+    system.static_internal(found.y)
+    free = np.flatnonzero(system.assembly.frame_free)
+    compliance = system.condensed.frame_compliance()[np.ix_(free, free)]
+    scale = np.sqrt(np.diag(wanted))
+    error = (np.linalg.inv(compliance) - wanted) / np.outer(scale, scale)
+    assert np.abs(error).max() < 1e-4
+    assert np.abs(compliance - compliance.T).max() < 1e-9 * np.abs(compliance).max()
+
+
+def test_a_ring_that_is_no_sectors_by_the_tenth_digit_gives_the_same_answer(settled):
+    """One node of either ring moved: a strain of 1e-10 of what a cell takes."""
+    name, model, found, *_ = settled
+    if name not in ("one_point", "on beds"):
+        return
+    moved = built(**SCENES[name])
+    assembly = moved.bearing.bearing.system.assembly
+    for body in assembly.bodies[:2]:
+        body.operator.points[7] *= 1.0 + 1e-10
+    system = moved.bearing.bearing.system
+    again = system.settle(start_of(model), TIGHT)
+    assert {type(ring.element) for ring in system.solver.interface(0.0).rings} == {Loose}
+    assert np.abs(again.y - found.y).max() < 1e-8 * np.abs(found.y).max()
