@@ -1,0 +1,122 @@
+"""Steps in time by superelements against the unreduced system: mass, dashpots, and friction that sticks and slips."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.core.elastic.solver import LinearSolver
+from raceway.core.elastic.start import at_rest
+from raceway.core.elastic.superelements.closed import Closed
+from raceway.core.schemes.drivers import integrate
+from raceway.core.stepping.record import Schedule
+from raceway.integrators.generalized_alpha import GeneralizedAlpha
+from raceway.integrators.newmark import Newmark
+from raceway.pipeline.settle import settle
+from tests.superelements.bearings import built
+
+#: 15 000 r/min: a turn of 4 ms.  A force of a tenth of the load that acts at once.
+TURNING = {
+    "excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0},
+    "contact": {"friction": 0.03, "damping": 200.0},
+    "rotor": {"mass": 0.5, "damping": 300.0},
+    "supports": {"tilt": "free"},
+}
+SEATS = {"supports": {"tilt": "free", "inner_seat": 1e12, "outer_seat": 2e12}}
+STEP = 1e-5
+
+
+def stepped(reduced, **tables):
+    """A settled model; the equilibrium itself is the same to 1e-11, see test_statics."""
+    model = built(**TURNING | tables)
+    settle(model)
+    system = model.bearing.bearing.system
+    if not reduced:
+        system.solver = LinearSolver(system.assembly, system.contact, model.bearing.bearing.setup.modulus)
+        system.condensed = None
+    return model, system
+
+
+def coefficients(dt):
+    """c_k, c_c, c_m of Newmark's average acceleration."""
+    return 1.0, 2.0 / dt, 4.0 / dt**2
+
+
+def on_the_way(**tables):
+    """A system whose contacts were evaluated one step from its equilibrium: points slip there."""
+    model, system = stepped(True, **tables)
+    ring, rng = model.system, np.random.default_rng(4)
+    y = ring.equilibrium
+    start = at_rest(ring, y[:5], None, ramped=False)
+    ring.stepped().begin(start)
+    v = 1e-3 * rng.standard_normal(system.size) * system.assembly.unknown
+    v[3:5] *= 100.0
+    system.internal(0.0, STEP, y + STEP * v, v)
+    return system, rng
+
+
+@pytest.mark.parametrize("dt", [1e-4, 1e-6])
+@pytest.mark.parametrize("tables", [{}, SEATS], ids=["fastened", "on beds"])
+def test_a_solution_is_that_of_the_matrix_of_a_step(tables, dt):
+    """Stiffness, friction, dashpots, mass of nodes and frame: the image of the solution is the right side, to single precision."""
+    system, rng = on_the_way(**tables)
+    contact = system.contact
+    assert contact.friction.slipping.any()
+    assert contact.rate_stiffness.any()
+    right = rng.standard_normal(system.size) * system.assembly.unknown
+    found = system.solve(*coefficients(dt), right)
+    image = LinearSolver(system.assembly, contact, 2e11).image(*coefficients(dt))
+    # Two refinements: five digits each.  The frame's damping is symmetric here.
+    for wanted in (1e-3, 1e-7, 1e-10):
+        rest = right - image(found)
+        assert system.measure(rest) < wanted * system.measure(right)
+        found = found + system.solve(*coefficients(dt), rest)
+
+
+def test_superelements_of_a_step_are_kept_and_know_its_mass():
+    system, rng = on_the_way()
+    right = rng.standard_normal(system.size) * system.assembly.unknown
+    solver = system.condensed
+    before = solver.setups
+    for _ in range(3):
+        system.solve(*coefficients(1e-4), right)
+    assert solver.setups == before + 1
+    assert all(isinstance(ring.element, Closed) for ring in solver.interface(4e8).rings)
+    assert solver.setups == before + 1
+    system.solve(*coefficients(1e-6), right)
+    assert solver.setups == before + 2
+    # Those of statics stay.
+    solver.interface(0.0)
+    assert solver.setups == before + 2
+
+
+@pytest.mark.parametrize("method", [Newmark(tolerance=1e-10), GeneralizedAlpha(tolerance=1e-10)], ids=["newmark", "generalized_alpha"])
+@pytest.mark.parametrize("tables", [{}, SEATS], ids=["fastened", "on beds"])
+def test_steps_with_friction_are_those_of_the_unreduced_system(method, tables):
+    """Eight steps after a force that acts at once; 1e-10 of the forces, times a softness of some hundred."""
+    found = []
+    for reduced in (True, False):
+        model, system = stepped(reduced, **tables)
+        ring = model.system
+        start = at_rest(ring, ring.equilibrium[:5], None, ramped=False)
+        record = integrate(method, ring.stepped(), start, Schedule(STEP, 8, 1))
+        found.append((record, start, system.contact.friction))
+    (new, start, friction), (old, _, _) = found
+    assert friction.slipping.any()
+    assert not friction.slipping.all()
+    moved = {name: np.abs(old.final.whole[name] - start.whole[name]).max() for name in ("u", "v", "a")}
+    for name, size in moved.items():
+        assert np.abs(new.final.whole[name] - old.final.whole[name]).max() < 1e-5 * size, name
+    assert np.abs(new.final.whole["u"] - old.final.whole["u"]).max() < 1e-7 * np.abs(old.final.whole["u"]).max()
+    change = np.abs(old.contact_force - old.contact_force[0]).max()
+    assert np.abs(new.contact_force - old.contact_force).max() < 1e-5 * change
+    assert np.abs(new.contact_force - old.contact_force).max() < 1e-7 * old.contact_force.max()
+
+
+def test_a_step_takes_few_evaluations():
+    """Contacts balance at every one: the first solution, and refinements by five digits to 1e-9."""
+    model, _ = stepped(True)
+    ring = model.system
+    start = at_rest(ring, ring.equilibrium[:5], None, ramped=False)
+    record = integrate(Newmark(), ring.stepped(), start, Schedule(STEP, 8, 1))
+    assert record.counts["evaluations"] <= 8 * 4
