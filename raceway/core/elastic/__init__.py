@@ -8,6 +8,8 @@ mean_motions  mean motions of bodies and the forces on them, block by block
 unknowns      copies between unknowns and nodal vectors
 contacts    forces between two bodies
 touching    the contacts of a ball bearing, of either kind
+bed         springs under a surface
+superelements   bodies in nodal contact, solved exactly: equal balls and sectors factored once
 solver      conjugate gradients with multigrid and the rigid frames' own coordinates
 low_rank        contact resultants and the cage as low-rank changes of the preconditioner
 factorised  sparse factors instead of multigrid, for small systems

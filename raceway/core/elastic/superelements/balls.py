@@ -17,15 +17,22 @@ class Balls:
     loose : Loose
     apply : function of displacements (3 n, m) of the first copy -> forces, the springs of ``loose`` left out
     rows : (c, 3 n) mean motions of the first copy that the cage holds;  stiffness : (c,) [N/m, N m/rad]
+    inert : whether a mass holds a ball that touches nothing
 
     Attributes
     ----------
     flexibility : (3 k + e, 3 k + e) of the first copy: contacts' nodes, then mean motions of the contacts' nodes and of the cage
     springs : (e,) stiffness of what acts on these motions: minus the springs of ``loose``, and the cage's
+    alone : (e,) of a ball that touches nothing: without a mass the springs of ``loose`` stay, or nothing would hold it
     """
 
     def __init__(
-        self, loose: Loose, apply: Callable[[np.ndarray], np.ndarray], rows: np.ndarray, stiffness: np.ndarray
+        self,
+        loose: Loose,
+        apply: Callable[[np.ndarray], np.ndarray],
+        rows: np.ndarray,
+        stiffness: np.ndarray,
+        inert: bool,
     ) -> None:
         self.loose, self._apply = loose, apply
         self.response = loose.solved(np.ascontiguousarray(rows.T), apply)
@@ -40,6 +47,7 @@ class Balls:
         corner[held:, held:] = rows @ self.response
         self.flexibility = np.block([[loose.flexibility, outputs], [outputs.T, corner]])
         self.springs = np.concatenate([np.full(held, -loose.hold), stiffness])
+        self.alone = self.springs if inert else np.maximum(self.springs, 0.0)
         self.size = size
 
     @property

@@ -106,9 +106,8 @@ def _balls(
     body, rows = assembly.bodies[index], assembly.part(index)
     touched = np.unique(np.concatenate([np.flatnonzero(wanted[nodes]) for nodes in copies.nodes]))
     part = Part(copies, body.operator, touched, np.ones(len(body.points), dtype=bool), mass, None, on_front)
-    hold = 0.0
-    if mass == 0.0:  # of the order of the contacts' nodes' own
-        hold = float(np.trace(part.fronts.schur)) / len(part.fronts.schur)
+    # Of the order of the contacts' nodes' own, with a mass too: that of a long step hardly holds a ball.
+    hold = float(np.trace(part.fronts.schur)) / len(part.fronts.schur)
     loose = Loose(part, hold)
     rows_of_cage, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
     if assembly.cage is not None:
@@ -120,4 +119,4 @@ def _balls(
         force = [body.operator.internal_force(column.reshape(-1, 3)).ravel() for column in moved.T]
         return np.stack(force, axis=1) + inertia * moved
 
-    return Balls(loose, apply, rows_of_cage, stiffness)
+    return Balls(loose, apply, rows_of_cage, stiffness, mass > 0.0)

@@ -160,9 +160,9 @@ class Interface:
         return found[:, 0], found[:, 1:], stiffness, across @ found[:cut, 0]
 
     def _springs(self, ball: int, one: BallTangent) -> np.ndarray:
-        """(e,) on mean motions; a ball that touches nothing keeps those that its superelement was given to be held."""
-        springs = self._balls[ball][0].springs
-        return springs if len(one.ball) else np.maximum(springs, 0.0)
+        """(e,) on mean motions."""
+        group = self._balls[ball][0]
+        return group.springs if len(one.ball) else group.alone
 
     def _of_ball(self, group: Balls, copy: int, places: np.ndarray) -> np.ndarray:
         """Flexibility of some nodes and the mean motions of a ball where it lies."""

@@ -1,0 +1,13 @@
+"""Superelements of a ball bearing in nodal contact: every body is eliminated once, down to the nodes that contacts may touch.
+
+copies      equal balls, and equal sectors of a ring
+part        one mesh, factored for all its copies
+loose       copies that share no node: balls, or a ring as a whole
+closed      sectors that make up a ring, harmonic by harmonic
+balls       equal balls with their cage
+rings       a ring and the frame that it is fastened to
+tangent     contacts' tangents of one ball
+interface   all bodies, seen from the nodes of their contacts
+bearing     the superelements of a bearing, made from its assembly
+solver      Newton's method in the contacts alone
+"""
