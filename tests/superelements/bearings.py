@@ -25,9 +25,7 @@ def built(**tables):
 
 def unreduced(system):
     """The same bodies and contacts without superelements."""
-    found = ElasticSystem(
-        system.assembly, system.contact, system.solver.assembly.bodies[0].operator.moduli[1], system.load
-    )
+    found = ElasticSystem(system.assembly, system.contact, system.solver.assembly.bodies[0].operator.moduli[1], system.load)
     found.excitation = system.excitation
     return found
 

@@ -67,7 +67,7 @@ def test_both_structured_rings_are_sectors(index):
         assert np.abs(points[found.nodes[k] - 100] - there).max() < 1e-13 * np.abs(points).max()
         # The second cut plane of a sector is the first one of the next.
         assert (found.nodes[k][found.behind] == found.nodes[(k + 1) % count][found.before]).all()
-    assert (found.points[found.behind] == pytest.approx(found.points[found.before] @ turn(2 * np.pi / count).T, abs=1e-16))
+    assert found.points[found.behind] == pytest.approx(found.points[found.before] @ turn(2 * np.pi / count).T, abs=1e-16)
     # Every node belongs to one sector, those of its second cut plane left out, and every cell too.
     own = np.setdiff1d(np.arange(len(found.points)), found.behind)
     assert (np.sort(found.nodes[:, own].ravel()) == 100 + np.arange(len(points))).all()
