@@ -102,7 +102,9 @@ class Elastic:
             parts.leave_out("factors of equal balls and sectors", why)
         elif nodal:
             why = f"mesh.kind is {scene.mesh.name}: " if scene.mesh is not None else ""
-            why += "a ring is factored as a whole unless its sectors turn out to be equal, and each ball that is no turned copy"
+            why += (
+                "a ring is factored as a whole unless its sectors turn out to be equal, and each ball that is no turned copy"
+            )
             parts.keep("factors of equal balls and sectors", why)
         why = "along the normals of the most loaded contacts, once, at rest; `raceway view` recovers the stresses of all elements"
         why_not = "contact resultants on coarse meshes have no stresses of contacts below them"

@@ -94,7 +94,9 @@ def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> 
     parts = {str(body["name"]): int(body["cells"]) for body in mesh["bodies"]}
     if equal_sectors(scene):
         parts |= {name: parts[name] // count for name in ("inner_ring", "outer_ring") if name in parts}
-    sizes = {name: n / _PART_CELLS for name, n in parts.items() if not name.startswith("ball") or name.endswith(("_00", "_0"))}
+    sizes = {
+        name: n / _PART_CELLS for name, n in parts.items() if not name.startswith("ball") or name.endswith(("_00", "_0"))
+    }
     largest = max(sizes.values(), default=0.0)
     factor = _FACTOR_S * sum(n**2 for n in sizes.values())
     memory = _BYTES + _POINT_BYTES * cells + _PEAK_BYTES * largest ** (4.0 / 3.0)
