@@ -15,6 +15,7 @@ from matplotlib.text import Text
 
 import raceway
 from raceway import scene_from_dict
+from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.pipeline.run import run
 from raceway.plugins.reports import pictures
 from raceway.studies.article import figures as article
@@ -30,10 +31,11 @@ from raceway.studies.rig import figures as rig
 from raceway.studies.sweep import picture as store_picture
 from raceway.studies.sweep.plotting import layout
 from raceway.studies.sweep.selection import select
-from raceway.studies.view import contacts
+from raceway.studies.view import contact_stress, contacts
 from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.states import at_rest
 from tests import test_compare, test_map
+from tests.elastic.test_below_contact import TINY
 from tests.figures import outside
 from tests.rig.test_orders import made as a_record
 from tests.stores import SPEEDS, as_list, made
@@ -144,13 +146,25 @@ def of_contacts() -> list[Figure]:
 
 
 #: Module that makes figures -> how they come about here.
+def of_stresses() -> list[Figure]:
+    result = run(scene_from_dict(TINY))
+    return [contact_stress.drawn(result, below_contacts(result.model.bearing, result.model, result.equilibrium))[0]]
+
+
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
+    contact_stress: of_stresses,
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("draw", DRAWN.values(), ids=lambda draw: draw.__name__)
+@pytest.mark.parametrize(
+    "draw",
+    [
+        pytest.param(draw, id=draw.__name__, marks=[pytest.mark.needs("pyvista")] * (draw is of_stresses))
+        for draw in DRAWN.values()
+    ],
+)
 def test_every_drawn_point_lies_inside_its_axes(draw):
     figures = draw()
     assert figures and [line for figure in figures for line in shown(figure)] == []

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from raceway.pipeline.result import Result
 
@@ -41,6 +42,12 @@ def write_contact_stress(result: Result, folder: Path) -> list[Path]:
     sides = below_contacts(bodies, result.model, result.equilibrium)
     if not sides:
         return []
+    figure, grid = drawn(result, sides)
+    return [write_whole(vtu(grid), folder / "contact.vtu"), save_figure(figure, folder / "stress_contact.png", 110)]
+
+
+def drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Any]:
+    """The figure of the contacts of ``below_contacts``, and pyvista's grid of the elements near them."""
     pyvista = pyvista_of("")
     near: dict[int, tuple[np.ndarray, float]] = {}
     for side in sides:
@@ -61,7 +68,7 @@ def write_contact_stress(result: Result, folder: Path) -> list[Path]:
         f"{result.title}\nplane of the rolling direction and the contact's normal; ball above, ring below; + largest shear stress on the normal",
         fontsize=12,
     )
-    return [write_whole(vtu(grid), folder / "contact.vtu"), save_figure(figure, folder / "stress_contact.png", 110)]
+    return figure, grid
 
 
 def _section(pyvista: ModuleType, grid: Any, pair: list[BelowContact]) -> tuple[list[np.ndarray], np.ndarray]:
