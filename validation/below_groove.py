@@ -39,10 +39,12 @@ class Below:
 def below(load: float, nodes: float, formulation: str, **mesh: float) -> list[Below]:
     """Ball and groove under a load [N] of the whole ball, with so many elements per semi-axis; ``mesh``: see ``groove.meshes``."""
     begin = time.process_time()
+    # Sizes of the mesh by name, as callers give them: their types are those of `model`.
     found = model(load, nodes, formulation, **mesh)  # type: ignore[arg-type]
     state = found.system.settle(guess(found, float(HERTZ.approach(load))))
     cpu = time.process_time() - begin
     semi_axes = tuple(float(x) for x in HERTZ.semi_axes(load))
+    # Two semi-axes, which a generator does not tell the type checker.
     shear, depth = largest_shear(semi_axes, float(HERTZ.peak_pressure(load)), POISSON)  # type: ignore[arg-type]
     assembly, out = found.system.assembly, []
     moved = assembly.nodal(state.y)

@@ -92,6 +92,7 @@ class ThreadPool:
     def do_shares(self, count: int, job: Callable[[int, int], T]) -> list[T]:
         """What ``job(first, last)`` returns on equal shares of ``count`` things."""
         shares = share(count, self.count if self._pool is not None else 1)
+        # Every place is filled before the list is handed out.
         found: list[T] = [None] * len(shares)  # type: ignore[list-item]
 
         def one(number: int) -> None:

@@ -13,6 +13,7 @@ superelements   bodies in nodal contact, solved exactly: equal balls and sectors
 solver      conjugate gradients with multigrid and the rigid frames' own coordinates
 low_rank        contact resultants and the cage as low-rank changes of the preconditioner
 factorised  sparse factors instead of multigrid, for small systems
+line_search  how far along Newton's step
 statics     Newton's method with a line search; the last good state is kept
 system      all of it as one system, settled or stepped in time
 stepped     time steps of bodies in nodal contact

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -87,7 +88,7 @@ class MeanMotions:
 
     def jobs(self, u: np.ndarray, out: np.ndarray) -> list[Callable[[], None]]:
         """Jobs that set out (m,) to L u; they may run at the same time."""
-        return [lambda one=one: self._sum(one, u, out) for one in self.blocks]  # type: ignore[misc]
+        return [partial(self._sum, one, u, out) for one in self.blocks]
 
     def add(self, first: int, last: int, amounts: np.ndarray, force: np.ndarray) -> None:
         """Add L^T amounts (m,) to the entries ``first`` to ``last - 1`` of force (n,)."""

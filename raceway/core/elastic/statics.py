@@ -7,12 +7,11 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.core.elastic.line_search import searched
 from raceway.errors import ConvergenceError
 
-#: Iterations of one load step, trials of one line search, smallest part of the load.
-NEWTON_LIMIT, TRIALS, SMALLEST_PART = 40, 12, 1.0 / 16.0
-#: Slope of the potential over that where a line search begins, below which it ends.
-FLAT = 0.9
+#: Iterations of one load step, smallest part of the load.
+NEWTON_LIMIT, SMALLEST_PART = 40, 1.0 / 16.0
 #: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
 TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 
@@ -111,26 +110,11 @@ def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[floa
 
 
 def _along(system: Any, y: np.ndarray, step: np.ndarray, rest: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
-    """State along a step (size,) at which the potential's slope is a part of that at ``y``, and the residual there.
+    """State along a step (size,), and the residual there."""
 
-    Notes
-    -----
-    -phi'(s) = step . rest falls from one side of the minimum to the other by as much as points that close are stiffer than the
-    bodies.  The minimum is kept between the longest part s that falls short of it and the shortest one beyond: a part that is
-    only cut, and never lengthened, stops short of where points close, in this iteration and in all that follow.
-    """
-    slope = float(step @ rest)
-    part, short, beyond, at_short, at_beyond = 1.0, 0.0, np.inf, slope, 0.0
-    for _ in range(TRIALS):
+    def at(part: float) -> tuple[tuple[np.ndarray, np.ndarray], float, bool]:
         trial = y + part * step
-        rest = system.load - system.static_internal(trial)
-        now = float(step @ rest)
-        if abs(now) <= FLAT * abs(slope) or system.measure(rest) <= enough or now > 0.0 and np.isinf(beyond):
-            break
-        if now > 0.0:
-            short, at_short = part, now
-        else:
-            beyond, at_beyond = part, now
-        # The secant, but well inside: one end may stay for long where the slope bends.
-        part = short + (beyond - short) * min(max(at_short / (at_short - at_beyond), 0.1), 0.9)
-    return trial, rest
+        left = system.load - system.static_internal(trial)
+        return (trial, left), float(step @ left), bool(system.measure(left) <= enough)
+
+    return searched(float(step @ rest), at)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from raceway.core.elastic.superelements.loose import Loose, turned
+from raceway.core.elastic.superelements.loose import Loose
 
 
 class Balls:
@@ -34,7 +34,7 @@ class Balls:
         stiffness: np.ndarray,
         inert: bool,
     ) -> None:
-        self.loose, self._apply = loose, apply
+        self.loose = loose
         self.response = loose.solved(np.ascontiguousarray(rows.T), apply)
         places = loose.unknowns
         size, held, caged = len(places), loose.motions.shape[1], len(rows)
@@ -53,15 +53,6 @@ class Balls:
     @property
     def count(self) -> int:
         return len(self.loose.nodes)
-
-    def of_copy(self, copy: int) -> np.ndarray:
-        """``flexibility`` of a copy where it lies."""
-        turn, n = self.loose.part.copies.turns[copy], self.size
-        out = self.flexibility.copy()
-        out[:n, :n] = turned(out[:n, :n], turn)
-        out[:n, n:] = (turn @ out[:n, n:].reshape(-1, 3, out.shape[0] - n)).reshape(n, -1)
-        out[n:, :n] = out[:n, n:].T
-        return out
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Motions (copies, 3 k + e) under nodal forces (3 nodes,) alone, and what ``backward`` needs."""

@@ -10,7 +10,7 @@ from raceway.core.elastic.superelements.part import Part
 from raceway.core.linear.rigid_motions import rigid_motions
 
 #: Solutions in single precision, each with the residual of those before: five digits more each.
-_REFINED = 3
+REFINED = 3
 
 
 class Loose:
@@ -76,7 +76,7 @@ class Loose:
     def solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         """(3 n, m) displacements of the first copy under forces (3 n, m), refined with ``apply``, which knows no springs."""
         found, places = np.zeros_like(force), self.unknowns
-        for _ in range(_REFINED):
+        for _ in range(REFINED):
             rest = force - apply(found)
             rest[places] -= self.hold * self.motions @ (self.motions.T @ found[places])
             values = np.ascontiguousarray(rest, dtype=np.float32)

@@ -26,6 +26,7 @@ class Part:
     free : (n,) bool, nodes that are not held
     mass : d / c [1/s2]
     bed : (cells (b,), matrices (b, 24, 24)) that some cells stand on, or None
+    on_front : OnFront, optional
 
     Attributes
     ----------

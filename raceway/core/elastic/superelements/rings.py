@@ -8,10 +8,7 @@ from typing import Any
 import numpy as np
 
 from raceway.core.elastic.superelements.closed import Closed
-from raceway.core.elastic.superelements.loose import Loose
-
-#: Solutions in single precision, each with the residual of those before: five digits more each.
-_REFINED = 3
+from raceway.core.elastic.superelements.loose import REFINED, Loose
 
 
 class Ring:
@@ -21,8 +18,9 @@ class Ring:
     ----------
     element : Loose | Closed
     part : rows of the ring among all nodes' (3 nodes,)
-    ride : (3 n, m) R at the nodes that are not tied; m = 0 without a frame
+    ride : (3 n, m) R at all nodes; m = 0 without a frame
     apply : function of w (3 nodes,) -> c K w + d M w;  inertia : (3 n,) d / c times the nodes' masses
+    size : 3 nodes
 
     Attributes
     ----------
@@ -51,7 +49,7 @@ class Ring:
         self.follow = ride - behind
         places = (3 * element.nodes.reshape(-1, 1) + np.arange(3)).ravel() - part.start
         self.carried = self.follow[places]
-        #: (m, m) what the frame's matrix loses to the ring's inertia: R^T M W d / c; what it gains from the free nodes is in it.
+        #: (m, m) what the ring's free nodes add to the frame's matrix: R^T M (R - W) d / c.
         self.added = ride.T @ (inertia[:, None] * self.follow)
 
     @property
@@ -72,7 +70,7 @@ class Ring:
 
     def _solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         found = np.zeros_like(force)
-        for _ in range(_REFINED):
+        for _ in range(REFINED):
             loads, carried = self.element.forward(force - apply(found))
             back: Any = carried
             step = np.zeros_like(force)

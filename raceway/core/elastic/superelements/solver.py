@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import attrs
 import numpy as np
 
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contacts.nodal import NodalContact
+from raceway.core.elastic.line_search import searched
 from raceway.core.elastic.superelements.bearing import interface_of
 from raceway.core.elastic.superelements.interface import Interface, Motions
 from raceway.core.elastic.superelements.tangent import BallTangent
 from raceway.errors import ConvergenceError
 
-#: Iterations of a step of all bodies in the contacts, trials of a line search, and the slope over the first at which it ends.
-NEWTON_LIMIT, TRIALS, FLAT = 40, 12, 0.9
+#: Iterations of a step of all bodies in the contacts.
+NEWTON_LIMIT = 40
 #: Unbalanced forces of the contacts over what balances at which Newton's method ends: solutions have six digits before refinement.
 TOLERANCE = 1e-10
 
@@ -90,7 +93,7 @@ class _Step:
     ) -> None:
         a = self.a = solver.assembly
         self.solver, self.contact = solver, solver.contact
-        self.face, self.rate, self.scale = solver.interface(c_m / c_k), c_c / c_k, c_k
+        self.face, self.rate = solver.interface(c_m / c_k), c_c / c_k
         m = a.frame_size
         self.force = np.zeros(3 * a.nodes)
         self.force[a.free] = right[m:] / c_k
@@ -122,24 +125,19 @@ class _Step:
 
     def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float, share: float, locates: bool) -> np.ndarray:
         """Newton's method with a line search; every state balances all forces but those of the contacts."""
-        numbers, contact = self.face.numbers, self.contact
+        contact = self.contact
         start = self._contact_force()
 
         def unbalanced(state: Motions, force: Motions) -> np.ndarray:
-            here = u.copy()
-            here.reshape(-1, 3)[numbers] += state.nodes
-            rate = None
-            if v is not None:
-                rate = v.copy()
-                rate.reshape(-1, 3)[numbers] += self.rate * state.nodes
-            contact.evaluate(dt, here, rate)
+            rate = None if v is None else self._with(v, self.rate * state.nodes)
+            contact.evaluate(dt, self._with(u, state.nodes), rate)
             return force.nodes - (self._contact_force() - start)
 
         force, frame = self._linearised(self.alone)
         state = self._moved(force, frame)
         rest = unbalanced(state, force)
         for _ in range(NEWTON_LIMIT):
-            if locates and contact.update(contact.place + (contact.move @ self._with(u, state)).reshape(-1, 3)):
+            if locates and contact.update(contact.place + (contact.move @ self._with(u, state.nodes)).reshape(-1, 3)):
                 rest = unbalanced(state, force)
             size = np.abs(start + force.nodes).max()
             if np.abs(rest).max() <= TOLERANCE * max(size, 1e-300):
@@ -152,28 +150,34 @@ class _Step:
             pressed, turned = self._linearised(driver)
             change = Motions(pressed.nodes - rest, pressed.balls, turned)
             way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
-            slope = float((way.nodes * rest).sum())
-            part, short, beyond, at_short, at_beyond = 1.0, 0.0, np.inf, slope, 0.0
-            for _ in range(TRIALS):
-                trial, tried = state.plus(part, way), force.plus(part, change)
-                left = unbalanced(trial, tried)
-                now = float((way.nodes * left).sum())
-                if abs(now) <= FLAT * abs(slope) or now > 0.0 and np.isinf(beyond):
-                    break
-                if now > 0.0:
-                    short, at_short = part, now
-                else:
-                    beyond, at_beyond = part, now
-                part = short + (beyond - short) * min(max(at_short / (at_short - at_beyond), 0.1), 0.9)
-            state, force, rest = trial, tried, left
+            state, force, rest = self._along(state, way, force, change, unbalanced, rest)
         raise ConvergenceError(
             f"Newton's residual in the contacts stands at {np.abs(rest).max() / size:.1e} of the largest force after {NEWTON_LIMIT} iterations."
         )
 
-    def _with(self, u: np.ndarray, state: Motions) -> np.ndarray:
-        here = u.copy()
-        here.reshape(-1, 3)[self.face.numbers] += state.nodes
-        return here
+    @staticmethod
+    def _along(
+        state: Motions,
+        way: Motions,
+        force: Motions,
+        change: Motions,
+        unbalanced: Callable[[Motions, Motions], np.ndarray],
+        rest: np.ndarray,
+    ) -> tuple[Motions, Motions, np.ndarray]:
+        """Motions and forces along a step, and what of the forces is unbalanced there."""
+
+        def at(part: float) -> tuple[tuple[Motions, Motions, np.ndarray], float, bool]:
+            trial, tried = state.plus(part, way), force.plus(part, change)
+            left = unbalanced(trial, tried)
+            return (trial, tried, left), float((way.nodes * left).sum()), False
+
+        return searched(float((way.nodes * rest).sum()), at)
+
+    def _with(self, values: np.ndarray, more: np.ndarray) -> np.ndarray:
+        """(3 nodes,) values with more (n, 3) at the contacts' nodes."""
+        out = values.copy()
+        out.reshape(-1, 3)[self.face.numbers] += more
+        return out
 
     def _contact_force(self) -> np.ndarray:
         """(n, 3) internal forces of the contacts on the contacts' nodes, as last evaluated."""
