@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import copy
 
+import attrs
 import numpy as np
 
 from raceway.bodies.model import build_model
+from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.system import ElasticSystem
 from raceway.planning.plan import make_plan
 from raceway.scene.file import scene_from_dict
@@ -21,6 +23,18 @@ def built(**tables):
         merged[name] = {**merged.get(name, {}), **table}
     found = scene_from_dict(merged)
     return build_model(found, make_plan(found))
+
+
+def with_node_moved(model, bodies, part):
+    """The system of a model's meshes, one node of some of them moved by a part of its place."""
+    bearing = model.bearing.bearing
+    meshes = {body.name: mesh for body, mesh in zip(bearing.system.assembly.bodies, bearing._meshes, strict=True)}
+    for body in bodies:
+        name = bearing.system.assembly.bodies[body].name
+        points = meshes[name].points.copy()
+        points[7] *= 1.0 + part
+        meshes[name] = attrs.evolve(meshes[name], points=points)
+    return ElasticBearing(meshes, bearing.setup).system
 
 
 def unreduced(system):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.superelements.copies import Copies, same_bodies, sectors, turn
+from raceway.core.elastic.copies import Copies, same_bodies, sectors, turn
 from tests.superelements.bearings import built
 from validation.reference import elastic
 

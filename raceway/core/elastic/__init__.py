@@ -4,6 +4,9 @@ body        one body: mesh, material, supports
 assembly    the unknowns of all bodies in one vector, rigid frames included; linear forces, masses, energies
 cage        an ideal cage: mean azimuth and mean rotation of each ball
 body_forces   internal forces of all bodies, shared by threads
+copies      equal balls, and equal sectors of a ring
+equal_parts   which parts of a bearing are copies
+copied_stiffness   internal forces of all copies by the matrix of one
 mean_motions  mean motions of bodies and the forces on them, block by block
 unknowns      copies between unknowns and nodal vectors
 contacts    forces between two bodies

@@ -10,6 +10,7 @@ from raceway.core.elastic.bed import bed_blocks
 from raceway.core.elastic.body import Body
 from raceway.core.elastic.body_forces import BodyForces, fitting_threads
 from raceway.core.elastic.cage import Cage
+from raceway.core.elastic.copies import Group
 from raceway.core.elastic.mean_motions import MeanMotions
 from raceway.core.elastic.unknowns import Selection, gather, spread
 from raceway.core.linear.rigid_motions import MOTIONS, rigid_motions
@@ -30,6 +31,7 @@ class Assembly:
     ----------
     bodies : list of Body
     cage : Cage | None
+    groups : of equal parts (``equal_parts``), or None
 
     Notes
     -----
@@ -39,8 +41,8 @@ class Assembly:
     Inside ``with assembly.threads:`` threads share the work of all bodies; digits do not depend on how many there are.
     """
 
-    def __init__(self, bodies: list[Body], cage: Cage | None = None) -> None:
-        self.bodies, self.cage = bodies, cage
+    def __init__(self, bodies: list[Body], cage: Cage | None = None, groups: list[Group] | None = None) -> None:
+        self.bodies, self.cage, self.groups = bodies, cage, groups or []
         counts = np.array([len(body.points) for body in bodies])
         self.starts = np.concatenate([[0], np.cumsum(counts)])
         #: Number of nodes.
@@ -82,7 +84,7 @@ class Assembly:
         self._stiffness: csr_matrix = None
         #: Threads that share the work while they are open.
         self.threads = ThreadPool(fitting_threads(sum(len(body.operator.cells) for body in bodies)))
-        self._forces = BodyForces([body.operator for body in bodies], self.starts)
+        self._forces = BodyForces([body.operator for body in bodies], self.starts, groups)
         self._means = None if cage is None else MeanMotions(cage.rows)
         self._near: tuple[object, Selection] | None = None
         self._u = np.zeros(3 * self.nodes)
@@ -143,6 +145,14 @@ class Assembly:
         out[: self.frame_size] += frame
         return out
 
+    def body_force(self, index: int, u: np.ndarray) -> np.ndarray:
+        """(3 n,) forces K u of one body at u (3 nodes,)."""
+        return self._forces.of_body(index, u)
+
+    def mesh_force(self, index: int, moved: np.ndarray) -> np.ndarray:
+        """(3 n, m) forces K u of one body at m displacements (3 n, m) of its own."""
+        return self._forces.of_mesh(index, moved)
+
     def forces(self, dt: float, y: np.ndarray, v: np.ndarray, contact: Contact | None) -> tuple[np.ndarray, np.ndarray]:
         """Internal forces (size,) at y and velocities v (size,) after a step dt [s], with those of the contacts; U = G y until the next call."""
         u = self.nodal(y, self._u)
@@ -182,7 +192,7 @@ class Assembly:
         u, out = self.nodal(y), np.zeros(3)
         for index, body in enumerate(self.bodies):
             if body.held.any():
-                out += (body.operator.internal_force(u[self.part(index)]) * body.held).sum(axis=0)
+                out += (self.body_force(index, u).reshape(-1, 3) * body.held).sum(axis=0)
         for foundation, ride in self.foundations:
             if not ride.any():
                 out -= (foundation @ u).reshape(-1, 3).sum(axis=0)

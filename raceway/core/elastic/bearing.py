@@ -13,6 +13,7 @@ from raceway.core.elastic.body import Body, Frame
 from raceway.core.elastic.cage import Cage, cage_rows
 from raceway.core.elastic.contacts.gap import CIRCLE
 from raceway.core.elastic.contacts.nodal import NodalContact
+from raceway.core.elastic.equal_parts import equal_parts
 from raceway.core.elastic.stepped import Seen
 from raceway.core.elastic.superelements.solver import CondensedSolver
 from raceway.core.elastic.system import ElasticSystem
@@ -50,7 +51,8 @@ class ElasticBearing:
             held = np.zeros((len(mesh.points), 3), dtype=bool)
             bodies.append(Body(name, HexOperator(mesh.points, mesh.cells, *setup.balls, *self._formulation), held))
         bare = Assembly(bodies)
-        assembly = Assembly(bodies, self._cage(bare)) if setup.caged else bare
+        groups = equal_parts(bare, setup.azimuth)
+        assembly = Assembly(bodies, self._cage(bare) if setup.caged else None, groups)
         self._mass = [assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]
         contact = (nodal_contact if setup.angles is None else resultant_contact)(setup, self._meshes, assembly)
         outward = np.zeros(3 * assembly.nodes)
@@ -62,7 +64,7 @@ class ElasticBearing:
         load[:5] += setup.load
         condensed = None
         if isinstance(contact, NodalContact):
-            condensed = CondensedSolver(assembly, contact, setup.azimuth)
+            condensed = CondensedSolver(assembly, contact)
         self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed=condensed)
 
     @property

@@ -44,6 +44,17 @@ def node_pattern(cells: NDArray[np.uint32], count: int) -> tuple[NDArray[np.int6
     return pattern.indptr.astype(np.int64), pattern.indices.astype(np.int32)
 
 
+def assemble_blocks(
+    cells: NDArray[np.uint32], count: int, components: int, element_matrices: Callable[[slice], Floats]
+) -> tuple[NDArray[np.int64], NDArray[np.int32], Floats]:
+    """``node_pattern``, and the numbers: the rows of a node after each other.  Parameters: see ``assemble``."""
+    starts, neighbours = node_pattern(cells, count)
+    data = np.zeros(components**2 * len(neighbours))
+    for part in batches(len(cells), 2048):
+        add_to_sparse(part.start, components, element_matrices(part), cells, starts, neighbours, data)
+    return starts, neighbours, data
+
+
 def assemble(
     cells: NDArray[np.uint32],
     count: int,
@@ -68,10 +79,7 @@ def assemble(
     """
     from scipy.sparse import csr_array
 
-    starts, neighbours = node_pattern(cells, count)
-    data = np.zeros(components**2 * len(neighbours))
-    for part in batches(len(cells), 2048):
-        add_to_sparse(part.start, components, element_matrices(part), cells, starts, neighbours, data)
+    starts, neighbours, data = assemble_blocks(cells, count, components, element_matrices)
     row_starts = np.empty(components * count + 1, dtype=np.int64)
     columns = np.empty(len(data), dtype=np.int32)
     _spread(components, starts, neighbours, row_starts, columns)

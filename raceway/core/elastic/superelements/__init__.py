@@ -1,6 +1,5 @@
 """Superelements of a ball bearing in nodal contact: every body is eliminated once, down to the nodes that contacts may touch.
 
-copies      equal balls, and equal sectors of a ring
 part        one mesh, factored for all its copies
 loose       copies that share no node: balls, or a ring as a whole
 closed      sectors that make up a ring, harmonic by harmonic
@@ -8,6 +7,7 @@ balls       equal balls with their cage
 rings       a ring and the frame that it is fastened to
 tangent     contacts' tangents of one ball
 interface   all bodies, seen from the nodes of their contacts
+linearised  all bodies and the tangents of their contacts, factored
 bearing     the superelements of a bearing, made from its assembly
 solver      Newton's method in the contacts alone
 """

@@ -7,33 +7,31 @@ import numpy as np
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.bed import bed_of_cells
 from raceway.core.elastic.contacts.nodal import NodalContact
+from raceway.core.elastic.equal_parts import free_nodes
 from raceway.core.elastic.superelements.balls import Balls
 from raceway.core.elastic.superelements.closed import Closed
-from raceway.core.elastic.superelements.copies import Copies, same_bodies, sectors
+from raceway.core.elastic.copies import Copies, Group
 from raceway.core.elastic.superelements.interface import Interface
 from raceway.core.elastic.superelements.loose import Loose
 from raceway.core.elastic.superelements.part import OnFront, Part
 from raceway.core.elastic.superelements.rings import Ring
 
 
-def interface_of(
-    assembly: Assembly, contact: NodalContact, azimuth: np.ndarray, mass: float, on_front: OnFront | None = None
-) -> Interface:
+def interface_of(assembly: Assembly, contact: NodalContact, mass: float, on_front: OnFront | None = None) -> Interface:
     """Superelements of c K + d M.
 
     Parameters
     ----------
-    assembly : inner ring, outer ring, balls
-    azimuth : (Z,) of the balls [rad]
+    assembly : inner ring, outer ring, balls, with its groups of equal parts
     mass : d / c [1/s2]
     """
     wanted = _touched(contact, assembly.nodes)
-    rings = [_ring(assembly, index, wanted, azimuth, mass, on_front) for index in (0, 1)]
-    bodies = [(body.points, np.asarray(body.operator.cells)) for body in assembly.bodies[2:]]
-    groups = []
-    for copies, members in same_bodies(bodies, azimuth, assembly.starts[2:-1]):
-        groups.append((_balls(assembly, copies, members[0], wanted, mass, on_front), members))
-    return Interface(rings, groups, assembly.nodes)
+    rings = [_ring(assembly, group, wanted, mass, on_front) for group in assembly.groups[:2]]
+    balls = [
+        (_balls(assembly, group, wanted, mass, on_front), [ball - 2 for ball in group.members])
+        for group in assembly.groups[2:]
+    ]
+    return Interface(rings, balls, assembly.nodes)
 
 
 def _touched(contact: NodalContact, nodes: int) -> np.ndarray:
@@ -47,32 +45,20 @@ def _touched(contact: NodalContact, nodes: int) -> np.ndarray:
     return out
 
 
-def _ring(
-    assembly: Assembly, index: int, wanted: np.ndarray, azimuth: np.ndarray, mass: float, on_front: OnFront | None
-) -> Ring:
+def _ring(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_front: OnFront | None) -> Ring:
+    (index,), copies = group.members, group.copies
     body, rows, first = assembly.bodies[index], assembly.part(index), int(assembly.starts[index])
-    free = np.zeros(3 * assembly.nodes, dtype=bool)
-    free[assembly.free] = True
-    free = np.asarray(free[rows].reshape(-1, 3).all(axis=1))
+    free = free_nodes(assembly, index)
     cells = np.asarray(body.operator.cells, dtype=np.int64)
-    seat = np.zeros(len(free), dtype=bool)
-    bed = None if body.foundation is None else bed_of_cells(body)
-    if body.foundation is not None:
-        seat[body.foundation[0].ravel()] = True
     own = wanted[rows.start // 3 : rows.stop // 3]
-    copies = sectors(body.points, cells, azimuth, np.column_stack([free, seat]), first)
-    if copies is not None:
-        touched = np.unique(np.concatenate([np.flatnonzero(own[part - first]) for part in copies.nodes]))
-        cut = np.concatenate([copies.before, copies.behind])
-        if np.isin(touched, cut).any():
-            copies = None
-    if copies is None:
+    touched = np.unique(np.concatenate([np.flatnonzero(own[part - first]) for part in copies.nodes]))
+    cut = np.concatenate([copies.before, copies.behind])
+    if np.isin(touched, cut).any():
         copies = Copies.single(body.points, cells, first)
         touched = np.flatnonzero(own)
     local = copies.nodes[0] - first
     touched = touched[free[local[touched]]]
-    if bed is not None:
-        bed = _of_part(bed, cells, local, copies.cells)
+    bed = None if body.foundation is None else _of_part(bed_of_cells(body), cells, local, copies.cells)
     part = Part(copies, body.operator, touched, free[local], mass, bed, on_front)
     element = Loose(part) if len(copies.turns) == 1 else Closed(part)
     inertia = mass * np.repeat(body.operator.lumped_mass() * free, 3)
@@ -81,7 +67,7 @@ def _ring(
     def apply(moved: np.ndarray) -> np.ndarray:
         out = np.zeros_like(moved)
         own = moved[rows]
-        force = body.operator.internal_force(own.reshape(-1, 3)).ravel() + inertia * own
+        force = assembly.body_force(index, moved) + inertia * own
         for foundation, _ in assembly.foundations:
             force += (foundation[rows][:, rows]) @ own
         out[rows] = force * np.repeat(free, 3)
@@ -99,10 +85,8 @@ def _of_part(
     return np.array([k for k, _ in found], dtype=np.int64), np.array([matrix for _, matrix in found])
 
 
-def _balls(
-    assembly: Assembly, copies: Copies, first: int, wanted: np.ndarray, mass: float, on_front: OnFront | None
-) -> Balls:
-    index = first + 2
+def _balls(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_front: OnFront | None) -> Balls:
+    copies, index = group.copies, group.members[0]
     body, rows = assembly.bodies[index], assembly.part(index)
     touched = np.unique(np.concatenate([np.flatnonzero(wanted[nodes]) for nodes in copies.nodes]))
     part = Part(copies, body.operator, touched, np.ones(len(body.points), dtype=bool), mass, None, on_front)
@@ -111,12 +95,11 @@ def _balls(
     loose = Loose(part, hold)
     rows_of_cage, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
     if assembly.cage is not None:
-        rows_of_cage = assembly.cage.rows[4 * first : 4 * first + 4, rows].toarray()
-        stiffness = assembly.cage.stiffness[4 * first : 4 * first + 4]
+        own = slice(4 * (index - 2), 4 * (index - 2) + 4)
+        rows_of_cage, stiffness = assembly.cage.rows[own, rows].toarray(), assembly.cage.stiffness[own]
     inertia = mass * np.repeat(body.operator.lumped_mass(), 3)[:, None]
 
     def apply(moved: np.ndarray) -> np.ndarray:
-        force = [body.operator.internal_force(column.reshape(-1, 3)).ravel() for column in moved.T]
-        return np.stack(force, axis=1) + inertia * moved
+        return assembly.mesh_force(index, moved) + inertia * moved
 
     return Balls(loose, apply, rows_of_cage, stiffness, mass > 0.0)

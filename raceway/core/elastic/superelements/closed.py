@@ -25,7 +25,7 @@ class Closed:
 
     Attributes
     ----------
-    flexibility : (copies 3 k, copies 3 k) [m/N], where the sectors lie
+    blocks : (copies, 3 k, 3 k) displacements of sector c, in its frame, under forces on the first sector [m/N]
     """
 
     def __init__(self, part: Part) -> None:
@@ -52,12 +52,34 @@ class Closed:
             self._factors.append(factor)
             self._across.append(mixed)
             harmonics[h] = np.linalg.inv(contacts - mixed.conj().T @ cho_solve(factor, mixed))
-        self.flexibility = self._matrix(np.fft.irfft(harmonics, count, axis=0))
+        self.blocks = np.ascontiguousarray(np.fft.irfft(harmonics, count, axis=0))
 
     @property
     def nodes(self) -> np.ndarray:
         """(copies, k) numbers of the contacts' nodes."""
         return self.part.nodes
+
+    def respond(self, loads: np.ndarray) -> np.ndarray:
+        """Displacements (copies, 3 k) of the contacts' nodes under forces (copies, 3 k) there."""
+        turns = self.part.copies.turns
+        local = turned_vectors(loads, turns.transpose(0, 2, 1))
+        out = np.zeros_like(local)
+        for away, block in enumerate(self.blocks):
+            out += np.roll(local @ block.T, away, axis=0)
+        return turned_vectors(out, turns)
+
+    def among(self, nodes: np.ndarray) -> np.ndarray:
+        """(3 m, 3 m) flexibility of some of the contacts' nodes (m,), numbered through all sectors [m/N]."""
+        turns, count, k = self.part.copies.turns, len(self.blocks), self.part.size // 3
+        found = [np.flatnonzero(nodes // k == sector) for sector in range(count)]
+        rows = [(3 * (nodes[one] % k)[:, None] + np.arange(3)).ravel() for one in found]
+        out = np.empty((len(nodes), 3, len(nodes), 3))
+        for i in range(count):
+            for j in range(count):
+                block = self.blocks[(i - j) % count][np.ix_(rows[i], rows[j])].reshape(len(found[i]), 3, len(found[j]), 3)
+                turned = np.einsum("ab,ibjc,dc->iajd", turns[i], block, turns[j], optimize=True)
+                out[np.ix_(found[i], np.arange(3), found[j], np.arange(3))] = turned
+        return out.reshape(3 * len(nodes), 3 * len(nodes))
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
         """What nodal forces (3 nodes,) are on the contacts' nodes (copies, 3 k), and what ``backward`` needs."""
@@ -101,15 +123,3 @@ class Closed:
         half = len(self._before)
         second = np.conj(phase) * (self._next.T @ rows[half:].reshape(-1, 3, rows.shape[1])).reshape(half, -1)
         return np.asarray(rows[:half] + second)
-
-    def _matrix(self, blocks: np.ndarray) -> np.ndarray:
-        """From responses (copies, 3 k, 3 k) in sectors' frames to a force on the first sector: the matrix of all, in place."""
-        count, size = blocks.shape[:2]
-        turns = self.part.copies.turns
-        out = np.empty((count * size, count * size))
-        turned_rows = np.einsum("cab,jnbm->cjnam", turns, blocks.reshape(count, -1, 3, size))  # every turn of every block
-        for force in range(count):
-            for place in range(count):
-                block = turned_rows[place, (place - force) % count].reshape(size, -1, 3) @ turns[force].T
-                out[place * size : (place + 1) * size, force * size : (force + 1) * size] = block.reshape(size, size)
-        return out

@@ -44,6 +44,15 @@ class Loose:
         """(copies, k) numbers of the contacts' nodes."""
         return self.part.nodes
 
+    def respond(self, loads: np.ndarray) -> np.ndarray:
+        """Displacements (1, 3 k) of the contacts' nodes under forces (1, 3 k) there, of a body that is one copy."""
+        return loads @ self.flexibility
+
+    def among(self, nodes: np.ndarray) -> np.ndarray:
+        """(3 m, 3 m) flexibility of some of the contacts' nodes (m,) [m/N]."""
+        places = (3 * nodes[:, None] + np.arange(3)).ravel()
+        return self.flexibility[np.ix_(places, places)]
+
     @property
     def unknowns(self) -> np.ndarray:
         """(3 k,) of the contacts' nodes among those of the first copy."""

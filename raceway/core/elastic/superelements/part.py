@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from raceway.core.elastic.superelements.copies import Copies
+from raceway.core.elastic.copies import Copies
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear.dissection import dissect
 from raceway.core.linear.fronts import Fronts

@@ -25,8 +25,7 @@ class Ring:
     Attributes
     ----------
     follow : (3 n, m) R - W, W the displacement by which the ring falls behind its frame for its inertia
-    flexibility : (3 k, 3 k) of w at the contacts' nodes [m/N]
-    carried : (3 k, m) ``follow`` there
+    carried : (3 k, m) ``follow`` at the contacts' nodes
     """
 
     def __init__(
@@ -39,7 +38,6 @@ class Ring:
         size: int,
     ) -> None:
         self.element, self.part = element, part
-        self.flexibility = element.flexibility
         behind = np.zeros_like(ride)
         if inertia.any():
             for k in range(ride.shape[1]):
@@ -57,10 +55,14 @@ class Ring:
         """(contacts' nodes,) their numbers."""
         return np.asarray(self.element.nodes.ravel())
 
+    def respond(self, force: np.ndarray) -> np.ndarray:
+        """w (k, 3) at the contacts' nodes under forces (k, 3) there."""
+        return self.element.respond(force.reshape(len(self.element.nodes), -1)).reshape(-1, 3)
+
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, Any]:
         """Displacements (3 k,) under nodal forces (3 nodes,) with the frame held, forces (m,) on it, and what ``backward`` needs."""
         loads, carried = self.element.forward(force)
-        return self.flexibility @ loads.ravel(), self.follow.T @ force[self.part], carried
+        return self.element.respond(loads).ravel(), self.follow.T @ force[self.part], carried
 
     def backward(self, carried: Any, moved: np.ndarray, frame: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (3 k,) and of the frame (m,)."""
@@ -74,7 +76,6 @@ class Ring:
             loads, carried = self.element.forward(force - apply(found))
             back: Any = carried
             step = np.zeros_like(force)
-            moved = self.flexibility @ loads.ravel()
-            self.element.backward(back, moved.reshape(loads.shape), step)
+            self.element.backward(back, self.element.respond(loads), step)
             found += step
         return found

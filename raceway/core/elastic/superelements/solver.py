@@ -12,6 +12,7 @@ from raceway.core.elastic.contacts.nodal import NodalContact
 from raceway.core.elastic.line_search import searched
 from raceway.core.elastic.superelements.bearing import interface_of
 from raceway.core.elastic.superelements.interface import Interface, Motions
+from raceway.core.elastic.superelements.linearised import Linearised
 from raceway.core.elastic.superelements.tangent import BallTangent
 from raceway.errors import ConvergenceError
 
@@ -27,15 +28,14 @@ class CondensedSolver:
     Parameters
     ----------
     assembly : Assembly of inner ring, outer ring and balls;  contact : NodalContact
-    azimuth : (Z,) of the balls [rad]
 
     Attributes
     ----------
     iterations, solves, setups : of Newton's method in the contacts, of all bodies, and factorisations
     """
 
-    def __init__(self, assembly: Assembly, contact: NodalContact, azimuth: np.ndarray) -> None:
-        self.assembly, self.contact, self.azimuth = assembly, contact, azimuth
+    def __init__(self, assembly: Assembly, contact: NodalContact) -> None:
+        self.assembly, self.contact = assembly, contact
         self.iterations, self.solves, self.setups = 0, 0, 0
         self._interfaces: dict[float, Interface] = {}
 
@@ -44,7 +44,7 @@ class CondensedSolver:
         if mass not in self._interfaces:
             for other in [known for known in self._interfaces if known != 0.0 and mass != 0.0]:
                 del self._interfaces[other]
-            self._interfaces[mass] = interface_of(self.assembly, self.contact, self.azimuth, mass)
+            self._interfaces[mass] = interface_of(self.assembly, self.contact, mass)
             self.setups += 1
         return self._interfaces[mass]
 
@@ -59,7 +59,8 @@ class CondensedSolver:
         """(m, m) motions of the frame under unit forces on it, all bodies in balance, with the tangents of the last contact forces."""
         m = self.assembly.frame_size
         step = _Step(self, 1.0, 0.0, 0.0, np.zeros(self.assembly.size), quiet=True)
-        columns = [step._linearised(attrs.evolve(step.alone, frame=force))[1] for force in np.eye(m)]
+        linearised = step._linearised()
+        columns = [linearised.forces(attrs.evolve(step.alone, frame=force))[1] for force in np.eye(m)]
         return np.stack(columns, axis=1)
 
     def increment(
@@ -120,7 +121,7 @@ class _Step:
         solver.solves += 1
 
     def linear(self) -> np.ndarray:
-        force, frame = self._linearised(self.alone)
+        force, frame = self._linearised().forces(self.alone)
         return self._whole(self._moved(force, frame), force)
 
     def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float, share: float, locates: bool) -> np.ndarray:
@@ -133,7 +134,7 @@ class _Step:
             contact.evaluate(dt, self._with(u, state.nodes), rate)
             return force.nodes - (self._contact_force() - start)
 
-        force, frame = self._linearised(self.alone)
+        force, frame = self._linearised().forces(self.alone)
         state = self._moved(force, frame)
         rest = unbalanced(state, force)
         for _ in range(NEWTON_LIMIT):
@@ -147,7 +148,7 @@ class _Step:
             self.solver.iterations += 1
             back = self.face.moved(Motions(rest, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
             driver = Motions(back.nodes, back.balls, self.face.on_frame(rest))
-            pressed, turned = self._linearised(driver)
+            pressed, turned = self._linearised().forces(driver)
             change = Motions(pressed.nodes - rest, pressed.balls, turned)
             way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
             state, force, rest = self._along(state, way, force, change, unbalanced, rest)
@@ -191,7 +192,7 @@ class _Step:
             np.add.at(out, rows[:, a], -contact.weights[chosen, a, None] * contact.force[chosen])
         return out
 
-    def _linearised(self, driver: Motions) -> tuple[Motions, np.ndarray]:
+    def _linearised(self) -> Linearised:
         """With the tangents of the last contact forces."""
         contact, face = self.contact, self.face
         blocks = contact.stiffness + self.rate * contact.rate_stiffness
@@ -202,7 +203,7 @@ class _Step:
         for k in range(face.ball_count):
             own = ball == k
             tangents[k] = BallTangent.of(nodes[own], weights[own], blocks[own])
-        return face.linearised(driver, tangents, self.frame, self.unknown)
+        return Linearised(face, tangents, self.frame, self.unknown)
 
     def _moved(self, force: Motions, frame: np.ndarray) -> Motions:
         back = self.face.moved(Motions(-force.nodes, -force.balls, frame), frame)

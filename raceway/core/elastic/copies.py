@@ -35,6 +35,14 @@ class Copies:
         return cls(points, cells, first + np.arange(len(points))[None], np.eye(3)[None], none, none)
 
 
+@attrs.frozen(eq=False)
+class Group:
+    """Copies of a mesh, and the bodies that they make up: one each of balls, together one of sectors."""
+
+    copies: Copies
+    members: list[int]
+
+
 def turn(angle: float) -> np.ndarray:
     """(3, 3) about x by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
