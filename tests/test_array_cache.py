@@ -170,7 +170,7 @@ def test_a_folder_that_others_may_write_is_not_used(folder):
     folder.parent.chmod(0o755)
     array_cache._warn_refused.cache_clear()
     make = Maker()
-    with pytest.warns(RuntimeWarning, match="compliances are not kept: others may write in"):
+    with pytest.warns(RuntimeWarning, match="is not kept: others may write in"):
         get(make), get(make)
     assert make.calls == 2
 
@@ -233,3 +233,22 @@ def test_kept_arrays_warn_of_nothing(folder):
         warnings.simplefilter("error")
         get(Maker())
         get(Maker())
+
+
+def test_a_disk_without_room_costs_one_warning_and_no_answer(folder, monkeypatch):
+    """What is computed is returned; nothing is left on the disk."""
+    usage = array_cache.shutil.disk_usage("/")
+    monkeypatch.setattr(array_cache.shutil, "disk_usage", lambda place: usage._replace(free=100))
+    make = Maker()
+    with pytest.warns(RuntimeWarning, match="GiB to write, .* GiB free on the disk.*make room by raceway cache --clear"):
+        found = get(make)
+    assert (found["a"] == make()["a"]).all()
+    assert not list(folder.glob("*"))
+
+
+def test_arrays_are_aligned_and_mapped_not_copied(folder):
+    """BLAS copies what is not aligned; an entry may be as large as the memory."""
+    get(Maker())
+    for array in get(Maker()).values():
+        assert array.ctypes.data % 64 == 0
+        assert not array.flags.owndata and not array.flags.writeable

@@ -50,14 +50,14 @@ class Bearing(ABC):
     guess: np.ndarray
 
     def settle(
-        self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
+        self, near: np.ndarray | None = None, on_progress: Callable[[str, int, int], None] | None = None
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Displacement (5,), balls (Z, k) and iterations at the equilibrium under the constant loads.
 
         Parameters
         ----------
-        near : (5,) equilibrium of a similar bearing;  on_residual : called with the residual of each iteration; both for bodies
-            whose equilibria take long
+        near : (5,) equilibrium of a similar bearing;  on_progress : called as ``on_progress(what, done, total)``, ``total``
+            0 where nobody knows; both for bodies whose equilibria take long
 
         Raises
         ------

@@ -32,7 +32,7 @@ def settle(
     system = model.system
     _refuse_no_load(model)
     _foresee_free_motion(model)
-    q, ball, iterations = model.bearing.settle(near, None if on_progress is None else _telling(on_progress))
+    q, ball, iterations = model.bearing.settle(near, on_progress)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
     stiffness = still.stiffness_at(q, now)
@@ -41,11 +41,6 @@ def settle(
     model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
     return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
-
-
-def _telling(on_progress: Callable[[str, int, int], None]) -> Callable[[float], None]:
-    count = iter(range(1, 1_000_000))
-    return lambda residual: on_progress(f"equilibrium, residual {residual:.1e}", next(count), 0)
 
 
 def _refuse_no_load(model: Model) -> None:

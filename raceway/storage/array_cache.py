@@ -1,6 +1,7 @@
 """Arrays that are expensive to make, kept on disk under a key of everything that they depend on.
 
-One file an entry: a line of JSON (what it is, arrays, digest) and the arrays' bytes.  A file is written beside its place
+One file an entry: a line of JSON (what it is, arrays, digest) and the arrays' bytes, which are mapped into memory, not
+copied: an entry may be as large as a tenth of the memory or more.  A file is written beside its place
 and moved there, so that two processes may make the same entry at once; a file that does not match its digest, of which its
 key is a part, is made anew.  A folder that others may write is not used.
 What was used last stays when the folder grows above its limit.
@@ -8,13 +9,14 @@ What was used last stays when the folder grows above its limit.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
 import shutil
 import time
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -31,8 +33,12 @@ if TYPE_CHECKING:
     import numpy as np
 
 #: Bytes that all entries may take together; the least recently used ones go first.
-LIMIT = 2**30
-_SUFFIX, _FORMAT = ".arrays", 2
+LIMIT = 8 * 2**30
+#: Room that stays free on the disk, over the size of a new entry.
+_ROOM = 1.0
+_SUFFIX, _FORMAT = ".arrays", 3
+#: Arrays begin at multiples of this, as BLAS wants them.
+_ALIGNED = 64
 #: Age [s] at which a file that is being written has no writer any more.
 _ABANDONED = 3600.0
 
@@ -179,18 +185,20 @@ def _read(path: Path) -> dict[str, np.ndarray] | None:
     try:
         with path.open("rb") as file:
             line = file.readline()
-            body = file.read()
-    except OSError:
-        return None
+        body = np.memmap(path, dtype=np.uint8, mode="r")[len(line) :] if line else np.zeros(0, dtype=np.uint8)
+    except (OSError, ValueError):  # ValueError: an empty file
+        if not path.exists():
+            return None
+        line, body = b"", np.zeros(0, dtype=np.uint8)
     try:
         head = json.loads(line)
-        if head["digest"] != _digest(path.stem, head["arrays"], body):
+        if head["digest"] != _digest(path.stem, head["arrays"], [body.data]):
             raise ValueError("the digest differs")
         out, at = {}, 0
         for name, (kind, shape) in head["arrays"].items():
-            count = int(np.prod(shape, dtype=np.int64))
-            out[name] = np.frombuffer(body, dtype=np.dtype(kind), count=count, offset=at).reshape(shape)
-            at += out[name].nbytes
+            size = int(np.prod(shape, dtype=np.int64)) * np.dtype(kind).itemsize
+            out[name] = np.frombuffer(body[at : at + size], dtype=np.dtype(kind)).reshape(shape)
+            at += size + -size % _ALIGNED
     except (ValueError, KeyError, TypeError) as why:
         warnings.warn(f"{path} is damaged ({why}): its content is made anew", RuntimeWarning, stacklevel=3)
         with suppress(OSError):
@@ -201,23 +209,34 @@ def _read(path: Path) -> dict[str, np.ndarray] | None:
     return out
 
 
-def _digest(key: str, arrays: Tables, body: bytes) -> str:
+def _digest(key: str, arrays: Tables, parts: Iterable[memoryview | bytes]) -> str:
     digest = hashlib.blake2b(f"{key} {json.dumps(arrays)}".encode(), digest_size=16)
-    digest.update(body)
+    for part in parts:
+        digest.update(part)
     return digest.hexdigest()
 
 
+def _padded(arrays: Mapping[str, np.ndarray]) -> Iterator[memoryview | bytes]:
+    """Bytes of the arrays, without copies."""
+    for array in arrays.values():
+        if array.nbytes:
+            yield array.reshape(-1).data.cast("B")
+        yield bytes(-array.nbytes % _ALIGNED)
+
+
 def _write(path: Path, kind: str, what: str, arrays: Mapping[str, np.ndarray], seconds: float) -> None:
-    body = b"".join(array.tobytes() for array in arrays.values())
     words = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
-    digest = _digest(path.stem, words, body)
+    digest = _digest(path.stem, words, _padded(arrays))
     head = {"kind": kind, "what": what, "seconds": round(seconds, 3), "digest": digest, "arrays": words}
+    line = json.dumps(head).encode()
     scratch = path.with_name(f".{path.stem}.{os.getpid()}.{uuid4().hex[:8]}")
     try:
         make_folder(path.parent)
+        _refuse_full_disk(path.parent, sum(array.nbytes for array in arrays.values()))
         with scratch.open("wb") as file:
-            file.write(json.dumps(head).encode() + b"\n")
-            file.write(body)
+            file.write(line + b" " * (-(len(line) + 1) % _ALIGNED) + b"\n")
+            for part in _padded(arrays):
+                file.write(part)
         scratch.replace(path)
     except OSError as why:
         with suppress(OSError):
@@ -225,6 +244,12 @@ def _write(path: Path, kind: str, what: str, arrays: Mapping[str, np.ndarray], s
         _warn_unwritable(str(path.parent), why.strerror or str(why))
         return
     _trim(path)
+
+
+def _refuse_full_disk(place: Path, size: int) -> None:
+    free = shutil.disk_usage(place).free
+    if free < (1.0 + _ROOM) * size:
+        raise OSError(errno.ENOSPC, f"{size / 2**30:.2g} GiB to write, {free / 2**30:.2g} GiB free on the disk")
 
 
 def _trim(newest: Path) -> None:
@@ -250,8 +275,8 @@ def _trim(newest: Path) -> None:
 @cache
 def _warn_unwritable(place: str, why: str) -> None:
     warnings.warn(
-        f"compliances cannot be kept in {place} ({why}); every run makes them anew, which costs seconds. Set "
-        "RACEWAY_CACHE_DIR to a folder that can be written.",
+        f"what was computed of the bodies cannot be kept in {place} ({why}); the next run computes it again. Set "
+        "RACEWAY_CACHE_DIR to a folder with room that can be written, or make room by raceway cache --clear.",
         RuntimeWarning,
         stacklevel=4,
     )
@@ -260,5 +285,5 @@ def _warn_unwritable(place: str, why: str) -> None:
 @cache
 def _warn_refused(fault: str) -> None:
     warnings.warn(
-        f"compliances are not kept: {fault}. Every run makes them anew, which costs seconds.", RuntimeWarning, stacklevel=4
+        f"what is computed of the bodies is not kept: {fault}. Every run computes it again.", RuntimeWarning, stacklevel=4
     )

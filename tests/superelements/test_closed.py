@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.superelements.closed import Closed
 from raceway.core.elastic.copies import Copies, sectors
+from raceway.core.elastic.superelements.closed import Closed
 from raceway.core.elastic.superelements.loose import Loose, turned, turned_vectors
 from raceway.core.elastic.superelements.part import Part
 from raceway.core.hexahedron.operator import HexOperator
@@ -33,9 +33,9 @@ def ring_of(count, held=True):
 
 def both(count, mass=0.0):
     operator, found, contact, free = ring_of(count)
-    closed = Closed(Part(found, operator, contact, free[found.nodes[0]], mass))
+    closed = Closed.of(Part.of(found, operator, contact, free[found.nodes[0]], mass))
     single = Copies.single(operator.points, np.asarray(operator.cells))
-    whole = Loose(Part(single, operator, found.nodes[:, contact].ravel(), free, mass))
+    whole = Loose.of(Part.of(single, operator, found.nodes[:, contact].ravel(), free, mass))
     return operator, closed, whole, free
 
 
@@ -110,7 +110,7 @@ def test_a_bed_under_some_cells_is_in_the_factors():
     single = Copies.single(operator.points, np.asarray(operator.cells))
     nodes = found.nodes[:, contact].ravel()
     cells, springs = np.array([5, 40, 41, 5]), 1e9 * np.ones((4, 1, 1)) * np.eye(24)
-    whole = Loose(Part(single, operator, nodes, free, 0.0, (cells, springs)))
+    whole = Loose.of(Part.of(single, operator, nodes, free, 0.0, (cells, springs)))
     matrix = assembled(operator)
     for cell in cells:
         places = unknowns(np.asarray(operator.cells[cell], dtype=np.int64))

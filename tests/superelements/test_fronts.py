@@ -7,7 +7,7 @@ import pytest
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear.dissection import dissect
-from raceway.core.linear.fronts import Fronts
+from raceway.core.linear.fronts import Fronts, factored
 from raceway.core.linear.rigid_motions import rigid_motions
 from raceway.errors import ConvergenceError
 from tests.superelements.dense import assembled, schur, unknowns
@@ -35,7 +35,7 @@ def fronts_of(operator, kept, free=None, mass=0.0):
         return out
 
     everything = np.ones(3 * len(operator.points), dtype=bool)
-    return Fronts(found, ordered.cells, matrices, everything if free is None else free)
+    return factored(found, ordered.cells, matrices, everything if free is None else free)
 
 
 def far_nodes(points, count=9):
@@ -155,13 +155,32 @@ def test_a_slender_body_is_not_called_singular():
     assert bent == pytest.approx(0.1**3 / (3.0 * STEEL[0] * 0.001**4 / 12.0), rel=0.01)
 
 
-def test_progress_is_told_front_by_front():
+def test_progress_is_told_front_by_front_by_their_work():
     operator, seen = operator_of("ball"), []
     found = dissect(operator.points, operator.cells, far_nodes(operator.points))
     ordered = operator.of_mesh(operator.points, operator.cells[found.order])
     everything = np.ones(3 * len(operator.points), dtype=bool)
-    fronts = Fronts(found, ordered.cells, ordered.element_stiffness, everything, lambda *told: seen.append(told))
+    fronts = factored(found, ordered.cells, ordered.element_stiffness, everything, lambda *told: seen.append(told))
     count = len(found.domains)
-    assert seen == [(k + 1, count) for k in range(count)]
+    assert len(seen) == count and len({total for _, total in seen}) == 1
+    done = [0, *(done for done, _ in seen)]
+    assert done[-1] == seen[0][1] and (np.diff(done) > 0).all()
     single = sum(s * (s + b) for s, b in ((len(front.inner), len(front.border)) for front in fronts.fronts))
     assert fronts.bytes == 4 * single
+
+
+def test_factors_come_back_from_plain_arrays():
+    """Views, no copies; the same solutions to the last bit."""
+    operator = operator_of("ball")
+    found = fronts_of(operator, far_nodes(operator.points), held(operator))
+    arrays = found.arrays()
+    again = Fronts.of_arrays(arrays)
+    assert all(np.shares_memory(front.lower, arrays["factors"]) for front in again.fronts)
+    right = np.random.default_rng(4).standard_normal((3 * len(operator.points), 2)).astype(np.float32)
+    one, other = right.copy(), right.copy()
+    found.forward(one)
+    again.forward(other)
+    assert (one == other).all() and (found.kept == again.kept).all()
+    found.backward(one)
+    again.backward(other)
+    assert (one == other).all()

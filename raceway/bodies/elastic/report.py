@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from abc import abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -45,10 +46,15 @@ class ElasticBodies(Bearing):
         return surrogate(self.system)
 
     def settle(
-        self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
+        self, near: np.ndarray | None = None, on_progress: Callable[[str, int, int], None] | None = None
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Newton's iteration over all nodes."""
-        self.bearing.system.on_residual = on_residual
+        if on_progress is not None:
+            told, count = on_progress, itertools.count(1)
+            system = self.bearing.system
+            system.on_residual = lambda residual: told(f"equilibrium, residual {residual:.1e}", next(count), 0)
+            if system.condensed is not None:
+                system.condensed.on_progress = told
         return super().settle()
 
     def orbiting(self, system: Ring) -> Ring:

@@ -63,7 +63,7 @@ class NodalBearing(Bearing):
         return system.friction_lost(record)
 
     def settle(
-        self, near: np.ndarray | None = None, on_residual: Callable[[float], None] | None = None
+        self, near: np.ndarray | None = None, on_progress: Callable[[str, int, int], None] | None = None
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """From a near equilibrium, what is held staying where it is; from the own guess where that fails."""
         if near is not None:

@@ -11,6 +11,7 @@ point_force  internal force of the eight-point formulations
 recovery     stresses, von Mises and largest shear stress
 stress_fit   stresses between the elements' centres
 sparse       sparse matrices of a mesh
+block_rows   its stiffness times the displacements of many copies at once
 mass         lumped and consistent masses
 stable       the stable step from element eigenvalues
 """

@@ -13,14 +13,14 @@ Software 9 (1983) 302;  Przemieniecki: Matrix structural analysis of substructur
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import attrs
 import numpy as np
 from numba import float64, int64, uint32, void
 
 from raceway.core.jit import jit
-from raceway.core.linear.dissection import Dissection
+from raceway.core.linear.dissection import Dissection, Domain
 from raceway.core.signatures import CUBE
 from raceway.errors import ConvergenceError
 
@@ -70,56 +70,46 @@ class Front:
 
 
 class Fronts:
-    """Factors of A with kept unknowns.
-
-    Parameters
-    ----------
-    dissection : Dissection
-    cells : (m, 8) uint32, in the order of the dissection
-    matrices : function of a slice of these cells -> (k, 24, 24)
-    free : (3 n,) bool, unknowns; the others are zero
-    on_front : called with the number of fronts done and of all, optional
+    """Factors of A with kept unknowns, of ``factored`` or of what it gave before.
 
     Attributes
     ----------
-    kept : (k,) unknowns that were not eliminated;  schur : (k, k) what A is for them
     fronts : list of Front
-
-    Raises
-    ------
-    ConvergenceError
-        A singular matrix: a motion that neither the kept nodes nor supports hold.
+    kept : (k,) unknowns that were not eliminated;  schur : (k, k) what A is for them, None where it is not known any more
     """
 
-    def __init__(
-        self,
-        dissection: Dissection,
-        cells: np.ndarray,
-        matrices: Callable[[slice], np.ndarray],
-        free: np.ndarray,
-        on_front: Callable[[int, int], None] | None = None,
-    ) -> None:
-        place = np.full(len(free), -1, dtype=np.int64)
-        waiting: dict[int, tuple[np.ndarray, np.ndarray]] = {}
-        self.fronts: list[Front] = []
-        count = len(dissection.domains)
-        for number, domain in enumerate(dissection.domains):
-            inner, border = _unknowns(domain.inner, free), _unknowns(domain.border, free)
-            s, size = len(inner), len(inner) + len(border)
-            place[inner], place[border] = np.arange(s), np.arange(s, size)
-            front = np.zeros((size, size), order="F")
-            if domain.cells is not None:
-                part = slice(*domain.cells)
-                add_cells(place, cells[part], matrices(part), front)
-            for child in domain.children:
-                unknowns, schur = waiting.pop(child)
-                add_front(place[unknowns], schur, front)
-            place[inner] = place[border] = -1
-            waiting[number] = border, _eliminate(front, s, inner, border, self.fronts)
-            if on_front is not None:
-                on_front(number + 1, count)
-        self.kept, schur = waiting.pop(count - 1)
-        self.schur = np.tril(schur) + np.tril(schur, -1).T
+    def __init__(self, fronts: list[Front], kept: np.ndarray, schur: np.ndarray | None = None) -> None:
+        self.fronts, self.kept, self.schur = fronts, kept, schur
+
+    @classmethod
+    def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> Fronts:
+        """The way back from ``arrays``; they are not copied."""
+        unknowns, values, fronts, at, begin = arrays["unknowns"], arrays["factors"], [], 0, 0
+        for s, b in arrays["sizes"].tolist():
+            inner, border = unknowns[at : at + s], unknowns[at + s : at + s + b]
+            lower = values[begin : begin + s * s].reshape((s, s), order="F")
+            across = values[begin + s * s : begin + s * (s + b)].reshape((s, b), order="F")
+            fronts.append(Front(inner, border, lower, across))
+            at, begin = at + s + b, begin + s * (s + b)
+        return cls(fronts, arrays["kept"])
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All but the Schur complement: sizes (fronts, 2), unknowns, factors, kept."""
+        sizes = [(len(front.inner), len(front.border)) for front in self.fronts]
+        factors = np.empty(sum(s * (s + b) for s, b in sizes), dtype=np.float32)
+        begin = 0
+        for front, (s, b) in zip(self.fronts, sizes, strict=True):
+            factors[begin : begin + s * s] = front.lower.ravel(order="F")
+            factors[begin + s * s : begin + s * (s + b)] = front.across.ravel(order="F")
+            begin += s * (s + b)
+        unknowns = [np.concatenate([front.inner, front.border]) for front in self.fronts]
+        joined = np.concatenate([np.zeros(0, dtype=np.int64), *unknowns])
+        return {
+            "sizes": np.array(sizes, dtype=np.int64).reshape(-1, 2),
+            "unknowns": joined,
+            "factors": factors,
+            "kept": self.kept,
+        }
 
     @property
     def bytes(self) -> int:
@@ -147,9 +137,61 @@ class Fronts:
             values[front.inner] = strsm(1.0, front.lower, part.T, side=1, lower=1, trans_a=0).T
 
 
+def factored(
+    dissection: Dissection,
+    cells: np.ndarray,
+    matrices: Callable[[slice], np.ndarray],
+    free: np.ndarray,
+    on_front: Callable[[int, int], None] | None = None,
+) -> Fronts:
+    """Eliminate all unknowns but those that are kept.
+
+    Parameters
+    ----------
+    dissection : Dissection
+    cells : (m, 8) uint32, in the order of the dissection
+    matrices : function of a slice of these cells -> (k, 24, 24)
+    free : (3 n,) bool, unknowns; the others are zero
+    on_front : called after each front with the work done and that of all, in millions of operations; optional
+
+    Raises
+    ------
+    ConvergenceError
+        A singular matrix: a motion that neither the kept nodes nor supports hold.
+    """
+    place = np.full(len(free), -1, dtype=np.int64)
+    waiting: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    fronts: list[Front] = []
+    count = len(dissection.domains)
+    work = np.cumsum([_operations(domain) for domain in dissection.domains]).tolist()
+    for number, domain in enumerate(dissection.domains):
+        inner, border = _unknowns(domain.inner, free), _unknowns(domain.border, free)
+        s, size = len(inner), len(inner) + len(border)
+        place[inner], place[border] = np.arange(s), np.arange(s, size)
+        front = np.zeros((size, size), order="F")
+        if domain.cells is not None:
+            part = slice(*domain.cells)
+            add_cells(place, cells[part], matrices(part), front)
+        for child in domain.children:
+            unknowns, schur = waiting.pop(child)
+            add_front(place[unknowns], schur, front)
+        place[inner] = place[border] = -1
+        waiting[number] = border, _eliminate(front, s, inner, border, fronts)
+        if on_front is not None:
+            on_front(work[number], work[-1])
+    kept, schur = waiting.pop(count - 1)
+    return Fronts(fronts, kept, np.tril(schur) + np.tril(schur, -1).T)
+
+
 def _unknowns(nodes: np.ndarray, free: np.ndarray) -> np.ndarray:
     found = (3 * nodes[:, None] + np.arange(3)).ravel()
     return found[free[found]]
+
+
+def _operations(domain: Domain) -> int:
+    """Millions of multiplications that a front takes."""
+    s, b = 3 * len(domain.inner), 3 * len(domain.border)
+    return int(1e-6 * (s**3 / 3 + s * s * b + s * b * b)) + 1
 
 
 def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray, fronts: list[Front]) -> np.ndarray:

@@ -8,6 +8,7 @@ rings       a ring and the frame that it is fastened to
 tangent     contacts' tangents of one ball
 interface   all bodies, seen from the nodes of their contacts
 linearised  all bodies and the tangents of their contacts, factored
+kept        superelements of large parts on disk
 bearing     the superelements of a bearing, made from its assembly
 solver      Newton's method in the contacts alone
 """

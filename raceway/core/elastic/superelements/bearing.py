@@ -7,45 +7,49 @@ import numpy as np
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.bed import bed_of_cells
 from raceway.core.elastic.contacts.nodal import NodalContact
+from raceway.core.elastic.copies import Copies, Group
 from raceway.core.elastic.equal_parts import free_nodes
 from raceway.core.elastic.superelements.balls import Balls
-from raceway.core.elastic.superelements.closed import Closed
-from raceway.core.elastic.copies import Copies, Group
 from raceway.core.elastic.superelements.interface import Interface
-from raceway.core.elastic.superelements.loose import Loose
-from raceway.core.elastic.superelements.part import OnFront, Part
+from raceway.core.elastic.superelements.kept import OnProgress, kept_ball, kept_ring
 from raceway.core.elastic.superelements.rings import Ring
 
+#: Facets of the rings beyond those under a ball's points: bodies move by tens of micrometres, their facets there are as large.
+_FURTHER = 2
 
-def interface_of(assembly: Assembly, contact: NodalContact, mass: float, on_front: OnFront | None = None) -> Interface:
+
+def interface_of(assembly: Assembly, wanted: np.ndarray, mass: float, on_progress: OnProgress | None = None) -> Interface:
     """Superelements of c K + d M.
 
     Parameters
     ----------
     assembly : inner ring, outer ring, balls, with its groups of equal parts
+    wanted : (nodes,) bool, those that contacts may touch
     mass : d / c [1/s2]
+    on_progress : told of every body that is factored, optional
     """
-    wanted = _touched(contact, assembly.nodes)
-    rings = [_ring(assembly, group, wanted, mass, on_front) for group in assembly.groups[:2]]
+    rings = [_ring(assembly, group, wanted, mass, on_progress) for group in assembly.groups[:2]]
     balls = [
-        (_balls(assembly, group, wanted, mass, on_front), [ball - 2 for ball in group.members])
+        (_balls(assembly, group, wanted, mass, on_progress), [ball - 2 for ball in group.members])
         for group in assembly.groups[2:]
     ]
     return Interface(rings, balls, assembly.nodes)
 
 
-def _touched(contact: NodalContact, nodes: int) -> np.ndarray:
-    """(nodes,) bool, which of them contacts may touch: under their points, and a facet further on the rings."""
+def touchable(contact: NodalContact, nodes: int) -> np.ndarray:
+    """(nodes,) bool, which of them contacts may touch: under their points, and so many facets further on the rings."""
     under = np.zeros(nodes, dtype=bool)
     under[contact.nodes.ravel()] = True
-    out = under.copy()
-    for pair in contact.pairs:
-        quads = pair.facets.quads + pair.first_node
-        out[quads[under[quads].any(axis=1)].ravel()] = True
-    return out
+    for _ in range(_FURTHER):
+        out = under.copy()
+        for pair in contact.pairs:
+            quads = pair.facets.quads + pair.first_node
+            out[quads[under[quads].any(axis=1)].ravel()] = True
+        under = out
+    return under
 
 
-def _ring(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_front: OnFront | None) -> Ring:
+def _ring(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_progress: OnProgress | None) -> Ring:
     (index,), copies = group.members, group.copies
     body, rows, first = assembly.bodies[index], assembly.part(index), int(assembly.starts[index])
     free = free_nodes(assembly, index)
@@ -59,8 +63,7 @@ def _ring(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_
     local = copies.nodes[0] - first
     touched = touched[free[local[touched]]]
     bed = None if body.foundation is None else _of_part(bed_of_cells(body), cells, local, copies.cells)
-    part = Part(copies, body.operator, touched, free[local], mass, bed, on_front)
-    element = Loose(part) if len(copies.turns) == 1 else Closed(part)
+    element = kept_ring(body.name, copies, body.operator, touched, free[local], mass, bed, on_progress)
     inertia = mass * np.repeat(body.operator.lumped_mass() * free, 3)
     ride = assembly.carried[rows] if body.frame is not None else np.zeros((rows.stop - rows.start, 0))
 
@@ -85,14 +88,11 @@ def _of_part(
     return np.array([k for k, _ in found], dtype=np.int64), np.array([matrix for _, matrix in found])
 
 
-def _balls(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_front: OnFront | None) -> Balls:
+def _balls(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_progress: OnProgress | None) -> Balls:
     copies, index = group.copies, group.members[0]
     body, rows = assembly.bodies[index], assembly.part(index)
     touched = np.unique(np.concatenate([np.flatnonzero(wanted[nodes]) for nodes in copies.nodes]))
-    part = Part(copies, body.operator, touched, np.ones(len(body.points), dtype=bool), mass, None, on_front)
-    # Of the order of the contacts' nodes' own, with a mass too: that of a long step hardly holds a ball.
-    hold = float(np.trace(part.fronts.schur)) / len(part.fronts.schur)
-    loose = Loose(part, hold)
+    loose = kept_ball(body.name, copies, body.operator, touched, mass, on_progress)
     rows_of_cage, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
     if assembly.cage is not None:
         own = slice(4 * (index - 2), 4 * (index - 2) + 4)

@@ -10,10 +10,14 @@ Thomas, D. L.: Dynamics of rotationally periodic structures, International Journ
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from raceway.core.elastic.copies import Copies
 from raceway.core.elastic.superelements.loose import turned_vectors
 from raceway.core.elastic.superelements.part import Part
+from raceway.core.linear.fronts import Fronts
 
 
 class Closed:
@@ -22,37 +26,49 @@ class Closed:
     Parameters
     ----------
     part : Part, a sector
-
-    Attributes
-    ----------
+    factors : (harmonics, p, p) complex64, lower triangles of what the cut plane's unknowns are in each harmonic
+    across : (harmonics, p, 3 k) complex64, between the cut plane and the contacts' nodes
     blocks : (copies, 3 k, 3 k) displacements of sector c, in its frame, under forces on the first sector [m/N]
     """
 
-    def __init__(self, part: Part) -> None:
-        from scipy.linalg import cho_factor, cho_solve
+    def __init__(self, part: Part, factors: np.ndarray, across: np.ndarray, blocks: np.ndarray) -> None:
+        self.part, self._factors, self._across, self.blocks = part, factors, across, blocks
+        self._before, self._behind, self._order = _places(part)
+        self._next = part.copies.turns[1]
 
-        self.part = part
-        copies, kept = part.copies, part.fronts.kept
-        free = np.isin(3 * copies.before, kept)
-        before, behind = copies.before[free], copies.behind[free]
-        self._before, self._behind, self._order = (part.places(nodes) for nodes in (before, behind, part.contact))
-        self._next = copies.turns[1]
-        schur, count = part.fronts.schur, len(copies.turns)
-        cut = np.concatenate([self._before, self._behind])
-        planes, across = schur[np.ix_(cut, cut)], schur[np.ix_(cut, self._order)]
-        contacts = schur[np.ix_(self._order, self._order)]
-        self._factors, self._across = [], []
-        harmonics = np.empty((count // 2 + 1, part.size, part.size), dtype=complex)
-        for h in range(count // 2 + 1):
+    @classmethod
+    def of(cls, part: Part) -> Closed:
+        """From a part just factored."""
+        from scipy.linalg import cho_solve, cholesky
+
+        before, behind, order = _places(part)
+        schur, count, onward = part.schur, len(part.copies.turns), part.copies.turns[1]
+        cut = np.concatenate([before, behind])
+        planes, across = schur[np.ix_(cut, cut)], schur[np.ix_(cut, order)]
+        contacts = schur[np.ix_(order, order)]
+        many = count // 2 + 1
+        factors = np.empty((many, len(before), len(before)), dtype=np.complex64)
+        mixed_all = np.empty((many, len(before), part.size), dtype=np.complex64)
+        harmonics = np.empty((many, part.size, part.size), dtype=complex)
+        for h in range(many):
             phase = np.exp(2j * np.pi * h / count)
-            half = self._folded(planes, phase)
-            matrix = self._folded(half.conj().T, phase).conj().T
-            mixed = self._folded(across, phase)
-            factor = cho_factor(0.5 * (matrix + matrix.conj().T), lower=True)
-            self._factors.append(factor)
-            self._across.append(mixed)
-            harmonics[h] = np.linalg.inv(contacts - mixed.conj().T @ cho_solve(factor, mixed))
-        self.blocks = np.ascontiguousarray(np.fft.irfft(harmonics, count, axis=0))
+            half = _folded(planes, phase, onward)
+            matrix = _folded(half.conj().T, phase, onward).conj().T
+            mixed = _folded(across, phase, onward)
+            lower = cholesky(0.5 * (matrix + matrix.conj().T), lower=True)
+            factors[h], mixed_all[h] = lower, mixed
+            harmonics[h] = np.linalg.inv(contacts - mixed.conj().T @ cho_solve((lower, True), mixed))
+        return cls(part, factors, mixed_all, np.fft.irfft(harmonics, count, axis=0))
+
+    @classmethod
+    def of_arrays(cls, copies: Copies, contact: np.ndarray, arrays: Mapping[str, np.ndarray]) -> Closed:
+        """The way back from ``arrays``."""
+        part = Part(copies, contact, Fronts.of_arrays(arrays))
+        return cls(part, arrays["planes"], arrays["across"], arrays["blocks"])
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """What to keep."""
+        return self.part.fronts.arrays() | {"planes": self._factors, "across": self._across, "blocks": self.blocks}
 
     @property
     def nodes(self) -> np.ndarray:
@@ -83,8 +99,6 @@ class Closed:
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
         """What nodal forces (3 nodes,) are on the contacts' nodes (copies, 3 k), and what ``backward`` needs."""
-        from scipy.linalg import cho_solve
-
         values = self.part.gathered(force)
         self.part.fronts.forward(values)
         kept = values[self.part.fronts.kept].astype(float)
@@ -93,23 +107,21 @@ class Closed:
         contact = np.fft.rfft(kept[self._order], axis=1)
         count = kept.shape[1]
         solved = np.empty((len(self._before), left.shape[1]), dtype=complex)
-        for h, factor in enumerate(self._factors):
-            folded = self._folded(left[:, h : h + 1], np.exp(2j * np.pi * h / count))
-            solved[:, h] = cho_solve(factor, folded)[:, 0]
-            contact[:, h] -= self._across[h].conj().T @ solved[:, h]
+        for h in range(len(self._factors)):
+            folded = _folded(left[:, h : h + 1], np.exp(2j * np.pi * h / count), self._next)
+            solved[:, h] = self._on_planes(h, folded[:, 0])
+            contact[:, h] -= self._across[h].conj().T @ solved[:, h].astype(np.complex64)
         return turned_vectors(np.fft.irfft(contact, count, axis=1).T, self.part.copies.turns), (values, solved)
 
     def backward(self, carried: tuple[np.ndarray, np.ndarray], moved: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (copies, 3 k)."""
-        from scipy.linalg import cho_solve
-
         values, solved = carried
         turns, kept = self.part.copies.turns, self.part.fronts.kept
         contact = turned_vectors(moved, turns.transpose(0, 2, 1)).T
         images = np.fft.rfft(contact, axis=1)
         plane = np.empty_like(solved)
-        for h, factor in enumerate(self._factors):
-            plane[:, h] = solved[:, h] - cho_solve(factor, self._across[h] @ images[:, h])
+        for h in range(len(self._factors)):
+            plane[:, h] = solved[:, h] - self._on_planes(h, self._across[h] @ images[:, h].astype(np.complex64))
         before = np.fft.irfft(plane, len(turns), axis=1)
         values[kept[self._order]] = contact
         values[kept[self._before]] = before
@@ -118,8 +130,24 @@ class Closed:
         self.part.fronts.backward(values)
         self.part.spread(values, out)
 
-    def _folded(self, rows: np.ndarray, phase: complex) -> np.ndarray:
-        """P^H rows: of rows on both cut planes those of the first, P = (1; Q exp(i theta))."""
-        half = len(self._before)
-        second = np.conj(phase) * (self._next.T @ rows[half:].reshape(-1, 3, rows.shape[1])).reshape(half, -1)
-        return np.asarray(rows[:half] + second)
+    def _on_planes(self, harmonic: int, right: np.ndarray) -> np.ndarray:
+        """(p,) what the cut plane's unknowns are under forces (p,) in one harmonic."""
+        from scipy.linalg import cho_solve
+
+        lower = self._factors[harmonic]
+        return np.asarray(cho_solve((lower, True), right.astype(np.complex64), check_finite=False))
+
+
+def _places(part: Part) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places among the kept unknowns: of the free ones on the first cut plane, of their images, of the contacts' nodes."""
+    copies = part.copies
+    free = np.isin(3 * copies.before, part.fronts.kept)
+    before, behind, contact = (part.places(nodes) for nodes in (copies.before[free], copies.behind[free], part.contact))
+    return before, behind, contact
+
+
+def _folded(rows: np.ndarray, phase: complex, onward: np.ndarray) -> np.ndarray:
+    """P^H rows: of rows on both cut planes those of the first, P = (1; Q exp(i theta)), Q ``onward`` (3, 3)."""
+    half = len(rows) // 2
+    second = np.conj(phase) * (onward.T @ rows[half:].reshape(-1, 3, rows.shape[1])).reshape(half, -1)
+    return np.asarray(rows[:half] + second)

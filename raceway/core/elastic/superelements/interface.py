@@ -57,6 +57,7 @@ class Interface:
         self.extra = len(balls[0][0].springs)
         self._first = np.cumsum([0, *(len(ring.nodes) for ring in rings)])
         self._balls: dict[int, tuple[Balls, int, int]] = {}
+        self._known: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         begin = int(self._first[-1])
         for group, members in balls:
             for copy, ball in enumerate(members):
@@ -108,8 +109,21 @@ class Interface:
         out[size:, :size] = out[:size, size:].T
         return out
 
-    def of_rings(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Flexibility of some of the rings' nodes, and their motion with the frame."""
+    def of_rings(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Flexibility (3 k, 3 k) of some of the rings' nodes (k,), ``nodes`` (m,) among them, and their motion (3 k, m) with the frame.
+
+        Notes
+        -----
+        Contacts move little from iteration to iteration: what was asked for before stays, up to twice of what is asked.
+        """
+        known = np.union1d(self._known[0], nodes) if self._known else nodes
+        if len(known) > 2 * len(nodes):
+            known = nodes
+        if self._known is None or not np.array_equal(known, self._known[0]):
+            self._known = known, *self._among(known)
+        return self._known
+
+    def _among(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         size = 3 * len(nodes)
         flexibility, carried = np.zeros((size, size)), np.zeros((size, self.frame_size))
         for k, ring in enumerate(self.rings):

@@ -1,14 +1,26 @@
-"""Bodies and the tangents of their contacts: one factorisation, then forces for every driver.
+"""Bodies and the tangents of their contacts: forces of the tangents for every driver.
 
-The balls are eliminated one by one; what is left are the rings' nodes in contact and the frame.
+The balls are eliminated one by one; what is left are the rings' nodes in contact and the frame.  Small systems are factored.
+Large ones are solved by GMRES, preconditioned with what each ball's contacts are without the other balls': what couples them,
+the rings' stiffness from ball to ball and the frame, is smooth and has few modes.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
 from raceway.core.elastic.superelements.interface import Interface, Motions, unknowns
 from raceway.core.elastic.superelements.tangent import BallTangent
+from raceway.errors import ConvergenceError
+
+#: Unknowns up to which one factorisation costs less than iterations.
+_FACTORED = 900
+#: Vectors that GMRES keeps.
+_VECTORS = 120
+#: Relative error of solutions unless asked for less.
+TIGHT = 1e-12
 
 
 class Linearised:
@@ -20,52 +32,32 @@ class Linearised:
     tangents : of each ball;  frame : (m, m) matrix of the frame;  unknown : (m,) bool, motions that are not held
     """
 
-    def __init__(
-        self, face: Interface, tangents: dict[int, BallTangent], frame: np.ndarray, unknown: np.ndarray
-    ) -> None:
-        from scipy.linalg import lu_factor
-
-        self._face, self._tangents = face, tangents
+    def __init__(self, face: Interface, tangents: dict[int, BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:
+        self._face, self._tangents, self._frame, self._unknown = face, tangents, frame, unknown
         used = [one.rings for one in tangents.values()]
-        self._nodes = np.unique(np.concatenate(used)) if used else np.zeros(0, dtype=np.int64)
-        size, m = 3 * len(self._nodes), face.frame_size
-        flexibility, self._carried = face.of_rings(self._nodes)
-        matrix = np.zeros((size + m, size + m), order="F")
-        matrix[np.arange(size), np.arange(size)] = 1.0
-        self._balls, self._places = {}, {}
-        for k, one in tangents.items():
-            places = self._places[k] = unknowns(np.searchsorted(self._nodes, one.rings))
-            self._balls[k] = _Ball(face, k, one)
-            stiffness = self._balls[k].stiffness
-            matrix[:size, places] += flexibility[:, places] @ stiffness
-            matrix[size:, places] += self._carried[places].T @ stiffness
-        matrix[:size, size:] = -self._carried
-        matrix[size:, size:] = frame
-        self._held = size + np.flatnonzero(~unknown)
-        matrix[self._held] = 0.0
-        matrix[self._held, self._held] = 1.0
-        self._flexibility = flexibility
-        self._factors = lu_factor(matrix, overwrite_a=True, check_finite=False)
+        nodes = np.unique(np.concatenate(used)) if used else np.zeros(0, dtype=np.int64)
+        self._nodes, self._flexibility, self._carried = face.of_rings(nodes)
+        self._size = 3 * len(self._nodes)
+        self._balls = {k: _Ball(face, k, one) for k, one in tangents.items()}
+        self._places = {k: unknowns(np.searchsorted(self._nodes, one.rings)) for k, one in tangents.items()}
+        shared = sum(map(len, used)) > len(nodes)
+        self._inverse = self._factored() if shared or self._size <= _FACTORED else self._iterated()
 
-    def forces(self, driver: Motions) -> tuple[Motions, np.ndarray]:
+    def forces(self, driver: Motions, tolerance: float = TIGHT) -> tuple[Motions, np.ndarray]:
         """T x, of which ``frame`` is what it is on the frame, and motions (m,) of the frame.
 
         Parameters
         ----------
         driver : ``nodes`` and ``balls`` are motions, ``frame`` is a force (m,) on the frame
         """
-        from scipy.linalg import lu_solve
-
-        face, size = self._face, 3 * len(self._nodes)
-        rest, own = np.zeros(size), {}
+        face = self._face
+        rest, own = np.zeros(self._size), {}
         for k, one in self._tangents.items():
             own[k] = self._balls[k].alone(driver.nodes[one.ball], driver.balls[k])
             rest[self._places[k]] += self._balls[k].across @ own[k][: 3 * len(one.ball)]
-        right = np.concatenate(
-            [driver.nodes[self._nodes].ravel() - self._flexibility @ rest, driver.frame - self._carried.T @ rest]
-        )
-        right[self._held] = 0.0
-        found = lu_solve(self._factors, right, check_finite=False)
+        right = driver.nodes[self._nodes].ravel() - self._flexibility @ rest
+        on_frame = np.where(self._unknown, driver.frame - self._carried.T @ rest, 0.0)
+        found = self._inverse(np.concatenate([right, on_frame]), tolerance)
         force, balls = np.zeros_like(driver.nodes), np.zeros_like(driver.balls)
         for k, one in self._tangents.items():
             at_rings = found[self._places[k]]
@@ -75,7 +67,73 @@ class Linearised:
             force[one.ball] += pressed[:cut].reshape(-1, 3)
             force[one.rings] += pressed[cut:].reshape(-1, 3)
             balls[k] = face.springs(k, len(one.ball) > 0) * at_ball[cut:]
-        return Motions(force, balls, face.on_frame(force)), found[size:]
+        return Motions(force, balls, face.on_frame(force)), found[self._size :]
+
+    def _factored(self) -> Callable[[np.ndarray, float], np.ndarray]:
+        from scipy.linalg import lu_factor, lu_solve
+
+        size, m = self._size, len(self._frame)
+        matrix = np.zeros((size + m, size + m), order="F")
+        matrix[np.arange(size), np.arange(size)] = 1.0
+        for k, places in self._places.items():
+            stiffness = self._balls[k].stiffness
+            matrix[:size, places] += self._flexibility[:, places] @ stiffness
+            matrix[size:, places] += self._carried[places].T @ stiffness
+        matrix[:size, size:], matrix[size:, size:] = -self._carried, self._frame
+        held = size + np.flatnonzero(~self._unknown)
+        matrix[held] = 0.0
+        matrix[held, held] = 1.0
+        factors = lu_factor(matrix, overwrite_a=True, check_finite=False)
+        return lambda right, tolerance: np.asarray(lu_solve(factors, right, check_finite=False))
+
+    def _iterated(self) -> Callable[[np.ndarray, float], np.ndarray]:
+        from scipy.linalg import lu_factor, lu_solve
+        from scipy.sparse.linalg import LinearOperator, gmres
+
+        size, m, carried = self._size, len(self._frame), self._carried
+        factors = {}
+        for k, places in self._places.items():
+            own = self._flexibility[np.ix_(places, places)] @ self._balls[k].stiffness
+            own[np.arange(len(own)), np.arange(len(own))] += 1.0
+            factors[k] = lu_factor(own, overwrite_a=True, check_finite=False)
+
+        def pressed(moved: np.ndarray) -> np.ndarray:
+            out = np.zeros_like(moved)
+            for k, places in self._places.items():
+                out[places] = self._balls[k].stiffness @ moved[places]
+            return out
+
+        def apart(right: np.ndarray) -> np.ndarray:
+            out = right.copy()
+            for k, places in self._places.items():
+                out[places] = lu_solve(factors[k], right[places], check_finite=False)
+            return out
+
+        along = apart(carried)
+        small = np.where(self._unknown[:, None], self._frame + carried.T @ pressed(along), np.eye(m))
+
+        def preconditioned(right: np.ndarray) -> np.ndarray:
+            moved = apart(right[:size])
+            rest = right[size:] - np.where(self._unknown, carried.T @ pressed(moved), 0.0)
+            frame = np.linalg.solve(small, rest)
+            return np.concatenate([moved + along @ frame, frame])
+
+        def applied(moved: np.ndarray) -> np.ndarray:
+            moved = moved.ravel()
+            force, frame = pressed(moved[:size]), moved[size:]
+            on_frame = np.where(self._unknown, carried.T @ force + self._frame @ frame, frame)
+            out = moved[:size] + self._flexibility @ force - carried @ frame
+            return preconditioned(np.concatenate([out, on_frame]))
+
+        operator = LinearOperator((size + m, size + m), matvec=applied, dtype=float)
+
+        def inverse(right: np.ndarray, tolerance: float) -> np.ndarray:
+            found, fault = gmres(operator, preconditioned(right), rtol=tolerance, restart=_VECTORS, maxiter=3)
+            if fault or not np.isfinite(found).all():
+                raise ConvergenceError("the contacts' linear equations have no solution: something is held by nothing")
+            return np.asarray(found)
+
+        return inverse
 
 
 class _Ball:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from raceway.core.elastic.copies import Copies
 from raceway.core.elastic.superelements.part import Part
+from raceway.core.linear.fronts import Fronts
 from raceway.core.linear.rigid_motions import rigid_motions
 
 #: Solutions in single precision, each with the residual of those before: five digits more each.
@@ -19,25 +21,42 @@ class Loose:
     Parameters
     ----------
     part : Part
+    flexibility : (3 k, 3 k) of one copy in the frame of the first, with the springs [m/N]
     hold : stiffness [N/m] of springs on the six mean motions of the contacts' nodes, where nothing else holds the body; the caller
         takes them off again
 
     Attributes
     ----------
-    flexibility : (3 k, 3 k) of one copy in the frame of the first, with the springs [m/N]
     motions : (3 k, 6) what the springs act on, orthonormal; (3 k, 0) where ``hold`` is zero
     """
 
-    def __init__(self, part: Part, hold: float = 0.0) -> None:
-        self.part, self.hold = part, hold
-        order = part.places(part.contact)
-        stiffness = part.fronts.schur[np.ix_(order, order)]
-        self._order = order
-        self.motions = np.zeros((part.size, 0))
-        if hold > 0.0:
-            self.motions = np.linalg.qr(rigid_motions(part.copies.points[part.contact]))[0]
-            stiffness = stiffness + hold * self.motions @ self.motions.T
-        self.flexibility = _inverse(stiffness)
+    def __init__(self, part: Part, flexibility: np.ndarray, hold: float = 0.0) -> None:
+        self.part, self.flexibility, self.hold = part, flexibility, hold
+        self._order = part.places(part.contact)
+        self.motions = _mean_motions(part, hold)
+
+    @classmethod
+    def of(cls, part: Part, held: bool = False) -> Loose:
+        """From a part just factored.
+
+        Parameters
+        ----------
+        held : whether springs hold it: of the order of the contacts' nodes' own, with a mass too: that of a long step hardly holds a ball
+        """
+        schur, order = part.schur, part.places(part.contact)
+        hold = float(np.trace(schur)) / len(schur) if held else 0.0
+        stiffness, motions = schur[np.ix_(order, order)], _mean_motions(part, hold)
+        return cls(part, _inverse(stiffness + hold * motions @ motions.T), hold)
+
+    @classmethod
+    def of_arrays(cls, copies: Copies, contact: np.ndarray, arrays: Mapping[str, np.ndarray]) -> Loose:
+        """The way back from ``arrays``."""
+        part = Part(copies, contact, Fronts.of_arrays(arrays))
+        return cls(part, arrays["flexibility"], float(arrays["hold"][0]))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """What to keep."""
+        return self.part.fronts.arrays() | {"flexibility": self.flexibility, "hold": np.array([self.hold])}
 
     @property
     def nodes(self) -> np.ndarray:
@@ -93,6 +112,12 @@ class Loose:
             moved = self.flexibility @ values[places].astype(float)
             found += self.inner(values, moved.T)
         return found
+
+
+def _mean_motions(part: Part, hold: float) -> np.ndarray:
+    if not hold:
+        return np.zeros((part.size, 0))
+    return np.asarray(np.linalg.qr(rigid_motions(part.copies.points[part.contact]))[0])
 
 
 def turned(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:

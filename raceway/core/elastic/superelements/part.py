@@ -9,9 +9,9 @@ import numpy as np
 from raceway.core.elastic.copies import Copies
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear.dissection import dissect
-from raceway.core.linear.fronts import Fronts
+from raceway.core.linear.fronts import Fronts, factored
 
-#: Called with the number of fronts done and of all.
+#: Called with the work done and that of all.
 OnFront = Callable[[int, int], None]
 
 
@@ -21,22 +21,24 @@ class Part:
     Parameters
     ----------
     copies : Copies
-    operator : HexOperator, whose material and formulation it has
     contact : (k,) nodes of the first copy that are kept beside its cut planes
-    free : (n,) bool, nodes that are not held
-    mass : d / c [1/s2]
-    bed : (cells (b,), matrices (b, 24, 24)) that some cells stand on, or None
-    on_front : OnFront, optional
+    fronts : Fronts
 
     Attributes
     ----------
-    fronts : Fronts
     nodes : (copies, k) numbers of the contacts' nodes
     own : (n,) bool, nodes whose forces belong to the copy: not the images on its second cut plane
     """
 
-    def __init__(
-        self,
+    def __init__(self, copies: Copies, contact: np.ndarray, fronts: Fronts) -> None:
+        self.copies, self.contact, self.fronts = copies, np.asarray(contact), fronts
+        self.nodes = copies.nodes[:, self.contact]
+        self.own = np.ones(len(copies.points), dtype=bool)
+        self.own[copies.behind] = False
+
+    @classmethod
+    def of(
+        cls,
         copies: Copies,
         operator: HexOperator,
         contact: np.ndarray,
@@ -44,9 +46,18 @@ class Part:
         mass: float = 0.0,
         bed: tuple[np.ndarray, np.ndarray] | None = None,
         on_front: OnFront | None = None,
-    ) -> None:
-        self.copies, self.contact = copies, np.asarray(contact)
-        kept = np.unique(np.concatenate([self.contact, copies.before, copies.behind]))
+    ) -> Part:
+        """Factored.
+
+        Parameters
+        ----------
+        operator : HexOperator, whose material and formulation it has
+        free : (n,) bool, nodes that are not held
+        mass : d / c [1/s2]
+        bed : (cells (b,), matrices (b, 24, 24)) that some cells stand on, or None
+        on_front : OnFront, optional
+        """
+        kept = np.unique(np.concatenate([contact, copies.before, copies.behind]))
         dissection = dissect(copies.points, copies.cells, kept[free[kept]])
         ordered = operator.of_mesh(copies.points, copies.cells[dissection.order])
         added: dict[int, np.ndarray] = {}
@@ -67,15 +78,18 @@ class Part:
                         out[cell - part.start] += added[cell]
             return out
 
-        self.fronts = Fronts(dissection, ordered.cells, matrices, np.repeat(free, 3), on_front)
-        self.nodes = copies.nodes[:, self.contact]
-        self.own = np.ones(len(copies.points), dtype=bool)
-        self.own[copies.behind] = False
+        return cls(copies, contact, factored(dissection, ordered.cells, matrices, np.repeat(free, 3), on_front))
 
     @property
     def size(self) -> int:
         """Unknowns of a copy's contacts."""
         return 3 * len(self.contact)
+
+    @property
+    def schur(self) -> np.ndarray:
+        """(kept, kept) of the kept unknowns, just after they were factored."""
+        assert self.fronts.schur is not None
+        return self.fronts.schur
 
     def places(self, nodes: np.ndarray) -> np.ndarray:
         """Where the unknowns of kept nodes stand among the kept ones, (3 nodes,)."""

@@ -10,8 +10,9 @@ import numpy as np
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.contacts.nodal import NodalContact
 from raceway.core.elastic.line_search import searched
-from raceway.core.elastic.superelements.bearing import interface_of
+from raceway.core.elastic.superelements.bearing import interface_of, touchable
 from raceway.core.elastic.superelements.interface import Interface, Motions
+from raceway.core.elastic.superelements.kept import OnProgress
 from raceway.core.elastic.superelements.linearised import Linearised
 from raceway.core.elastic.superelements.tangent import BallTangent
 from raceway.errors import ConvergenceError
@@ -20,6 +21,8 @@ from raceway.errors import ConvergenceError
 NEWTON_LIMIT = 40
 #: Unbalanced forces of the contacts over what balances at which Newton's method ends: solutions have six digits before refinement.
 TOLERANCE = 1e-10
+#: Relative error of a step of Newton's method: its own is no smaller.
+ENOUGH = 1e-6
 
 
 class CondensedSolver:
@@ -37,6 +40,10 @@ class CondensedSolver:
     def __init__(self, assembly: Assembly, contact: NodalContact) -> None:
         self.assembly, self.contact = assembly, contact
         self.iterations, self.solves, self.setups = 0, 0, 0
+        #: Told of bodies while they are factored.
+        self.on_progress: OnProgress | None = None
+        #: (nodes,) which nodes bodies are reduced to: as they are meshed, so that they do not depend on loads.
+        self._wanted = touchable(contact, assembly.nodes)
         self._interfaces: dict[float, Interface] = {}
 
     def interface(self, mass: float) -> Interface:
@@ -44,7 +51,7 @@ class CondensedSolver:
         if mass not in self._interfaces:
             for other in [known for known in self._interfaces if known != 0.0 and mass != 0.0]:
                 del self._interfaces[other]
-            self._interfaces[mass] = interface_of(self.assembly, self.contact, mass)
+            self._interfaces[mass] = interface_of(self.assembly, self._wanted, mass, self.on_progress)
             self.setups += 1
         return self._interfaces[mass]
 
@@ -83,7 +90,30 @@ class CondensedSolver:
         share : with this share (``Contact.evaluate``)
         locates : whether places on the second surfaces are looked up meanwhile
         """
-        return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt, share, locates)
+        while True:
+            try:
+                return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt, share, locates)
+            except _Beyond as beyond:
+                self._widen(beyond.nodes)
+
+    def _widen(self, nodes: np.ndarray) -> None:
+        """Reduce the bodies to more nodes: a contact has come to some (k,) beyond them."""
+        if self._wanted[nodes].all():
+            first = self.assembly.bodies[int(np.searchsorted(self.assembly.starts, nodes[0], side="right")) - 1]
+            raise ConvergenceError(
+                f"{first.name}: a contact presses on nodes that are held: its seat reaches into the groove. Mesh it with free nodes there"
+            )
+        self._wanted[nodes] = True
+        self._wanted |= touchable(self.contact, self.assembly.nodes)
+        self._interfaces.clear()
+
+
+class _Beyond(Exception):
+    """A contact presses on nodes that its bodies were not reduced to."""
+
+    def __init__(self, nodes: np.ndarray) -> None:
+        super().__init__()
+        self.nodes = nodes
 
 
 class _Step:
@@ -148,7 +178,7 @@ class _Step:
             self.solver.iterations += 1
             back = self.face.moved(Motions(rest, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
             driver = Motions(back.nodes, back.balls, self.face.on_frame(rest))
-            pressed, turned = self._linearised().forces(driver)
+            pressed, turned = self._linearised().forces(driver, ENOUGH)
             change = Motions(pressed.nodes - rest, pressed.balls, turned)
             way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
             state, force, rest = self._along(state, way, force, change, unbalanced, rest)
@@ -187,7 +217,7 @@ class _Step:
         out = np.zeros((len(self.face.numbers), 3))
         rows = place[contact.nodes[chosen]]
         if (rows < 0).any():
-            raise ConvergenceError("a contact has left the nodes that its bodies were reduced to.")
+            raise _Beyond(contact.nodes[chosen][rows < 0])
         for a in range(8):
             np.add.at(out, rows[:, a], -contact.weights[chosen, a, None] * contact.force[chosen])
         return out
