@@ -15,7 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from raceway.core.elastic.copies import Copies
-from raceway.core.elastic.superelements.loose import turned_vectors
+from raceway.core.elastic.superelements.loose import inverse, turned_vectors
 from raceway.core.elastic.superelements.part import Part
 from raceway.core.linear.fronts import Fronts
 
@@ -39,7 +39,8 @@ class Closed:
     @classmethod
     def of(cls, part: Part) -> Closed:
         """From a part just factored."""
-        from scipy.linalg import cho_solve, cholesky
+        from scipy.linalg import cholesky
+        from scipy.linalg.blas import ztrsm
 
         before, behind, order = _places(part)
         schur, count, onward = part.schur, len(part.copies.turns), part.copies.turns[1]
@@ -57,7 +58,8 @@ class Closed:
             mixed = _folded(across, phase, onward)
             lower = cholesky(0.5 * (matrix + matrix.conj().T), lower=True)
             factors[h], mixed_all[h] = lower, mixed
-            harmonics[h] = np.linalg.inv(contacts - mixed.conj().T @ cho_solve((lower, True), mixed))
+            half = ztrsm(1.0, lower, mixed, lower=1)
+            harmonics[h] = inverse(contacts - half.conj().T @ half)
         return cls(part, factors, mixed_all, np.fft.irfft(harmonics, count, axis=0))
 
     @classmethod

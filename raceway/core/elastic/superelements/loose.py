@@ -46,7 +46,7 @@ class Loose:
         schur, order = part.schur, part.places(part.contact)
         hold = float(np.trace(schur)) / len(schur) if held else 0.0
         stiffness, motions = schur[np.ix_(order, order)], _mean_motions(part, hold)
-        return cls(part, _inverse(stiffness + hold * motions @ motions.T), hold)
+        return cls(part, inverse(stiffness + hold * motions @ motions.T), hold)
 
     @classmethod
     def of_arrays(cls, copies: Copies, contact: np.ndarray, arrays: Mapping[str, np.ndarray]) -> Loose:
@@ -132,11 +132,11 @@ def turned_vectors(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
     return np.einsum("cab,cnb->cna", turns, values.reshape(len(turns), -1, 3)).reshape(len(turns), -1)
 
 
-def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Of a symmetric positive definite matrix."""
+def inverse(matrix: np.ndarray) -> np.ndarray:
+    """Of a symmetric, or Hermitian, positive definite matrix."""
     from scipy.linalg import cho_factor
-    from scipy.linalg.lapack import dpotri
+    from scipy.linalg.lapack import dpotri, zpotri
 
     factor, lower = cho_factor(matrix, lower=True)
-    found = dpotri(factor, lower=lower)[0]
-    return np.asarray(np.tril(found) + np.tril(found, -1).T)
+    found = (zpotri if np.iscomplexobj(factor) else dpotri)(factor, lower=lower)[0]
+    return np.asarray(np.tril(found) + np.tril(found, -1).conj().T)
