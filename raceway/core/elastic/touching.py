@@ -21,6 +21,9 @@ from raceway.core.mesh.hex_mesh import HexMesh
 #: Points of a ball count as contact points where the undeformed gap is below this many Hertz approaches at four times the
 #: reference load: the ellipse may then move along the groove by twice its own length.
 REACH = 5.0
+#: Or at this peak pressure [Pa], where that is more: half the load that ISO 76 (4200 MPa) calls a ball bearing's static limit.
+#: So bodies are reduced to the same nodes for all loads that bearings run at.
+_STATIC = 4.2e9 * 0.5 ** (1.0 / 3.0)
 #: Largest reach of a ring over the ball's diameter; semi-axes of the ellipse that a whole contact presses on, along the groove and
 #: across it, over the reach of a ring and over the radius of a ball.
 _REACH, _ON_RING, _ON_BALL = 0.34, (0.3, 0.6), (0.5, 0.5)
@@ -37,7 +40,8 @@ def nodal_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
         surface = _groove(s, race)
         facets = Facets(meshes[race].points, meshes[race].facet_nodes("raceway"))
         ellipse = g.ellipses(s.modulus)[race]
-        reach = REACH * float(ellipse.approach(4.0 * s.reference_load))
+        often = (_STATIC / float(ellipse.peak_pressure(1.0))) ** 3  # the pressure grows with the load's cube root
+        reach = REACH * float(ellipse.approach(max(4.0 * s.reference_load, often)))
         for k, ball in enumerate(meshes[2:]):
             middle = 0.5 * g.pitch_diameter * s.radial(k)
             found = surface_points(ball.points, ball.facet_nodes("surface"), middle)

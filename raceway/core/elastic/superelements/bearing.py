@@ -15,7 +15,7 @@ from raceway.core.elastic.superelements.kept import OnProgress, kept_ball, kept_
 from raceway.core.elastic.superelements.rings import Ring
 
 #: Facets of the rings beyond those under a ball's points: bodies move by tens of micrometres, their facets there are as large.
-_FURTHER = 2
+_FURTHER = 1
 
 
 def interface_of(assembly: Assembly, wanted: np.ndarray, mass: float, on_progress: OnProgress | None = None) -> Interface:
