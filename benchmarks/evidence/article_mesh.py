@@ -314,7 +314,10 @@ def _former() -> list[Row]:
 def _iterative(system: ElasticSystem) -> ElasticSystem:
     """The same bodies and contacts, element by element, with conjugate gradients and multigrid."""
     old = system.assembly
-    return ElasticSystem(Assembly(old.bodies, old.cage), system.contact, old.bodies[0].operator.moduli[1], system.load)
+    assembly = Assembly(old.bodies)
+    if old.cage is not None:
+        assembly.hold(old.cage)
+    return ElasticSystem(assembly, system.contact, old.bodies[0].operator.moduli[1], system.load)
 
 
 def _reduced() -> list[Row]:

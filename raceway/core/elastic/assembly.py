@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,8 +31,11 @@ class Assembly:
     Parameters
     ----------
     bodies : list of Body
-    cage : Cage | None
-    groups : of equal parts (``equal_parts``), or None
+
+    Attributes
+    ----------
+    cage : Cage | None, set by ``hold``
+    groups : of equal parts, set by ``share`` before forces are asked for
 
     Notes
     -----
@@ -41,8 +45,10 @@ class Assembly:
     Inside ``with assembly.threads:`` threads share the work of all bodies; digits do not depend on how many there are.
     """
 
-    def __init__(self, bodies: list[Body], cage: Cage | None = None, groups: list[Group] | None = None) -> None:
-        self.bodies, self.cage, self.groups = bodies, cage, groups or []
+    def __init__(self, bodies: list[Body]) -> None:
+        self.bodies = bodies
+        self.cage: Cage | None = None
+        self.groups: list[Group] = []
         counts = np.array([len(body.points) for body in bodies])
         self.starts = np.concatenate([[0], np.cumsum(counts)])
         #: Number of nodes.
@@ -84,10 +90,21 @@ class Assembly:
         self._stiffness: csr_matrix = None
         #: Threads that share the work while they are open.
         self.threads = ThreadPool(fitting_threads(sum(len(body.operator.cells) for body in bodies)))
-        self._forces = BodyForces([body.operator for body in bodies], self.starts, groups)
-        self._means = None if cage is None else MeanMotions(cage.rows)
+        self._means: MeanMotions | None = None
         self._near: tuple[object, Selection] | None = None
         self._u = np.zeros(3 * self.nodes)
+
+    def hold(self, cage: Cage) -> None:
+        """Hold mean motions of bodies by a cage."""
+        self.cage, self._means = cage, MeanMotions(cage.rows)
+
+    def share(self, groups: list[Group]) -> None:
+        """Compute the forces of equal parts by one matrix (``raceway.core.elastic.equal_parts``)."""
+        self.groups = groups
+
+    @cached_property
+    def _forces(self) -> BodyForces:
+        return BodyForces([body.operator for body in self.bodies], self.starts, self.groups)
 
     def carried_tied(self) -> np.ndarray:
         """(3 nodes, frame_size) displacement of the tied nodes, the others zero."""

@@ -50,9 +50,10 @@ class ElasticBearing:
             mesh = meshes[name]
             held = np.zeros((len(mesh.points), 3), dtype=bool)
             bodies.append(Body(name, HexOperator(mesh.points, mesh.cells, *setup.balls, *self._formulation), held))
-        bare = Assembly(bodies)
-        groups = equal_parts(bare, setup.azimuth)
-        assembly = Assembly(bodies, self._cage(bare) if setup.caged else None, groups)
+        assembly = Assembly(bodies)
+        assembly.share(equal_parts(assembly, setup.azimuth))
+        if setup.caged:
+            assembly.hold(self._cage(assembly))
         self._mass = [assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]
         contact = (nodal_contact if setup.angles is None else resultant_contact)(setup, self._meshes, assembly)
         outward = np.zeros(3 * assembly.nodes)

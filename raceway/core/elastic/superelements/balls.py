@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from raceway.core.elastic.superelements.loose import Loose
@@ -15,8 +13,8 @@ class Balls:
     Parameters
     ----------
     loose : Loose
-    apply : function of displacements (3 n, m) of the first copy -> forces, the springs of ``loose`` left out
     rows : (c, 3 n) mean motions of the first copy that the cage holds;  stiffness : (c,) [N/m, N m/rad]
+    response : (3 n, c) displacements of the first copy under forces on them
     inert : whether a mass holds a ball that touches nothing
 
     Attributes
@@ -29,13 +27,12 @@ class Balls:
     def __init__(
         self,
         loose: Loose,
-        apply: Callable[[np.ndarray], np.ndarray],
         rows: np.ndarray,
         stiffness: np.ndarray,
+        response: np.ndarray,
         inert: bool,
     ) -> None:
-        self.loose = loose
-        self.response = loose.solved(np.ascontiguousarray(rows.T), apply)
+        self.loose, self.response = loose, response
         places = loose.unknowns
         size, held, caged = len(places), loose.motions.shape[1], len(rows)
         outputs = np.zeros((size, held + caged))

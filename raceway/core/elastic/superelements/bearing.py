@@ -92,14 +92,15 @@ def _balls(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on
     copies, index = group.copies, group.members[0]
     body, rows = assembly.bodies[index], assembly.part(index)
     touched = np.unique(np.concatenate([np.flatnonzero(wanted[nodes]) for nodes in copies.nodes]))
-    loose = kept_ball(body.name, copies, body.operator, touched, mass, on_progress)
-    rows_of_cage, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
+    caged, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
     if assembly.cage is not None:
         own = slice(4 * (index - 2), 4 * (index - 2) + 4)
-        rows_of_cage, stiffness = assembly.cage.rows[own, rows].toarray(), assembly.cage.stiffness[own]
+        caged, stiffness = assembly.cage.rows[own, rows].toarray(), assembly.cage.stiffness[own]
     inertia = mass * np.repeat(body.operator.lumped_mass(), 3)[:, None]
 
     def apply(moved: np.ndarray) -> np.ndarray:
         return assembly.mesh_force(index, moved) + inertia * moved
 
-    return Balls(loose, apply, rows_of_cage, stiffness, mass > 0.0)
+    forces = np.ascontiguousarray(caged.T)
+    loose, response = kept_ball(body.name, copies, body.operator, touched, mass, forces, apply, on_progress)
+    return Balls(loose, caged, stiffness, response, mass > 0.0)

@@ -89,15 +89,23 @@ class Closed:
     def among(self, nodes: np.ndarray) -> np.ndarray:
         """(3 m, 3 m) flexibility of some of the contacts' nodes (m,), numbered through all sectors [m/N]."""
         turns, count, k = self.part.copies.turns, len(self.blocks), self.part.size // 3
-        found = [np.flatnonzero(nodes // k == sector) for sector in range(count)]
-        rows = [(3 * (nodes[one] % k)[:, None] + np.arange(3)).ravel() for one in found]
-        out = np.empty((len(nodes), 3, len(nodes), 3))
-        for i in range(count):
-            for j in range(count):
-                block = self.blocks[(i - j) % count][np.ix_(rows[i], rows[j])].reshape(len(found[i]), 3, len(found[j]), 3)
-                turned = np.einsum("ab,ibjc,dc->iajd", turns[i], block, turns[j], optimize=True)
-                out[np.ix_(found[i], np.arange(3), found[j], np.arange(3))] = turned
-        return out.reshape(3 * len(nodes), 3 * len(nodes))
+        sector, size = nodes // k, 3 * len(nodes)
+        order = np.argsort(sector, kind="stable")
+        places = (3 * (nodes[order] % k)[:, None] + np.arange(3)).ravel()
+        ends = 3 * np.searchsorted(sector[order], np.arange(count + 1))
+        found = [slice(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)]
+        local = np.empty((size, size))
+        for i, rows in enumerate(found):
+            for j, columns in enumerate(found):
+                local[rows, columns] = self.blocks[(i - j) % count][places[rows][:, None], places[columns]]
+        turn = turns[sector[order]]
+        half = (turn @ local.reshape(len(nodes), 3, size)).reshape(size, len(nodes), 3)
+        turned = (half.transpose(1, 0, 2) @ turn.transpose(0, 2, 1)).transpose(1, 0, 2).reshape(size, size)
+        if np.array_equal(order, np.arange(len(order))):
+            return turned
+        back = np.argsort(order)
+        chosen = (3 * back[:, None] + np.arange(3)).ravel()
+        return np.asarray(turned[np.ix_(chosen, chosen)])
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
         """What nodal forces (3 nodes,) are on the contacts' nodes (copies, 3 k), and what ``backward`` needs."""

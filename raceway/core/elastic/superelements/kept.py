@@ -51,17 +51,30 @@ def kept_ring(
 
 
 def kept_ball(
-    name: str, copies: Copies, operator: HexOperator, contact: np.ndarray, mass: float, on_progress: OnProgress | None = None
-) -> Loose:
-    """A ball, held by springs on its mean motions, which the caller takes off again."""
+    name: str,
+    copies: Copies,
+    operator: HexOperator,
+    contact: np.ndarray,
+    mass: float,
+    caged: np.ndarray,
+    apply: Callable[[np.ndarray], np.ndarray],
+    on_progress: OnProgress | None = None,
+) -> tuple[Loose, np.ndarray]:
+    """A ball, held by springs on its mean motions, which the caller takes off again, and its answers (3 n, c) to its cage.
+
+    Parameters
+    ----------
+    caged : (3 n, c) forces of the cage;  apply : function of displacements (3 n, m) -> forces, those springs left out
+    """
     free = np.ones(len(copies.points), dtype=bool)
 
     def make() -> Arrays:
-        return Loose.of(
-            Part.of(copies, operator, contact, free, mass, None, _telling(name, copies, on_progress)), held=True
-        ).arrays()
+        told = _telling(name, copies, on_progress)
+        loose = Loose.of(Part.of(copies, operator, contact, free, mass, None, told), held=True)
+        return loose.arrays() | {"response": loose.solved(caged, apply)}
 
-    return Loose.of_arrays(copies, contact, _kept(name, copies, operator, contact, mass, {"held": True}, make))
+    arrays = _kept(name, copies, operator, contact, mass, {"held": True, "caged": caged}, make)
+    return Loose.of_arrays(copies, contact, arrays), arrays["response"]
 
 
 def _telling(name: str, copies: Copies, on_progress: OnProgress | None) -> Callable[[int, int], None] | None:

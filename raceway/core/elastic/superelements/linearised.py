@@ -146,17 +146,19 @@ class _Ball:
 
     def __init__(self, face: Interface, ball: int, one: BallTangent) -> None:
         from scipy.linalg import lu_factor, lu_solve
+        from scipy.sparse import csr_array
 
         cut = 3 * len(one.ball)
         flexibility = face.of_ball(ball, one.ball)
-        own = np.zeros((len(flexibility), len(flexibility)))
-        own[:cut, :cut] = one.matrix[:cut, :cut]
-        own[np.arange(cut, len(own)), np.arange(cut, len(own))] = face.springs(ball, cut > 0)
-        system = flexibility @ own
-        system[np.arange(len(own)), np.arange(len(own))] += 1.0
-        self._factors = lu_factor(system, check_finite=False)
-        self.across = one.matrix[cut:, :cut]
-        self.follows = lu_solve(self._factors, flexibility[:, :cut] @ one.matrix[:cut, cut:], check_finite=False)
+        sparse = csr_array(one.matrix[:cut])  # a point couples eight nodes
+        pressed = (sparse.T @ flexibility[:cut]).T  # flexibility times stiffness: both are symmetric
+        system = np.empty_like(flexibility, order="F")
+        system[:, :cut] = pressed[:, :cut]
+        system[:, cut:] = flexibility[:, cut:] * face.springs(ball, cut > 0)
+        system[np.arange(len(system)), np.arange(len(system))] += 1.0
+        self._factors = lu_factor(system, overwrite_a=True, check_finite=False)
+        self.across = sparse[:, cut:].T.tocsr()
+        self.follows = lu_solve(self._factors, np.asfortranarray(pressed[:, cut:]), overwrite_b=True, check_finite=False)
         self.stiffness = one.matrix[cut:, cut:] - self.across @ self.follows[:cut]
 
     def alone(self, nodes: np.ndarray, motions: np.ndarray) -> np.ndarray:

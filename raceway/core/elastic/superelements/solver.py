@@ -45,6 +45,8 @@ class CondensedSolver:
         #: (nodes,) which nodes bodies are reduced to: as they are meshed, so that they do not depend on loads.
         self._wanted = touchable(contact, assembly.nodes)
         self._interfaces: dict[float, Interface] = {}
+        #: The last linearised bearing: of which superelements, tangents and frame.
+        self.last: tuple[Interface, tuple[np.ndarray, ...], Linearised] | None = None
 
     def interface(self, mass: float) -> Interface:
         """Superelements of K + mass * M, made at the first call; those of statics and of one step are kept."""
@@ -223,17 +225,22 @@ class _Step:
         return out
 
     def _linearised(self) -> Linearised:
-        """With the tangents of the last contact forces."""
-        contact, face = self.contact, self.face
+        """With the tangents of the last contact forces; the one before where these are the same."""
+        contact, face, solver = self.contact, self.face, self.solver
         blocks = contact.stiffness + self.rate * contact.rate_stiffness
         chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
         nodes, weights, blocks = face.place[contact.nodes[chosen]], contact.weights[chosen], blocks[chosen]
+        made_of = nodes, weights, blocks, self.frame, self.unknown
+        if solver.last is not None and solver.last[0] is face and all(map(np.array_equal, solver.last[1], made_of)):
+            return solver.last[2]
         ball = contact.pair[chosen] % face.ball_count
         tangents = {}
         for k in range(face.ball_count):
             own = ball == k
             tangents[k] = BallTangent.of(nodes[own], weights[own], blocks[own])
-        return Linearised(face, tangents, self.frame, self.unknown)
+        found = Linearised(face, tangents, self.frame, self.unknown)
+        solver.last = face, tuple(one.copy() for one in made_of), found
+        return found
 
     def _moved(self, force: Motions, frame: np.ndarray) -> Motions:
         back = self.face.moved(Motions(-force.nodes, -force.balls, frame), frame)
