@@ -7,7 +7,7 @@ import pytest
 
 from raceway.core.elastic.copies import Copies, sectors
 from raceway.core.elastic.superelements.closed import Closed
-from raceway.core.elastic.superelements.loose import Loose, turned, turned_vectors
+from raceway.core.elastic.superelements.loose import Loose, gather_turned, turned_vectors
 from raceway.core.elastic.superelements.part import Part
 from raceway.core.hexahedron.operator import HexOperator
 from tests.superelements.dense import assembled, schur, unknowns
@@ -96,12 +96,20 @@ def test_the_flexibility_is_symmetric():
     assert np.abs(flexibility - flexibility.T).max() < 1e-13 * np.abs(flexibility).max()
 
 
-def test_turned_matrices_are_those_of_turned_vectors():
+def test_flexibilities_of_turned_copies_are_turned():
+    """Nodes of two copies in any order, against Q A Q^T of the whole matrix."""
     rng = np.random.default_rng(1)
-    matrix, vector = rng.standard_normal((12, 12)), rng.standard_normal((1, 12))
-    turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
-    wanted = turned_vectors((matrix @ vector[0])[None], turn[None])[0]
-    assert turned(matrix, turn) @ turned_vectors(vector, turn[None])[0] == pytest.approx(wanted, rel=1e-12)
+    turns = np.stack([np.linalg.qr(rng.standard_normal((3, 3)))[0] for _ in range(2)])
+    blocks = rng.standard_normal((2, 12, 12))
+    whole = np.block([[blocks[0], blocks[1]], [blocks[1], blocks[0]]])  # a force on copy 1 and copy 0: one copy further
+    turn = np.zeros((24, 24))
+    for node in range(8):
+        turn[3 * node : 3 * node + 3, 3 * node : 3 * node + 3] = turns[node // 4]
+    nodes = np.array([5, 0, 7, 2])
+    out = np.empty((12, 12))
+    gather_turned(blocks, turns, nodes // 4, nodes % 4, out)
+    places = unknowns(nodes)
+    assert out == pytest.approx((turn @ whole @ turn.T)[np.ix_(places, places)], rel=1e-12)
 
 
 def test_a_bed_under_some_cells_is_in_the_factors():

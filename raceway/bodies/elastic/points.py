@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import attrs
 import numpy as np
 
 from raceway.bodies.contact_error import overlap
@@ -21,10 +22,19 @@ if TYPE_CHECKING:
 _FEW_POINTS = 60
 
 
+@attrs.frozen(eq=False)
 class ElasticPoints(ElasticBodies):
     """Pressures at points."""
 
+    _columns: dict[bytes, dict[str, np.ndarray]] = attrs.field(init=False, factory=dict)
+
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
+        key = equilibrium.displacement.tobytes()
+        if key not in self._columns:
+            self._columns[key] = self._told(model, equilibrium)
+        return dict(self._columns[key])
+
+    def _told(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         system: Any = model.system
         system.in_place(system.equilibrium)
         contact: Any = self.bearing.system.contact

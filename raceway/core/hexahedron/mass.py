@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from raceway.core.hexahedron.shape import Floats, gauss, jacobians, shape_slopes, shape_values
+from raceway.core.hexahedron.shape import Floats, determinants, gauss, jacobians, shape_slopes, shape_values
 from raceway.errors import MeshError
 
 #: Elements of a batch: some 50 MB of work space.
@@ -32,7 +32,7 @@ def nodal_volumes(points: Floats, cells: NDArray[np.uint32]) -> Floats:
     out = np.empty((len(cells), 8))
     for part in batches(len(cells)):
         with np.errstate(invalid="ignore"):  # a coordinate that is no number is refused below
-            determinant = np.linalg.det(jacobians(points[cells[part]], slopes))
+            determinant = determinants(jacobians(points[cells[part]], slopes))
         bad = ~(determinant > 0.0).all(axis=1)
         if bad.any():
             e = part.start + int(np.argmax(bad))
@@ -49,6 +49,6 @@ def element_masses(corners: Floats, density: float) -> Floats:
     """(k, 8, 8) Consistent masses of one component [kg]; three Gauss points a direction are exact."""
     at, weights = gauss(3)
     values = shape_values(at)
-    determinant = np.linalg.det(jacobians(corners, shape_slopes(at)))
+    determinant = determinants(jacobians(corners, shape_slopes(at)))
     pairs = np.einsum("pn,pm->pnm", values, values).reshape(len(at), 64)
     return np.asarray((density * determinant * weights) @ pairs).reshape(-1, 8, 8)

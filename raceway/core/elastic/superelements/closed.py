@@ -15,7 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from raceway.core.elastic.copies import Copies
-from raceway.core.elastic.superelements.loose import inverse, turned_vectors
+from raceway.core.elastic.superelements.loose import gather_turned, inverse, turned_vectors
 from raceway.core.elastic.superelements.part import Part
 from raceway.core.linear.fronts import Fronts
 
@@ -88,24 +88,10 @@ class Closed:
 
     def among(self, nodes: np.ndarray) -> np.ndarray:
         """(3 m, 3 m) flexibility of some of the contacts' nodes (m,), numbered through all sectors [m/N]."""
-        turns, count, k = self.part.copies.turns, len(self.blocks), self.part.size // 3
-        sector, size = nodes // k, 3 * len(nodes)
-        order = np.argsort(sector, kind="stable")
-        places = (3 * (nodes[order] % k)[:, None] + np.arange(3)).ravel()
-        ends = 3 * np.searchsorted(sector[order], np.arange(count + 1))
-        found = [slice(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True)]
-        local = np.empty((size, size))
-        for i, rows in enumerate(found):
-            for j, columns in enumerate(found):
-                local[rows, columns] = self.blocks[(i - j) % count][places[rows][:, None], places[columns]]
-        turn = turns[sector[order]]
-        half = (turn @ local.reshape(len(nodes), 3, size)).reshape(size, len(nodes), 3)
-        turned = (half.transpose(1, 0, 2) @ turn.transpose(0, 2, 1)).transpose(1, 0, 2).reshape(size, size)
-        if np.array_equal(order, np.arange(len(order))):
-            return turned
-        back = np.argsort(order)
-        chosen = (3 * back[:, None] + np.arange(3)).ravel()
-        return np.asarray(turned[np.ix_(chosen, chosen)])
+        k = self.part.size // 3
+        out = np.empty((3 * len(nodes), 3 * len(nodes)))
+        gather_turned(self.blocks, self.part.copies.turns, nodes // k, nodes % k, out)
+        return out
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
         """What nodal forces (3 nodes,) are on the contacts' nodes (copies, 3 k), and what ``backward`` needs."""

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.core.elastic.superelements.balls import Balls
-from raceway.core.elastic.superelements.loose import turned
+from raceway.core.elastic.superelements.loose import gather_turned
 from raceway.core.elastic.superelements.rings import Ring
 
 
@@ -100,14 +100,12 @@ class Interface:
     def of_ball(self, ball: int, nodes: np.ndarray) -> np.ndarray:
         """(3 m + e, 3 m + e) flexibility of some nodes (m,) and the mean motions of a ball where it lies."""
         group, copy, begin = self._balls[ball]
-        places = unknowns(nodes - begin)
-        turn, size = group.loose.part.copies.turns[copy], len(places)
-        chosen = np.concatenate([places, np.arange(group.size, len(group.flexibility))])
-        out = group.flexibility[np.ix_(chosen, chosen)]
-        out[:size, :size] = turned(out[:size, :size], turn)
-        out[:size, size:] = (turn @ out[:size, size:].reshape(-1, 3, self.extra)).reshape(size, self.extra)
-        out[size:, :size] = out[:size, size:].T
-        return out
+        places, turn = unknowns(nodes - begin), group.loose.part.copies.turns[copy]
+        size, none = len(places), np.zeros(len(nodes), dtype=np.int64)
+        inner = np.empty((size, size))
+        gather_turned(group.flexibility[None], turn[None], none, nodes - begin, inner)
+        beside = (turn @ group.flexibility[places, group.size :].reshape(-1, 3, self.extra)).reshape(size, self.extra)
+        return np.block([[inner, beside], [beside.T, group.flexibility[group.size :, group.size :]]])
 
     def of_rings(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Flexibility (3 k, 3 k) of some of the rings' nodes (k,), ``nodes`` (m,) among them, and their motion (3 k, m) with the frame.

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
+from numba import int64, void
 
 from raceway.core.elastic.copies import Copies
 from raceway.core.elastic.superelements.part import Part
+from raceway.core.jit import jit
 from raceway.core.linear.fronts import Fronts
 from raceway.core.linear.rigid_motions import rigid_motions
+from raceway.core.signatures import CUBE, MATRIX
 
 #: Solutions in single precision, each with the residual of those before: five digits more each.
 REFINED = 3
@@ -120,11 +123,30 @@ def _mean_motions(part: Part, hold: float) -> np.ndarray:
     return np.asarray(np.linalg.qr(rigid_motions(part.copies.points[part.contact]))[0])
 
 
-def turned(matrix: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """Q A Q^T of a (3 k, 3 k) matrix, Q the turn (3, 3) of every node."""
-    k = len(matrix) // 3
-    half = (turn @ matrix.reshape(k, 3, 3 * k)).reshape(3 * k, k, 3)
-    return np.ascontiguousarray((half @ turn.T).reshape(3 * k, 3 * k))
+@jit(void(CUBE, CUBE, int64[::1], int64[::1], MATRIX), allocates=True)
+def gather_turned(blocks, turns, copies, nodes, out):  # type: ignore[no-untyped-def]
+    """Flexibility of nodes (m,) of copies (m,), each turned to where it lies: out (3 m, 3 m).
+
+    Parameters
+    ----------
+    blocks : (c, 3 k, 3 k) of copy i, in its frame, under forces on copy 0;  turns : (c, 3, 3)
+    """
+    work = np.empty((3, 3))
+    for i in range(nodes.size):
+        p = turns[copies[i]]
+        for j in range(nodes.size):
+            q, block = turns[copies[j]], blocks[(copies[i] - copies[j]) % blocks.shape[0]]
+            row, column = 3 * nodes[i], 3 * nodes[j]
+            for a in range(3):
+                for d in range(3):
+                    work[a, d] = (
+                        p[a, 0] * block[row, column + d]
+                        + p[a, 1] * block[row + 1, column + d]
+                        + p[a, 2] * block[row + 2, column + d]
+                    )
+            for a in range(3):
+                for b in range(3):
+                    out[3 * i + a, 3 * j + b] = work[a, 0] * q[b, 0] + work[a, 1] * q[b, 1] + work[a, 2] * q[b, 2]
 
 
 def turned_vectors(values: np.ndarray, turns: np.ndarray) -> np.ndarray:

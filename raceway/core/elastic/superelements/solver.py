@@ -23,6 +23,8 @@ NEWTON_LIMIT = 40
 TOLERANCE = 1e-10
 #: Relative error of a step of Newton's method: its own is no smaller.
 ENOUGH = 1e-6
+#: Relative change of tangents up to which Newton's method goes on with those before: so much of its error is left by an iteration.
+CLOSE = 1e-3
 
 
 class CondensedSolver:
@@ -68,7 +70,7 @@ class CondensedSolver:
         """(m, m) motions of the frame under unit forces on it, all bodies in balance, with the tangents of the last contact forces."""
         m = self.assembly.frame_size
         step = _Step(self, 1.0, 0.0, 0.0, np.zeros(self.assembly.size), quiet=True)
-        linearised = step._linearised()
+        linearised = step._linearised(close=0.0)
         columns = [linearised.forces(attrs.evolve(step.alone, frame=force))[1] for force in np.eye(m)]
         return np.stack(columns, axis=1)
 
@@ -108,6 +110,15 @@ class CondensedSolver:
         self._wanted[nodes] = True
         self._wanted |= touchable(self.contact, self.assembly.nodes)
         self._interfaces.clear()
+
+
+def _alike(one: tuple[np.ndarray, ...], other: tuple[np.ndarray, ...], close: float) -> bool:
+    """Whether arrays are equal to a part of their largest entry."""
+    return all(
+        a.shape == b.shape
+        and float(np.abs(np.subtract(a, b, dtype=float)).max(initial=0.0)) <= close * float(np.abs(a).max(initial=0.0))
+        for a, b in zip(one, other, strict=True)
+    )
 
 
 class _Beyond(Exception):
@@ -153,7 +164,7 @@ class _Step:
         solver.solves += 1
 
     def linear(self) -> np.ndarray:
-        force, frame = self._linearised().forces(self.alone)
+        force, frame = self._linearised(close=0.0).forces(self.alone)
         return self._whole(self._moved(force, frame), force)
 
     def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float, share: float, locates: bool) -> np.ndarray:
@@ -224,14 +235,14 @@ class _Step:
             np.add.at(out, rows[:, a], -contact.weights[chosen, a, None] * contact.force[chosen])
         return out
 
-    def _linearised(self) -> Linearised:
-        """With the tangents of the last contact forces; the one before where these are the same."""
+    def _linearised(self, close: float = CLOSE) -> Linearised:
+        """With the tangents of the last contact forces; the one before where the same points touch and these are as ``close``."""
         contact, face, solver = self.contact, self.face, self.solver
         blocks = contact.stiffness + self.rate * contact.rate_stiffness
         chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
         nodes, weights, blocks = face.place[contact.nodes[chosen]], contact.weights[chosen], blocks[chosen]
         made_of = nodes, weights, blocks, self.frame, self.unknown
-        if solver.last is not None and solver.last[0] is face and all(map(np.array_equal, solver.last[1], made_of)):
+        if solver.last is not None and solver.last[0] is face and _alike(solver.last[1], made_of, close):
             return solver.last[2]
         ball = contact.pair[chosen] % face.ball_count
         tangents = {}
