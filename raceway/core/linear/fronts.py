@@ -169,12 +169,13 @@ def factored(
         s, size = len(inner), len(inner) + len(border)
         place[inner], place[border] = np.arange(s), np.arange(s, size)
         front = np.zeros((size, size), order="F")
-        if domain.cells is not None:
+        if domain.cells is not None and size:
             part = slice(*domain.cells)
             add_cells(place, cells[part], matrices(part), front)
         for child in domain.children:
             unknowns, schur = waiting.pop(child)
-            add_front(place[unknowns], schur, front)
+            if size:  # no unknown where all nodes are held
+                add_front(place[unknowns], schur, front)
         place[inner] = place[border] = -1
         waiting[number] = border, _eliminate(front, s, inner, border, fronts)
         if on_front is not None:

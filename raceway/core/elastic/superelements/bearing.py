@@ -13,6 +13,7 @@ from raceway.core.elastic.superelements.balls import Balls
 from raceway.core.elastic.superelements.interface import Interface
 from raceway.core.elastic.superelements.kept import OnProgress, kept_ball, kept_ring
 from raceway.core.elastic.superelements.rings import Ring
+from raceway.errors import MeshError
 
 #: Facets of the rings beyond those under a ball's points: bodies move by tens of micrometres, their facets there are as large.
 _FURTHER = 1
@@ -62,6 +63,10 @@ def _ring(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_
         touched = np.flatnonzero(own)
     local = copies.nodes[0] - first
     touched = touched[free[local[touched]]]
+    if not touched.size:
+        raise MeshError(
+            f"{body.name}: no node of its groove below a contact is free: its seat reaches into the groove. Mesh the ring with free nodes there"
+        )
     bed = None if body.foundation is None else _of_part(bed_of_cells(body), cells, local, copies.cells)
     element = kept_ring(body.name, copies, body.operator, touched, free[local], mass, bed, on_progress)
     inertia = mass * np.repeat(body.operator.lumped_mass() * free, 3)

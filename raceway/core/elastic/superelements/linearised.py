@@ -67,7 +67,7 @@ class Linearised:
             force[one.ball] += pressed[:cut].reshape(-1, 3)
             force[one.rings] += pressed[cut:].reshape(-1, 3)
             balls[k] = face.springs(k, len(one.ball) > 0) * at_ball[cut:]
-        return Motions(force, balls, face.on_frame(force)), found[self._size :]
+        return Motions(force, balls, face.on_frame(force)), np.where(self._unknown, found[self._size :], 0.0)
 
     def _factored(self) -> Callable[[np.ndarray, float], np.ndarray]:
         from scipy.linalg import lu_factor, lu_solve
@@ -151,13 +151,15 @@ class _Ball:
         cut = 3 * len(one.ball)
         flexibility = face.of_ball(ball, one.ball)
         sparse = csr_array(one.matrix[:cut])  # a point couples eight nodes
-        pressed = (sparse.T @ flexibility[:cut]).T  # flexibility times stiffness: both are symmetric
+        pressed = (
+            sparse.T @ flexibility[:cut]
+        ).T  # flexibility, which is symmetric, times stiffness, which is not with friction
         system = np.empty_like(flexibility, order="F")
         system[:, :cut] = pressed[:, :cut]
         system[:, cut:] = flexibility[:, cut:] * face.springs(ball, cut > 0)
         system[np.arange(len(system)), np.arange(len(system))] += 1.0
         self._factors = lu_factor(system, overwrite_a=True, check_finite=False)
-        self.across = sparse[:, cut:].T.tocsr()
+        self.across = csr_array(one.matrix[cut:, :cut])
         self.follows = lu_solve(self._factors, np.asfortranarray(pressed[:, cut:]), overwrite_b=True, check_finite=False)
         self.stiffness = one.matrix[cut:, cut:] - self.across @ self.follows[:cut]
 

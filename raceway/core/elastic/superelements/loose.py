@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numba import int64, void
+from numba import float64, int64, types, void
 
 from raceway.core.elastic.copies import Copies
 from raceway.core.elastic.superelements.part import Part
@@ -123,7 +123,11 @@ def _mean_motions(part: Part, hold: float) -> np.ndarray:
     return np.asarray(np.linalg.qr(rigid_motions(part.copies.points[part.contact]))[0])
 
 
-@jit(void(CUBE, CUBE, int64[::1], int64[::1], MATRIX), allocates=True)
+#: Kept arrays may be read-only.
+_KEPT = types.Array(float64, 3, "C", readonly=True)
+
+
+@jit(void(_KEPT, CUBE, int64[::1], int64[::1], MATRIX), allocates=True)
 def gather_turned(blocks, turns, copies, nodes, out):  # type: ignore[no-untyped-def]
     """Flexibility of nodes (m,) of copies (m,), each turned to where it lies: out (3 m, 3 m).
 

@@ -242,6 +242,8 @@ class _Step:
         chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
         nodes, weights, blocks = face.place[contact.nodes[chosen]], contact.weights[chosen], blocks[chosen]
         made_of = nodes, weights, blocks, self.frame, self.unknown
+        if contact.friction is not None:
+            close = 0.0  # a point that begins to slide changes little of its tangent and all of its force
         if solver.last is not None and solver.last[0] is face and _alike(solver.last[1], made_of, close):
             return solver.last[2]
         ball = contact.pair[chosen] % face.ball_count

@@ -1,0 +1,112 @@
+"""Superelements kept on disk: read again under other loads, never for another mesh; and nodes that contacts come to later."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.core.elastic.superelements import kept
+from raceway.core.elastic.superelements.bearing import touchable
+from raceway.core.elastic.superelements.part import Part
+from raceway.errors import MeshError
+from raceway.storage import array_cache
+from tests.superelements.bearings import built, start_of, with_node_moved
+
+TIGHT = 1e-9
+
+
+@pytest.fixture(autouse=True)
+def small_parts_too(tmp_path, monkeypatch):
+    """An empty cache, in which small parts are kept as well."""
+    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(kept, "LEAST_CELLS", 0)
+
+
+def entries():
+    return sorted(entry.what for entry in array_cache.entries() if entry.kind == "superelement")
+
+
+def settled(model):
+    return model.bearing.bearing.system.settle(start_of(model), TIGHT).y
+
+
+def test_what_was_kept_gives_the_same_digits_without_a_factorisation(monkeypatch):
+    first = settled(built())
+    assert [what.split(",")[0] for what in entries()] == ["ball", "inner ring", "outer ring"]
+
+    def refuse(*given):
+        raise AssertionError("factored again")
+
+    monkeypatch.setattr(Part, "of", refuse)
+    assert (settled(built()) == first).all()
+
+
+def test_another_load_reads_the_same(monkeypatch):
+    """On one mesh: without a ball load of its own it would follow the scene's."""
+    mesh = {"azimuth_cells": 24, "ball_load": 300.0}
+    settled(built(mesh=mesh, load={"axial": 150.0, "radial": [50.0, 0.0]}))
+    monkeypatch.setattr(Part, "of", lambda *given: pytest.fail("factored again"))
+    settled(built(mesh=mesh, load={"axial": 200.0, "radial": [100.0, 160.0]}))
+    settled(built(mesh=mesh, load={"axial": 100.0, "radial": [0.0, 0.0]}))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"bodies": {"formulation": "full"}},
+        {"mesh": {"azimuth_cells": 30}},
+        {"bearing": {"preset": "B7206C", "ball_count": 3, "rings": {"young": 205e9}}},
+        {"supports": {"outer_seat": 1e13}},
+    ],
+    ids=["formulation", "mesh", "material", "seat"],
+)
+def test_other_bodies_are_other_entries(change):
+    """Each against a cache of its own: a wrong answer would be read without a word."""
+    settled(built())
+    count = len(entries())
+    found = settled(built(**change))
+    assert len(entries()) > count
+    array_cache.clear()
+    assert (settled(built(**change)) == found).all()
+
+
+def test_a_node_moved_in_the_tenth_digit_is_another_mesh():
+    settled(built())
+    count = len(entries())
+    system = with_node_moved(built(), (3,), 1e-10)
+    system.condensed.interface(0.0)
+    assert len(entries()) > count
+
+
+def test_making_is_told_with_its_end():
+    told = []
+    model = built()
+    model.bearing.settle(None, lambda *what: told.append(what))
+    factoring = [what for what in told if what[0].startswith("factoring")]
+    assert {what for what, _, _ in factoring} >= {what for what, _, _ in factoring if "a sector of the inner ring" in what}
+    for what in {what for what, _, _ in factoring}:
+        assert [done == total for name, done, total in factoring if name == what][-1]
+    assert any(what[0].startswith("equilibrium, residual") for what in told)
+
+
+def test_a_contact_that_comes_to_other_nodes_widens_the_superelements():
+    """Bodies reduced to the nodes of one contact alone: the others are added when they press."""
+    whole = settled(built())
+    model = built()
+    system = model.bearing.bearing.system
+    solver = system.condensed
+    solver._wanted = solver._wanted & (np.arange(system.assembly.nodes) % 2 == 0)
+    found = system.settle(start_of(model), TIGHT).y
+    assert np.abs(found - whole).max() < 1e-8 * np.abs(whole).max()
+    assert (solver._wanted >= touchable(system.contact, system.assembly.nodes)).all()
+
+
+def test_a_contact_on_nodes_that_are_held_is_said():
+    model = built()
+    system = model.bearing.bearing.system
+    assembly = system.assembly
+    in_groove = np.repeat(system.condensed._wanted, 3)
+    in_groove[: assembly.part(1).start] = in_groove[assembly.part(1).stop :] = False
+    assembly.free = assembly.free[~in_groove[assembly.free]]
+    with pytest.raises(MeshError, match="outer_ring: no node of its groove below a contact is free: its seat reaches"):
+        system.condensed.increment(1.0, 0.0, 0.0, np.zeros(system.size), np.zeros(3 * system.assembly.nodes), None, 0.0, 0.5)
