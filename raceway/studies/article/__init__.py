@@ -12,5 +12,6 @@ expected     the quasi-static trends of an independent solver and the same numbe
 causes       direction, amplitude law, ball inertia, bodies and friction swapped one at a time
 figures      figures 9 to 12;  panel: their axes
 report       the page;  files: page, pictures and tables on disk;  screen: the verdicts
+elastic      the article's own model: elastic bodies at one operating point, beside the others
 study        all of it: ``article()``;  command: ``raceway study article``
 """

@@ -24,7 +24,7 @@ from raceway.commands.frame import (
     show_progress,
 )
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
-from raceway.errors import ConvergenceError, SceneError
+from raceway.errors import ConvergenceError, Mistake, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
@@ -39,6 +39,7 @@ class ArticleOptions(NamedTuple):
     axial: str
     shaft: float | None
     friction: float | None
+    turns: int | None
     processes: int
     changes: tuple[str, ...]
     out: Path | None
@@ -51,10 +52,11 @@ class ArticleOptions(NamedTuple):
 @scene_if_any
 @click.option(
     "--bodies",
-    type=click.Choice(["rigid", "condensed", "both"]),
+    type=click.Choice(["rigid", "condensed", "both", "elastic"]),
     default="both",
     show_default=True,
-    help="What deforms: only the contacts, or finite-element rings and balls, too.",
+    help="What deforms: only the contacts, or finite-element rings and balls, too; elastic: the article's own model at one operating "
+    "point, beside the others.",
 )
 @click.option(
     "--speeds", default="10980:15000:9", show_default=True, metavar="LIST", help="r/min; a,b,c or start:stop:count."
@@ -67,6 +69,7 @@ class ArticleOptions(NamedTuple):
     metavar="MU",
     help="Coulomb coefficient of the runs with friction [the scene's, or 0.03]; 0: none.",
 )
+@click.option("--turns", type=click.IntRange(1, 1000), metavar="N", help="Of a motion of elastic bodies, 40 steps each [2].")
 @processes_at_a_time
 @set_keys
 @out_option(f"{RESULTS}/article")
@@ -81,13 +84,26 @@ def article(given: ArticleOptions) -> int:
     friction and integrator are set by the study. Writes article.html, which opens from a file without a network, its figures as PNG,
     article.json and CSV tables. Finished curves are kept in DIR/article-rows.jsonl and reused.
 
+    With --bodies elastic every node of rings and balls moves, on the article's mesh without SCENE: four load cases at rest and one
+    operating point under both excitations, beside condensed and rigid bodies. It takes gigabytes, and writes article-elastic.html;
+    finished runs are kept in DIR/article-elastic-rows.jsonl.
+
     \b
     Example:
       raceway study article --bodies rigid --friction 0
       raceway study article examples/b7206.toml \\
           --set rotor.mass=1.5 --axial 400,1000,2000
+      raceway study article --bodies elastic --set mesh.element_size=2e-3
     """  # fmt: skip
+    elastic = given.bodies == "elastic"
+    _refuse_unused(click.get_current_context(), elastic)
     registry = registry_with(given.plugins)
+    if elastic:
+        from raceway.studies.article.elastic.command import study_elastic
+
+        command = _command(click.get_current_context())
+        return study_elastic(given.scene, given.changes, given.friction, given.turns, given.out, given.pictures, given.plugins,
+                             given.as_json, command, registry)  # fmt: skip
     from raceway.studies.article.design import ARTICLE, article_tables, design
 
     tables: Tables | None = None
@@ -117,6 +133,35 @@ def article(given: ArticleOptions) -> int:
 
     show(content, given.as_json, failed, lambda: article_screen(content, files))
     return 0
+
+
+#: Options that one choice of --bodies has no use for, with the reason.
+_NOT_ELASTIC = {
+    "speeds": "there is one operating point: --set excitation.speed_rpm=12000",
+    "axial": "load cases at rest are fixed; that of the motions: --set load.axial=1000",
+    "shaft": "the tilt is locked",
+    "processes": "runs take gigabytes each and go one at a time",
+}
+_ELASTIC_ONLY = {"turns": "the study sets them, or has steady orbits"}
+
+
+def _refuse_unused(context: click.Context, elastic: bool) -> None:
+    """Refuse what was typed and would have no effect.
+
+    Raises
+    ------
+    SceneError
+        Naming each option.
+    """
+    unused = _NOT_ELASTIC if elastic else _ELASTIC_ONLY
+    bodies = context.params["bodies"]
+    mistakes = [
+        Mistake(f"--{name}", context.params[name], f"has no effect with --bodies {bodies}: {why}; leave it out")
+        for name, why in unused.items()
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+    ]
+    if mistakes:
+        raise SceneError(mistakes)
 
 
 def _command(context: click.Context) -> str:

@@ -34,7 +34,7 @@ def write(study: Article, folder: Path, pictures: bool = True, command: str = "r
     """
     content = study.to_dict()
     files = [write_json(content, folder / "article.json")]
-    files += [_csv(rows, folder / f"{name}.csv") for name, rows in _tables(study, content).items()]
+    files += [write_csv(rows, folder / f"{name}.csv") for name, rows in _tables(study, content).items()]
     if pictures:
         drawn = all_pictures(study)
         files += [save_figure(one.figure(), folder / f"{one.name}.png", _DOTS_PER_INCH) for one in drawn]
@@ -66,7 +66,7 @@ def _tables(study: Article, content: ReadTables) -> dict[str, list[Tables]]:
     }
 
 
-def _csv(rows: Iterable[ReadTables], path: Path) -> Path:
+def write_csv(rows: Iterable[ReadTables], path: Path) -> Path:
     """A table with every key of any row as a column."""
     found = list(rows)
     text = io.StringIO()

@@ -72,7 +72,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
 
     begun, compiling = time.perf_counter(), 0.0
     runs: list[dict[str, float]] = []
-    own_peak, cold = _reset_peak(), True
+    own_peak, cold = reset_peak(), True
     while len(runs) < repeats and (not runs or time.perf_counter() - begun - compiling < PATIENCE_S):
         cpu = time.process_time()
         try:
@@ -91,7 +91,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
         cost = result["cost"]
         compiling += cost["compile_s"]
         if cold and cost["compile_s"] > 0.0:
-            own_peak, cold = _reset_peak(), False
+            own_peak, cold = reset_peak(), False
             continue
         times = {name: cost[name] for name in ("wall_s", "solve_s", "error_s")}
         # A plug-in that compiles in every run: no less than the wall time of the solution can be told.
@@ -125,8 +125,8 @@ def _without_mesh(error: Tables) -> float | None:
     return None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0)
 
 
-def _reset_peak() -> bool:
-    """Let the system count the peak of memory anew (Linux); whether it does."""
+def reset_peak() -> bool:
+    """Let the system count the peak of memory of this process anew (Linux); whether it does."""
     try:
         (_PROCESS / "clear_refs").write_bytes(b"5")
     except OSError:

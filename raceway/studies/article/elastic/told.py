@@ -1,0 +1,46 @@
+"""Progress over all runs, with the time that the plans leave."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+
+OnProgress = Callable[[str, int, int], None]
+
+
+class Told:
+    """Tells what one run does, how far it is, and when all of them will end as far as their plans know.
+
+    Parameters
+    ----------
+    seconds : predicted time by number of every run that is to be made, in their order [s]
+    on_progress : called as ``on_progress(what, done, total)``, in predicted seconds; an exception stops the study
+    """
+
+    def __init__(self, seconds: Mapping[int, float], on_progress: OnProgress | None) -> None:
+        self._seconds, self._tell = dict(seconds), on_progress
+        self._place, self._name, self._begun = 0, "", time.monotonic()
+
+    def begin(self, place: int, name: str) -> None:
+        """A run starts."""
+        self._place, self._name, self._begun = place, name, time.monotonic()
+        self("starting", 0, 0)
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        """Told by the run: ``what`` is done, ``done`` of ``total``, 0 where nobody knows how many."""
+        if self._tell is None:
+            return
+        planned = self._seconds[self._place]
+        gone = sum(s for place, s in self._seconds.items() if place < self._place) + min(
+            time.monotonic() - self._begun, planned
+        )
+        whole = sum(self._seconds.values())
+        far = f" {done} of {total}" if total else ""
+        self._tell(f"{self._name}: {what}{far}; {_words(whole - gone)}", round(gone), round(whole))
+
+
+def _words(left: float) -> str:
+    """Seconds that are left, in words."""
+    if left < 90.0:
+        return f"all runs end in some {left:.0f} s by the plan"
+    return f"all runs end in some {left / 60.0:.0f} min by the plan"
