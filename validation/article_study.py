@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
+from raceway.scene.file import read_toml
+from raceway.storage.tables import Tables
 from raceway.studies.article import causes, expected
 from raceway.studies.article.curves import Curves
 from raceway.studies.article.design import article_tables, design
+from raceway.studies.article.elastic import design as elastic
+from raceway.studies.article.elastic.design import Run
+from raceway.studies.article.elastic.study import ElasticArticle
 from raceway.studies.article.study import RIG_LOADS, RIG_SPEEDS, Article
 
 SPEEDS, LOADS = "10980:15000:5", "400,1000,2000"
@@ -68,3 +74,57 @@ def study(found: Curves) -> Article:
         for tilt in ("locked", "shaft", "free") for load in RIG_LOADS for speed in RIG_SPEEDS
     )  # fmt: skip
     return Article("invented", found, rig, tuple(static(0.01)), trends, scan, 1.0, 1.0, 0.5, 10, 0)
+
+
+def elastic_rows() -> dict[Run, Tables]:
+    """Invented rows of ``raceway study article --bodies elastic``: elastic bodies are a little off condensed ones, these off Hertz."""
+    return {run: _elastic_row(run) for run in elastic.design(read_toml(elastic.SCENE)).runs()}
+
+
+def elastic_study(failed: Sequence[Run] = ()) -> ElasticArticle:
+    """The study around them; of ``failed`` runs there is a reason."""
+    made = elastic.design(read_toml(elastic.SCENE))
+    rows = elastic_rows() | {
+        run: {"status": "failed", "reason": "no equilibrium", "cost": {**_cost(run), "elements": None}} for run in failed
+    }
+    return ElasticArticle("invented", made, [rows[run] for run in made.runs()], 60.0, 60.0, 0)
+
+
+def _elastic_row(run: Run) -> Tables:
+    off = float(run.bodies == "elastic")
+    loads = [200.0, 100.0, 50.0, 0.0]
+    balls = [_ball(place, load, 1.0 + 0.005 * off * (place == 0), run.bodies != "rigid", 0.02 + 0.01 * (place == 2))
+             for place, load in enumerate(loads)]  # fmt: skip
+    stress = {"race": "inner", "body": "ball", "ball": 0, "load_n": 200.0, "largest_shear_pa": 4.1e8, "hertz_largest_shear_pa": 4e8,
+              "depth_m": 6.1e-5, "hertz_depth_m": 6e-5, "resolved": True}  # fmt: skip
+    k, c = 2e8 * (1.0 + 0.01 * off), 100.0 * (1.0 + 0.5 * off)
+    z = complex(k - 2.0 * 1256.6**2, 1256.6 * c)
+    known = {"speed_rpm": 12000.0, "equivalent_stiffness": k, "equivalent_damping": c,
+             "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)}}  # fmt: skip
+    return {
+        "status": "completed",
+        "reason": "",
+        "balls": balls,
+        "displacement": {"x": 1e-5 * (1.0 - 0.01 * off), "y": 2e-6 if run.radial else 1e-20},
+        "kyy_n_per_m": 2.5e8 * (1.0 + 0.004 * off),
+        "subsurface": [stress] if off else [],
+        "identification": None if run.excitation is None else known,
+        "stability": {"energy_drift": 1e-4 if off else None, "status": "completed"},
+        "error": {"transient": 1e-3},
+        "warnings": ["one node"] if off else [],
+        "cost": _cost(run),
+    }
+
+
+def _ball(place: int, load: float, factor: float, points: bool, off: float) -> Tables:
+    ball: Tables = {"azimuth_deg": 90.0 * place}
+    for race in ("inner", "outer"):
+        hertz = 1e8 * load ** (1.0 / 3.0)
+        ball |= {f"load_{race}_n": load * factor, f"peak_pressure_{race}_pa": hertz}
+        ball |= {f"peak_pressure_nodal_{race}_pa": (1.0 + off) * hertz} if points else {}
+    return ball
+
+
+def _cost(run: Run) -> Tables:
+    return {"cpu_s": 3.0, "wall_s": 3.0, "compile_s": 0.0, "peak_memory_bytes": 2**30, "peak_memory_of": "run",
+            "elements": 1_060_152 if run.bodies == "elastic" else None, "steps": 80, "newton_iterations": 200, "predicted_s": 3.0}  # fmt: skip

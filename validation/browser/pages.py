@@ -29,6 +29,17 @@ def _article(folder: Path) -> Path:
     return page(found, pictures(found), "raceway study article").write(folder / "article.html")
 
 
+def _article_elastic(folder: Path) -> Path:
+    """The page of elastic bodies around invented rows."""
+    from raceway.studies.article.elastic.figures import pictures
+    from raceway.studies.article.elastic.report import page
+    from validation.article_study import elastic_study
+
+    content = elastic_study().to_dict()
+    command = "raceway study article --bodies elastic"
+    return page(content, pictures(content), None, command).write(folder / "article-elastic.html")
+
+
 _POINT = ("rig.speeds_rpm=[13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.25")
 PAGES: dict[str, Callable[[Path], Path]] = {
     "view": _command("view.html", "view", ARTICLE, "--html", "--animate", "--frames", "2"),
@@ -44,6 +55,7 @@ PAGES: dict[str, Callable[[Path], Path]] = {
         "bearing.contact_angle_deg=15",
     ),
     "study article": _article,
+    "article of elastic bodies": _article_elastic,
     "study rig": _command(
         "rig.html", "study", "rig", EXAMPLES / "test_rig.toml", *(w for p in _POINT for w in ("--set", p))
     ),

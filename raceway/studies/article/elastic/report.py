@@ -128,7 +128,7 @@ def _at_rest(out: Page, rows: list[Tables], reference: str, drawn: dict[str, Pic
     for row in rows:
         if row["status"] == "completed":
             where, other = row["displacement"], row[f"from_{reference}"] or {}
-            lines.append([row["case"], row["bodies"], f"{1e6 * where['x']:.4f}", f"{1e6 * where['y']:.4f}", f"{1e-6 * row['kyy_n_per_m']:.2f}",
+            lines.append([row["case"], row["bodies"], f"{1e6 * where['x']:.4f}", f"{1e6 * where['y']:.4f}".replace("-0.0000", "0.0000"), f"{1e-6 * row['kyy_n_per_m']:.2f}",
                           *(per_cent(other.get(name)) for name in ("ball_loads", "x", "y", "kyy"))])  # fmt: skip
     columns = ["load", "bodies", "x µm", "y µm", "kyy N/µm", "ball loads", "x", "y", "kyy"]
     out.table(columns, lines, f"Displacements and stiffness; the last four columns are differences from {reference} bodies, ball loads over the largest")  # fmt: skip
