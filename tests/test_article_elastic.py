@@ -176,7 +176,9 @@ def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
         design(read_toml(SCENE), friction=-0.1)
 
 
-def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, short, monkeypatch):
+def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, monkeypatch):
+    monkeypatch.setattr(Design, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
+    monkeypatch.setattr(designs, "CLAIMED", ())
     real, wrong, tried = run_one.run, [MemoryError(), ConvergenceError("no equilibrium")], []
 
     def fail(scene, *given):
@@ -187,7 +189,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_
         return real(scene, *given)
 
     monkeypatch.setattr(run_one, "run", fail)
-    found = invoke(*WORDS, "--turns", "1", "--out", tmp_path)
+    found = invoke(*WORDS, "--out", tmp_path)
     assert found.exit_code == 0, found.output
     content = json.loads((tmp_path / "article-elastic.json").read_text(encoding="utf-8"), parse_constant=pytest.fail)
     rows = [row for row in content["rows"] if row["bodies"] == "elastic"]
@@ -196,7 +198,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_
     text = (tmp_path / "article-elastic.html").read_text(encoding="utf-8")
     assert "no equilibrium" in text and "no equilibrium" in " ".join(found.stdout.split())
     assert len(tried) == 2
-    found = invoke(*WORDS, "--turns", "1", "--out", tmp_path, "--json")
+    found = invoke(*WORDS, "--out", tmp_path, "--json")
     content = json.loads(found.stdout)
     assert len(tried) == 3 and content["cost"]["reused"] == 5
     assert [row["status"] for row in content["rows"] if row["bodies"] == "elastic"] == ["completed", "failed"]
