@@ -246,17 +246,24 @@ def test_a_missing_reference_leaves_differences_out():
     assert page(content, [], None, "").html()
 
 
-def test_progress_tells_the_run_and_when_all_of_them_end():
-    told = []
-    progress = Told({1: 60.0, 3: 540.0}, lambda *given: told.append(given))
+def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
+    now, told = [0.0], []
+    monkeypatch.setattr("raceway.studies.article.elastic.told.time.monotonic", lambda: now[0])
+    kinds = {1: "static", 3: "static", 4: "motion"}
+    progress = Told({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
     progress.begin(1, "static 400 N axial with elastic bodies")
+    now[0] = 60.0
     progress("factoring ball, 26000 elements", 3, 10)
-    progress.begin(3, "motion")
-    progress("integrating", 8, 80)
-    words, done, total = told[1]
+    words, done, total = told[-1]
     assert words.startswith("static 400 N axial with elastic bodies: factoring ball, 26000 elements 3 of 10;")
-    assert "10 min" in words and (done, total) == (0, 600)
+    assert "11 min" in words and (done, total) == (60, 720)
+    # The next one of its kind will take no longer than it did.
+    progress.begin(3, "static 1000 N axial with elastic bodies")
     assert told[-1][1:] == (60, 600) and "9 min" in told[-1][0]
+    now[0] = 80.0
+    progress.begin(4, "motion")
+    progress("integrating", 8, 80)
+    assert told[-1][1:] == (80, 560) and "8 min" in told[-1][0]
 
 
 def test_rows_of_bodies_name_their_runs():

@@ -156,7 +156,9 @@ def elastic_article(
     kept.rows = {key: row for key, row in kept.rows.items() if row["status"] != "refused"}
     keys = [row_key(scene, registry, "article elastic") for scene in scenes]
     waiting = [place for place, key in enumerate(keys) if kept.get(key) is None]
-    told = Told(dict(zip(waiting, predicted([scenes[place] for place in waiting], registry), strict=True)), on_progress)
+    seconds = predicted([scenes[place] for place in waiting], registry)
+    kinds = {place: (runs[place].bodies, runs[place].phase) for place in waiting}
+    told = Told(dict(zip(waiting, seconds, strict=True)), kinds, on_progress)
     drawn = _drawn(runs)
 
     def compute(place: int, registry: Registry) -> Tables:

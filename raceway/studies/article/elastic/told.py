@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 
 OnProgress = Callable[[str, int, int], None]
 
 
 class Told:
-    """Tells what one run does, how far it is, and when all of them will end as far as their plans know.
+    """Tells what one run does, how far it is, and when all of them will end as far as plans and the runs before know.
 
     Parameters
     ----------
     seconds : predicted time by number of every run that is to be made, in their order [s]
+    kinds : what is alike in runs by the same number: none takes longer than the one of its kind before
     on_progress : called as ``on_progress(what, done, total)``, in predicted seconds; an exception stops the study
     """
 
-    def __init__(self, seconds: Mapping[int, float], on_progress: OnProgress | None) -> None:
-        self._seconds, self._tell = dict(seconds), on_progress
-        self._place, self._name, self._begun = 0, "", time.monotonic()
+    def __init__(self, seconds: Mapping[int, float], kinds: Mapping[int, Hashable], on_progress: OnProgress | None) -> None:
+        self._seconds, self._kinds, self._tell = dict(seconds), kinds, on_progress
+        self._place, self._name, self._begun = -1, "", time.monotonic()
 
     def begin(self, place: int, name: str) -> None:
-        """A run starts."""
+        """A run starts, and the one before has ended."""
+        if self._place in self._seconds:
+            taken = self._seconds[self._place] = time.monotonic() - self._begun
+            for later in self._seconds:
+                if later > self._place and self._kinds[later] == self._kinds[self._place]:
+                    self._seconds[later] = min(self._seconds[later], taken)
         self._place, self._name, self._begun = place, name, time.monotonic()
         self("starting", 0, 0)
 
