@@ -217,7 +217,7 @@ def test_shaft_of_a_known_beam():
         (("--set", "bearing.prest=1"), "preset"),
         (("--plugin", "missing.py"), "missing.py"),
         (("no-such.toml",), "no such file"),
-        (("--bodies", "elastic"), "elastic"),
+        (("--bodies", "soft"), "soft"),
     ],
 )
 def test_bad_input_is_told_before_anything_is_run(tmp_path, monkeypatch, words, told):
