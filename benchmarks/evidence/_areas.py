@@ -65,6 +65,7 @@ AREAS = {
 #: Areas by report; words with a slash are files or folders outside the package.
 MEASURES = {
     "article": "rigid motion periodic article examples/b7206.toml",
+    "article_mesh": "elastic solids mesh plan revolution condensed examples/b7206_article_mesh.toml",
     "compare": "rigid motion periodic compare",
     "compare_bodies": "rigid condensed revolution compare",
     "condensed_bodies": "revolution",
