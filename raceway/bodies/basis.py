@@ -29,7 +29,7 @@ class Basis:
     Attributes
     ----------
     geometry : lengths of one row;  modulus : E* [Pa];  inner, outer : Hertz contacts
-    azimuth : (Z,) at time zero, rows one after the other [rad]
+    azimuth : (Z,) at time zero, rows one after the other [rad];  row : (Z,) to which row of the set each ball belongs
     axial, ball_load : rough axial approach [m] and load of a ball [N] under the axial load alone
     """
 
@@ -38,6 +38,7 @@ class Basis:
     inner: Ellipse
     outer: Ellipse
     azimuth: np.ndarray
+    row: np.ndarray
     axial: float
     ball_load: float
 
@@ -50,9 +51,12 @@ def make_basis(scene: Scene) -> Basis:
     )
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
     inner, outer = geometry.ellipses(modulus)
-    single = radians(b.first_ball_azimuth_deg) + 2.0 * pi * np.arange(b.ball_count) / b.ball_count
+    azimuth = [
+        radians(one.first_ball_azimuth_deg) + 2.0 * pi * np.arange(one.ball_count) / one.ball_count for one in b.of_rows
+    ]
+    row = np.repeat(np.arange(len(b.rows)), [one.ball_count for one in b.of_rows])
     axial, ball_load = axial_approach(scene)
-    return Basis(geometry, modulus, inner, outer, np.tile(single, len(b.rows)), axial, max(ball_load, 1.0))
+    return Basis(geometry, modulus, inner, outer, np.concatenate(azimuth), row, axial, max(ball_load, 1.0))
 
 
 def call_plugin(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
@@ -68,7 +72,7 @@ def call_plugin(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
 def law_params(scene: Scene, basis: Basis) -> np.ndarray:
     """(2 Z, k) parameters of the contact law: inner races first, then outer."""
     inner, outer = basis.inner, basis.outer
-    z = scene.bearing.ball_count * len(scene.bearing.rows)
+    z = len(basis.azimuth)
 
     def both(a: float, b: float) -> np.ndarray:
         return np.repeat([a, b], z).astype(float)

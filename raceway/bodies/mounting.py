@@ -1,4 +1,4 @@
-"""What a bearing is mounted with: the preload of a pair, an axial displacement that is held.
+"""What a bearing is mounted with: the preload of a set, an axial displacement that is held.
 
 Both are set at standstill, before anything has grown; speed and temperature then change the forces that they give.
 """
@@ -34,14 +34,11 @@ _SAMPLES, _SPEEDS = 1001, 17
 
 
 def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
-    """(5,) first guess of the equilibrium; builds the preload of a pair into the system, finds a held axial displacement."""
+    """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
     guess = first_guess(scene, basis)
-    growth, geometry = radial_growth(scene), basis.geometry
-    preloaded = scene.bearing.preload > 0.0
+    growth, preloaded = radial_growth(scene), scene.bearing.preloaded
     if preloaded:
-        row = _row(system.as_mounted(growth), 0, geometry.ball_count, facing=True)
-        start = np.array([0.05 * geometry.centre_distance, 0.0, 0.0, 0.0, 0.0])
-        system.table[:, ring.SHIFT] = _under(row, scene.bearing.preload).settle(start)[0][0]
+        system.table[:, ring.SHIFT] = _mounted_shifts(scene, basis, system.as_mounted(growth))
         guess[0] = 0.0
     sprung = preloaded and scene.bearing.preload_kind == "spring"
     if scene.supports.axial == "displacement":
@@ -55,19 +52,57 @@ def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
     return guess
 
 
+def _mounted_shifts(scene: Scene, basis: Basis, mounted: R) -> np.ndarray:
+    """(Z,) axial approach of every ball's row that the preload builds in [m].
+
+    Notes
+    -----
+    Of a set, the rows of either direction approach alike, together under their force; of rows that were ground, each by itself
+    under its own.  Rows that differ in nothing are solved for once.
+    """
+    bearing = scene.bearing
+    given = [row.preload for row in bearing.row] or [None] * len(bearing.rows)
+    own = [bearing.preload if force is None else force for force in given]
+    sides = {side: [k for k, (other, _) in enumerate(bearing.rows) if other == side] for side in (1.0, -1.0)}
+    found, known = np.zeros(mounted.ball_count), dict[tuple[object, ...], float]()
+    if bearing.preload_of == "row":
+        groups = [([k], own[k]) for k in range(len(own))]
+    else:
+        first = bearing.rows[0][0]
+        other = bearing.preload if bearing.second_preload is None else bearing.second_preload
+        groups = [(sides[first], bearing.preload), (sides[-first], other)]
+    for rows, force in groups:
+        same = (len(rows) if bearing.equal_rows else tuple(rows), force)
+        balls = np.flatnonzero(np.isin(basis.row, rows))
+        if same not in known:
+            start = np.array([0.05 * basis.geometry.centre_distance, 0.0, 0.0, 0.0, 0.0])
+            known[same] = _under(_some(mounted, balls, facing=True), force).settle(start)[0][0] if force > 0.0 else 0.0
+        found[balls] = known[same]
+    return found
+
+
 def _under(system: R, axial: float) -> R:
     """The system under an axial load alone, the other coordinates held."""
     one = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
     return attrs.evolve(system, load=axial * one, free=one)
 
 
-def _row(system: R, index: int, balls: int, facing: bool = False) -> R:
-    """One row of a system; ``facing``: as a single bearing in its own plane, not preloaded, which positive axial motions seat."""
-    chosen = slice(index * balls, (index + 1) * balls)
-    table = system.table[chosen].copy()
+def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
+    """Some rows of a system; ``facing``: as one bearing in its own plane, not preloaded, which positive axial motions seat.
+
+    Parameters
+    ----------
+    balls : (n,) indices of theirs
+    """
+    table = system.table[balls].copy()
     if facing:
         table[:, [ring.SIDE, ring.LEVER, ring.SHIFT]] = 1.0, 0.0, 0.0
-    return system.of_balls(chosen, table)
+    return system.of_balls(balls, table)
+
+
+def _second(system: Ring) -> np.ndarray:
+    """(n,) indices of the balls whose rows face the other way than the first."""
+    return np.flatnonzero(system.table[:, ring.SIDE] != system.table[0, ring.SIDE])
 
 
 def _follow_speed(scene: Scene, basis: Basis, system: Ring, spin: Spin, guess: np.ndarray) -> Spin:
@@ -83,40 +118,45 @@ def _follow_speed(scene: Scene, basis: Basis, system: Ring, spin: Spin, guess: n
     for speed in speeds:
         steady = spin.constants(system, float(speed))
         _follow_spring(scene, basis, steady, guess)
-        shifts.append(steady.table[-1, ring.SHIFT])
+        shifts.append(steady.table[_second(system)[0], ring.SHIFT])
     return attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
 
 
 def _follow_spring(scene: Scene, basis: Basis, system: Ring, guess: np.ndarray) -> np.ndarray:
-    """(5,) equilibrium at which the second row carries the spring's force; builds that row's place into the system.
+    """(5,) equilibrium at which the rows that face the other way than the first carry the spring's force; builds their place into
+    the system.
 
     Notes
     -----
-    With the shift s of the row, whose force on the ring is f, and K the tangents: its axial force g = side f_x grows by
+    With the shift s of these rows, whose force on the ring is f, and K the tangents: their axial force g = side f_x grows by
     dg/ds = k_xx - k_xq K^-1 k_qx, the ring following.  Newton's method in s within a bracket.
 
     Raises
     ------
     ConvergenceError
-        No such place.
+        No such place, or one beyond the spring's travel.
     """
-    z, wanted = basis.geometry.ball_count, scene.bearing.preload
-    side, free = scene.bearing.rows[1][0], system.free > 0.0
+    bearing, second = scene.bearing, _second(system)
+    wanted = bearing.preload if bearing.second_preload is None else bearing.second_preload
+    side, free = float(system.table[second[0], ring.SIDE]), system.free > 0.0
     low, high = -np.inf, np.inf
     step = _STEP * basis.geometry.centre_distance
-    shift, q = float(system.table[z, ring.SHIFT]), guess
+    apart = system.table[second, ring.SHIFT] - system.table[second[0], ring.SHIFT]
+    mounted = shift = float(system.table[second[0], ring.SHIFT])
+    q = guess
     for _ in range(_LIMIT):
-        system.table[z:, ring.SHIFT] = shift
+        system.table[second, ring.SHIFT] = shift + apart
         q, ball, _ = system.settle(q)
         still = system.without(ring.CAGE)
-        whole, row = still.evaluate(q, ball=ball), _row(still, 1, z).evaluate(q, ball=ball[z:])
-        excess = side * float(row.force[0]) - wanted
+        whole, rows = still.evaluate(q, ball=ball), _some(still, second).evaluate(q, ball=ball[second])
+        excess = side * float(rows.force[0]) - wanted
         if abs(excess) <= _TOLERANCE * wanted:
+            _refuse_travel(scene, shift - mounted)
             return q
         low, high = (low, shift) if excess > 0.0 else (shift, high)
         tangent = system.reduced(whole.stiffness + system.stiffness)
-        follows = np.linalg.lstsq(tangent, row.stiffness[free, 0], rcond=None)[0]
-        slope = float(row.stiffness[0, 0] - row.stiffness[0, free] @ follows)
+        follows = np.linalg.lstsq(tangent, rows.stiffness[free, 0], rcond=None)[0]
+        slope = float(rows.stiffness[0, 0] - rows.stiffness[0, free] @ follows)
         trial = shift - excess / slope if slope > 0.0 else np.nan
         if not (low < trial < high and abs(trial - shift) < 4.0 * step):
             bounded = np.isfinite(low) and np.isfinite(high)
@@ -129,32 +169,55 @@ def _follow_spring(scene: Scene, basis: Basis, system: Ring, guess: np.ndarray) 
     )
 
 
+def _refuse_travel(scene: Scene, slid: float) -> None:
+    """A spring that would have to slide further than it can."""
+    travel = scene.bearing.spring_travel
+    if travel is not None and abs(slid) > travel:
+        raise ConvergenceError(
+            f"the rings on the spring would slide {1e6 * abs(slid):.3g} um from where they were mounted, beyond "
+            f"`bearing.spring_travel` = {travel:g} m: they meet their stop, and the preload is no longer the spring's. Give it more "
+            "travel, load it less, or take preload_kind = 'rigid'."
+        )
+
+
 def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
     """``equilibrium.preload`` of result.json; None without preload.
 
     Notes
     -----
-    ``running_n`` is what both rows of the turning, warm pair carry against each other without any load, ``rows_n`` the axial
-    forces of the rows under the constant loads.
+    ``mounted_n`` is what the rows of either direction carry against each other at standstill, before anything grows and without
+    loads, ``running_n`` the same of the turning, warm set, ``rows_n`` the axial forces of the rows under the constant loads.
     """
     bearing = model.scene.bearing
-    if bearing.preload == 0.0:
+    if not bearing.preloaded:
         return None
+    mounted = bearing.preload
+    if bearing.preload_of == "row":
+        mounted = _unloaded(model, model.system.as_mounted(radial_growth(model.scene)))
     running = running_preload(model)
-    rows = _row_forces(model, equilibrium.displacement, equilibrium.ball)
-    return {"kind": bearing.preload_kind, "mounted_n": bearing.preload, "running_n": running, "rows_n": rows}
+    rows = _row_forces(model, model.system, equilibrium.displacement, equilibrium.ball)
+    return {
+        "kind": bearing.preload_kind, "of": bearing.preload_of, "mounted_n": mounted, "running_n": running, "rows_n": rows,
+    }  # fmt: skip
 
 
 def running_preload(model: Model) -> float:
-    """What both rows of a turning, warm pair carry against each other without any load [N]; 0 where both are loose."""
+    """What the rows of a turning, warm set carry against each other without any load [N]; 0 where all are loose."""
     bearing = model.scene.bearing
     if bearing.preload_kind == "spring":
         return bearing.preload
+    return _unloaded(model, model.system)
+
+
+def _unloaded(model: Model, system: Ring) -> float:
+    """Axial force of the rows that face the first one's way, without any load [N]."""
     try:
-        q, ball, _ = _under(model.system, 0.0).settle(np.zeros(5))
+        q, ball, _ = _under(system, 0.0).settle(np.zeros(5))
     except ConvergenceError:
         return 0.0
-    return _row_forces(model, q, ball)[0]
+    rows = model.scene.bearing.rows
+    forces = _row_forces(model, system, q, ball)
+    return sum(force for force, (side, _) in zip(forces, rows, strict=True) if side == rows[0][0])
 
 
 def lost_preload(model: Model) -> str:
@@ -165,7 +228,7 @@ def lost_preload(model: Model) -> str:
     Centrifugal forces of balls and growth of rings raise a pair's preload: a raceway that shrinks is what takes it.
     """
     bearing, kinematics = model.scene.bearing, model.scene.kinematics
-    if bearing.preload == 0.0 or running_preload(model) > 0.0:
+    if not bearing.preloaded or running_preload(model) > 0.0:
         return ""
     return (
         f"The preload of {bearing.preload:g} N is gone: both rows are loose, as the inner raceway has shrunk by "
@@ -182,10 +245,10 @@ def held_table(model: Model, equilibrium: Equilibrium) -> dict[str, float] | Non
     return {"mounted_n": model.scene.load.axial, "running_n": float(now.force[0])}
 
 
-def _row_forces(model: Model, q: np.ndarray, ball: np.ndarray) -> list[float]:
+def _row_forces(model: Model, system: Ring, q: np.ndarray, ball: np.ndarray) -> list[float]:
     """Axial force of each row in its seating direction [N]."""
-    z, still = model.scene.bearing.ball_count, model.system.without(ring.CAGE)
-    return [
-        side * float(_row(still, k, z).evaluate(q, ball=ball[k * z : (k + 1) * z]).force[0])
-        for k, (side, _) in enumerate(model.scene.bearing.rows)
-    ]
+    still, found = system.without(ring.CAGE), []
+    for k, (side, _) in enumerate(model.scene.bearing.rows):
+        balls = np.flatnonzero(model.basis.row == k)
+        found.append(side * float(_some(still, balls).evaluate(q, ball=ball[balls]).force[0]))
+    return found

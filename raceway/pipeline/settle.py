@@ -44,7 +44,7 @@ def settle(
 
 
 def _refuse_no_load(model: Model) -> None:
-    loaded = np.any(model.system.load * model.system.free) or model.scene.bearing.preload > 0.0
+    loaded = np.any(model.system.load * model.system.free) or model.scene.bearing.preloaded
     if not loaded and model.system.free[0] > 0.0:
         raise ConvergenceError(
             "nothing loads the bearing: every motion is free and there is no stiffness to find. Set `load.axial`, or hold "
@@ -81,7 +81,7 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
 
 
 def _braced(model: Model) -> bool:
-    return model.scene.load.axial != 0.0 or model.scene.bearing.preload > 0.0
+    return model.scene.load.axial != 0.0 or model.scene.bearing.preloaded
 
 
 def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:

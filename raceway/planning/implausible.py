@@ -56,7 +56,7 @@ def foreseen(scene: Scene) -> list[Mistake]:
     found = []
     load, free = scene.load, scene.supports.axial != "displacement"
     moment = any(load.moment) and scene.supports.tilt != "locked"
-    if free and not (load.axial or any(load.radial) or moment or scene.bearing.preload):
+    if free and not (load.axial or any(load.radial) or moment or scene.bearing.preloaded):
         found.append(Mistake("load.axial", load.axial, "nothing loads the bearing: there is no stiffness to find"))
     if scene.excitation is None or "record" not in scene.identifier.method.needs:
         return found

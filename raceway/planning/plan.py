@@ -107,7 +107,7 @@ def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | No
     bodies(scene, "decide", parts)
     motion = decide_motion(scene, parts, tilts, balls.friction)
     decide_output(scene, parts, motion)
-    count = scene.bearing.ball_count * len(scene.bearing.rows)
+    count = scene.bearing.balls_in_all
     if motion.recorded:
         refuse_memory(scene, motion.turns, motion.steps_per_turn, count)
     cost = bodies(scene, "cost", balls, motion, parts)

@@ -47,7 +47,7 @@ class Times:
 
 def balls_of(scene: Scene) -> int:
     """Balls of all rows."""
-    return int(scene.bearing.ball_count * len(scene.bearing.rows))
+    return int(scene.bearing.balls_in_all)
 
 
 def runs(scene: Scene, motion: Motion) -> float:

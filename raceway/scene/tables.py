@@ -14,6 +14,7 @@ import attrs
 
 from raceway.errors import MeshError
 from raceway.framework.options import (
+    Rule,
     at_least,
     between,
     finite,
@@ -24,14 +25,29 @@ from raceway.framework.options import (
     optional,
     positive,
     word_or,
+    worded,
 )
 from raceway.framework.shown import Fact, Shown
+from raceway.scene.sets import GEOMETRY, Row, arrangement, places_of, signs_of
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     import os
 
     from raceway.scene.given import Given
+
+
+def _travel() -> Rule:
+    """Rule: a distance that a spring can be pressed by."""
+
+    def check(_instance: object, _attribute: object, value: float) -> None:
+        if not 0.0 < value < 1e3:
+            raise ValueError(
+                "must be greater than 0: a spring without travel is no spring; leave the key out for any travel, or take "
+                "preload_kind = 'rigid'"
+            )
+
+    return worded(check, "greater than 0", {"exclusiveMinimum": 0})
 
 
 @attrs.frozen
@@ -72,24 +88,42 @@ class Bearing:
     )
     arrangement: str = option(
         "single",
-        help="'single' row, or a pair of rows: back to back 'DB', face to face 'DF', in tandem 'DT'",
-        rule=one_of("single", "DB", "DF", "DT"),
+        help="'single' row, or a set: a pair back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by their makers' names",
+        rule=arrangement(),
+    )
+    row: tuple[Row, ...] = option(
+        (), help="rows one by one, in tables [[bearing.row]]: places, directions, preloads, and what differs from this bearing"
     )
     preload: float = option(
         0.0,
         unit="N",
-        help="axial preload of a DB or DF pair, mounted: at standstill, before anything grows",
+        help="axial preload of rows that brace each other, mounted: at standstill, before anything grows",
         rule=at_least(0.0),
+    )
+    second_preload: float | None = option(
+        None,
+        unit="N",
+        help="of the rows that face the other way than the first, where it is another force: mounted under the difference as an axial load",
+        rule=optional(positive()),
+    )
+    preload_of: str = option(
+        "set",
+        help="'set': the force between the rows of either direction; 'row': each row was ground flush under it, as makers do",
+        rule=one_of("set", "row"),
     )
     preload_kind: str = option(
         "rigid",
-        help="'rigid': the rows' offset stays as mounted; 'spring': the second row's force stays, its outer ring slides",
+        help="'rigid': the rows' offset stays as mounted; 'spring': the force on the rows that face the other way than the first "
+        "stays, their outer rings slide together",
         rule=one_of("rigid", "spring"),
+    )
+    spring_travel: float | None = option(
+        None, unit="m", help="by which those rings can slide against the spring from where they were mounted, either way; default: any", rule=optional(_travel())
     )
     row_distance: float | None = option(
         None,
         unit="m",
-        help="axial distance of a pair's rows, between the planes of their inner groove centres; default: the width of one bearing",
+        help="axial distance of neighbouring rows, between the planes of their inner groove centres; default: the width of one bearing",
         rule=optional(length()),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
@@ -117,7 +151,7 @@ class Bearing:
                 "no groove is deeper than its ball's centre"
             )
         self._check_clearance()
-        self._check_pair()
+        self._check_set()
         self._check_profiles()
 
     def _check_profiles(self) -> None:
@@ -130,18 +164,96 @@ class Bearing:
                 except MeshError as why:
                     raise ValueError(str(why)) from None
 
-    def _check_pair(self) -> None:
-        if self.preload > 0.0 and self.arrangement not in ("DB", "DF"):
-            raise ValueError(f"`preload` = {self.preload:g} N needs a pair that braces itself: arrangement = 'DB' or 'DF'")
-        if self.arrangement != "single" and self.row_distance is None and self.width is None:
-            raise ValueError(f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`")
+    def _check_set(self) -> None:
+        signs = signs_of(self.arrangement)
+        if self.row and self.arrangement != "single" and len(self.row) != len(signs):
+            raise ValueError(f"`row` has {len(self.row)} tables, but arrangement = '{self.arrangement}' is {len(signs)} rows")
+        without = [k for k, row in enumerate(self.row) if self.arrangement == "single" and row.direction is None]
+        if without:
+            raise ValueError(f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`")
+        placed = bool(self.row) and all(row.position is not None for row in self.row)
+        if len(self.signs) > 1 and not placed and self.row_distance is None and self.width is None:
+            raise ValueError(
+                f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
+            )
+        for k, row in enumerate(self.row):
+            try:
+                self._of_row(row)
+            except ValueError as why:
+                raise ValueError(f"`row[{k}]`: {why}") from None
+        self._check_preload()
+
+    def _check_preload(self) -> None:
+        ground = next((k for k, row in enumerate(self.row) if row.preload is not None), None)
+        if ground is not None and self.preload_of != "row":
+            raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")
+        if self.second_preload is not None and self.preload_of == "row":
+            raise ValueError("`second_preload` is a force between rows: set preload_of = 'set', or give each row its `preload`")
+        if not self.preloaded:
+            if self.second_preload is not None:
+                raise ValueError(f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction")
+            return
+        if len(set(self.signs)) < 2:
+            rows = f"the {len(self.signs)} rows of '{self.signs}' face" if len(self.signs) > 1 else "a single row faces"
+            raise ValueError(
+                f"`preload` = {self.preload:g} N needs rows that brace each other, such as arrangement = 'DB', 'DF' or 'TBT': "
+                f"{rows} one way only. Give the force of a spring on such a bearing as load.axial"
+            )
+        if self.preload_of == "row" and self.preload_kind == "spring":
+            raise ValueError("`preload_of` = 'row' is an offset that was ground: with preload_kind = 'spring' use 'set'")
+
+    @property
+    def preloaded(self) -> bool:
+        """Whether rows press against each other as mounted."""
+        return self.preload > 0.0 or any(row.preload for row in self.row)
+
+    @property
+    def signs(self) -> str:
+        """'+' or '-' for each row: the way that it faces."""
+        signs = signs_of(self.arrangement)
+        if not self.row:
+            return signs
+        own = signs if self.arrangement != "single" else "+" * len(self.row)
+        return "".join(row.direction or sign for row, sign in zip(self.row, own, strict=True))
 
     @property
     def rows(self) -> tuple[tuple[float, float], ...]:
         """(side, axial place [m]) of each row: side +1 is seated by a positive axial motion of the inner ring."""
-        half = 0.5 * (self.row_distance or self.width or 0.0)
-        pairs = {"DB": ((1.0, -half), (-1.0, half)), "DF": ((1.0, half), (-1.0, -half)), "DT": ((1.0, -half), (1.0, half))}
-        return pairs.get(self.arrangement, ((1.0, 0.0),))
+        word = self.arrangement if self.arrangement != "single" or not self.row else self.signs
+        rows = places_of(word, self.row_distance or self.width or 0.0)
+        if not self.row:
+            return rows
+        places = [place if row.position is None else row.position for row, (_, place) in zip(self.row, rows, strict=True)]
+        return tuple((1.0 if sign == "+" else -1.0, place) for sign, place in zip(self.signs, places, strict=True))
+
+    @property
+    def of_rows(self) -> tuple[Bearing, ...]:
+        """The bearing of each row by itself."""
+        return _of_rows(self)
+
+    @property
+    def equal_rows(self) -> bool:
+        """Whether the rows differ in nothing but places, directions, preloads and azimuths."""
+        alike = {attrs.evolve(one, first_ball_azimuth_deg=0.0) for one in self.of_rows}
+        return len(alike) == 1
+
+    @property
+    def balls_in_all(self) -> int:
+        """Balls of all rows."""
+        return sum(one.ball_count for one in self.of_rows)
+
+    def _of_row(self, row: Row | None) -> Bearing:
+        """The bearing of one row of a set."""
+        given = {key: getattr(row, key) for key in GEOMETRY} if row is not None else {}
+        given = {key: value for key, value in given.items() if value is not None}
+        if "contact_angle_deg" in given:
+            given["radial_clearance"] = None
+        if not {"ball_diameter", "pitch_diameter"}.isdisjoint(given):
+            # Dimensions of the set's bearing belong to its balls.
+            lost = ("bore", "outer_diameter", "width", "shoulder_height", "inner_profile", "outer_profile")
+            given = {**dict.fromkeys(lost), **given}
+        plain = {"arrangement": "single", "row": (), "preload": 0.0, "second_preload": None, "row_distance": None}
+        return attrs.evolve(self, **{**plain, **given})
 
     def _check_clearance(self) -> None:
         clearance, angle = self.radial_clearance, self.contact_angle_deg
@@ -169,6 +281,14 @@ class Bearing:
             distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
             return acos(1.0 - self.radial_clearance / (2.0 * distance))
         return radians(self.contact_angle_deg or 0.0)
+
+
+@cache
+def _of_rows(bearing: Bearing) -> tuple[Bearing, ...]:
+    """The bearing of each row by itself; the same one for rows that have no table."""
+    if not bearing.row:
+        return (bearing._of_row(None),) * len(signs_of(bearing.arrangement))
+    return tuple(bearing._of_row(row) for row in bearing.row)
 
 
 _AROUND = (

@@ -130,7 +130,7 @@ class BodiesSuite(Suite):
             isinstance(bearing, Bearing), f"build() returns {type(bearing).__name__}, not a raceway.bodies.model.Bearing"
         )
         require(np.shape(bearing.guess) == (5,), f"`guess` has the shape {np.shape(bearing.guess)}, not (5,)")
-        z = scene.bearing.ball_count * len(scene.bearing.rows)
+        z = scene.bearing.balls_in_all
         require(bearing.system.ball_count == z, f"the system has {bearing.system.ball_count} balls, the scene {z}")
         require(
             bearing.basis.azimuth.shape == (z,), f"`basis.azimuth` has the shape {bearing.basis.azimuth.shape}, not ({z},)"
@@ -277,7 +277,7 @@ def _carried(model: Model, found: Equilibrium) -> str:
     z, azimuth = model.system.ball_count, model.azimuth
     load = np.where(found.contact_force[:z] > 0.0, found.contact_force[:z], 0.0)
     angle = np.nan_to_num(found.angle_inner)
-    side = np.repeat([row[0] for row in model.scene.bearing.rows], model.scene.bearing.ball_count)
+    side = np.array([side for side, _ in model.scene.bearing.rows])[model.basis.row]
     radial = load * np.cos(angle)
     total = np.array([side @ (load * np.sin(angle)), radial @ np.cos(azimuth), radial @ np.sin(azimuth)])
     rest = (total - model.system.load[:3]) * model.system.free[:3]

@@ -65,7 +65,7 @@ def build(scene: Scene, plan: Plan) -> NodalBearing:
     nodes, load = _layout(scene, reach)
     system, spacing = _system(scene, basis, rigid, reach, nodes, load)
     beside = guess
-    if scene.bearing.preload > 0.0 or scene.supports.axial == "displacement":
+    if scene.bearing.preloaded or scene.supports.axial == "displacement":
         rigid = attrs.evolve(rigid, table=rigid.table.copy())
         guess = place_ring(as_rigid, basis, system)
 

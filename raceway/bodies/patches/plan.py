@@ -41,7 +41,7 @@ class PatchCost:
 def patch_cost(scene: Scene) -> PatchCost:
     """Predicted cost of the contacts of a scene."""
     n = nodes_of(scene)
-    balls = scene.bearing.ball_count * len(scene.bearing.rows)
+    balls = scene.bearing.balls_in_all
     points = int(3.2 * n * n)
     rows = 3.6 * n + 1.0
     # Factors of all contacts; the compliances of both rings in two directions with what is made of them on the way.

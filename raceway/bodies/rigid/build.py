@@ -59,7 +59,7 @@ def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
         law_params=law_params(scene, basis),
         law_state=np.zeros((2 * len(basis.azimuth), scene.contact.law.state_size)),
         scalars=_scalars(scene, plan, basis.geometry, basis.inner, basis.outer, basis.ball_load),
-        table=_ball_table(scene, plan, basis.geometry, basis.inner, basis.outer, basis.azimuth),
+        table=_ball_table(scene, plan, basis.geometry, basis.inner, basis.outer, basis.azimuth, basis.row),
         **linear_parts(scene, plan),
         **excitation(scene),
         spin=changing_speed(scene),
@@ -127,7 +127,7 @@ def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) 
 
 
 def _ball_table(
-    scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, azimuth: np.ndarray
+    scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, azimuth: np.ndarray, row: np.ndarray
 ) -> np.ndarray:
     z = len(azimuth)
     centrifugal = 0.0
@@ -139,5 +139,5 @@ def _ball_table(
     table = np.zeros((z, ring.COLUMNS))
     table[:, ring.COSINE], table[:, ring.SINE] = np.cos(azimuth), np.sin(azimuth)
     table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = centrifugal, share, outer.factor
-    table[:, [ring.SIDE, ring.LEVER]] = np.repeat(scene.bearing.rows, geometry.ball_count, axis=0)
+    table[:, [ring.SIDE, ring.LEVER]] = np.array(scene.bearing.rows)[row]
     return table

@@ -63,7 +63,7 @@ class PatchSystem(SteppedRing):
     pool: Pool
     ball_mass: float = 0.0
 
-    def of_balls(self, chosen: slice, table: np.ndarray) -> PatchSystem:
+    def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> PatchSystem:
         """With the rigid ring of these balls."""
         return attrs.evolve(super().of_balls(chosen, table), rigid=self.rigid.of_balls(chosen, table))
 

@@ -152,11 +152,11 @@ class Ring(ABC):
 
         return SteppedBearing(self)
 
-    def of_balls(self, chosen: slice, table: np.ndarray) -> Self:
-        """A copy with some of the balls, which have the table (n, COLUMNS)."""
+    def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> Self:
+        """A copy with some of the balls, by their indices (n,), which have the table (n, COLUMNS)."""
         return attrs.evolve(self, table=table, law_state=self.law_state[self.contacts_of(chosen)].copy())
 
-    def contacts_of(self, balls: slice) -> np.ndarray:
+    def contacts_of(self, balls: np.ndarray) -> np.ndarray:
         """Rows of the contacts of some balls: inner races first."""
         every = np.arange(self.ball_count)[balls]
         return np.concatenate([every, self.ball_count + every])

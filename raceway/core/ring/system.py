@@ -45,7 +45,7 @@ class System(Ring):
         """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
         return self.base_kernel is self.kernel
 
-    def of_balls(self, chosen: slice, table: np.ndarray) -> System:
+    def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> System:
         """With the law's parameters of their contacts."""
         params = np.ascontiguousarray(self.law_params[self.contacts_of(chosen)])
         return attrs.evolve(super().of_balls(chosen, table), law_params=params)
