@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
-from raceway.core.contact.hertz import Ellipse, contact_modulus
+from raceway.core.contact.hertz import Ellipse, contact_modulus, every
 from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.signatures import FORCE
 from raceway.errors import PluginError, RacewayError
@@ -28,12 +28,14 @@ class Basis:
 
     Attributes
     ----------
-    geometry : lengths of one row;  modulus : E* [Pa];  inner, outer : Hertz contacts
+    geometry : lengths of the first row;  geometries : of each row;  modulus : E* [Pa]
+    inner, outer : Hertz contacts; of rows that differ those of all balls, with numbers (Z,)
     azimuth : (Z,) at time zero, rows one after the other [rad];  row : (Z,) to which row of the set each ball belongs
     axial, ball_load : rough axial approach [m] and load of a ball [N] under the axial load alone
     """
 
     geometry: BallBearing
+    geometries: tuple[BallBearing, ...]
     modulus: float
     inner: Ellipse
     outer: Ellipse
@@ -42,21 +44,38 @@ class Basis:
     axial: float
     ball_load: float
 
+    @property
+    def ball_radius(self) -> np.ndarray | float:
+        """D/2 [m]: one number, or (Z,) of rows that differ."""
+        radii = [0.5 * one.ball_diameter for one in self.geometries]
+        return radii[0] if len(set(radii)) == 1 else np.array(radii)[self.row]
+
+    def of_ball(self, ball: int) -> tuple[Ellipse, Ellipse]:
+        """Inner and outer Hertz contact of one ball."""
+        return self.geometries[self.row[ball]].ellipses(self.modulus)
+
 
 def make_basis(scene: Scene) -> Basis:
     """Geometry and contacts of a scene."""
     b = scene.bearing
-    geometry = BallBearing(
-        b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer
+    geometries = tuple(
+        BallBearing(
+            one.ball_diameter, one.pitch_diameter, one.ball_count, one.contact_angle, one.conformity_inner, one.conformity_outer
+        )
+        for one in b.of_rows
     )
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
-    inner, outer = geometry.ellipses(modulus)
     azimuth = [
         radians(one.first_ball_azimuth_deg) + 2.0 * pi * np.arange(one.ball_count) / one.ball_count for one in b.of_rows
     ]
     row = np.repeat(np.arange(len(b.rows)), [one.ball_count for one in b.of_rows])
+    inner, outer = geometries[0].ellipses(modulus)
+    if not b.equal_rows:
+        pairs = [one.ellipses(modulus) for one in geometries]
+        inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
     axial, ball_load = axial_approach(scene)
-    return Basis(geometry, modulus, inner, outer, np.concatenate(azimuth), row, axial, max(ball_load, 1.0))
+    azimuths = np.concatenate(azimuth)
+    return Basis(geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0))
 
 
 def call_plugin(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
@@ -74,8 +93,8 @@ def law_params(scene: Scene, basis: Basis) -> np.ndarray:
     inner, outer = basis.inner, basis.outer
     z = len(basis.azimuth)
 
-    def both(a: float, b: float) -> np.ndarray:
-        return np.repeat([a, b], z).astype(float)
+    def both(a: float | np.ndarray, b: float | np.ndarray) -> np.ndarray:
+        return np.concatenate([np.broadcast_to(one, z) for one in (a, b)]).astype(float)
 
     pairs = ContactPairs(
         curvature_a=both(inner.curvatures[0], outer.curvatures[0]),

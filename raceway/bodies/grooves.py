@@ -7,7 +7,7 @@ import numpy as np
 from raceway.bodies.basis import Basis
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError
-from raceway.scene.inner_ring import load_at_edge, shoulder_height
+from raceway.scene.inner_ring import groove_depth, load_at_edge, shoulder_height
 from raceway.scene.tables import Scene
 
 
@@ -33,18 +33,18 @@ def contact_angles(
 
 def beyond_the_groove(scene: Scene, basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
     """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
-    d, depth, edge = basis.geometry.ball_diameter, shoulder_height(scene), groove_edge(scene)
-    found = []
+    edges, found = groove_edges(scene, basis), []
     overs = ellipse_ends(basis, inner, outer, force)
-    for race, ellipse, angle, over in zip(
-        ("inner", "outer"), (basis.inner, basis.outer), (inner, outer), overs, strict=True
-    ):
-        reach = np.nanmax(over, initial=0.0)
-        if reach > edge:
-            begins = load_at_edge(ellipse, 0.5 * d, edge - abs(angle[np.nanargmax(over)]))
+    for race, (word, angle, over) in enumerate(zip(("inner", "outer"), (inner, outer), overs, strict=True)):
+        beyond = over - edges
+        if np.nanmax(beyond, initial=0.0) > 0.0:
+            ball = int(np.nanargmax(beyond))
+            bearing, edge, reach = scene.bearing.of_rows[basis.row[ball]], edges[ball], over[ball]
+            depth = groove_depth(bearing)
+            begins = load_at_edge(basis.of_ball(ball)[race], 0.5 * bearing.ball_diameter, edge - abs(angle[ball]))
             assumed = "" if scene.bearing.shoulder_height else ", assumed 0.2 D"
             found.append(
-                f"the contact ellipse on the {race} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
+                f"the contact ellipse on the {word} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
                 f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
                 f"contact angle from {begins:.3g} N a ball"
             )
@@ -56,9 +56,15 @@ def groove_edge(scene: Scene) -> float:
     return float(np.arccos(1.0 - shoulder_height(scene) / (0.5 * scene.bearing.ball_diameter)))
 
 
+def groove_edges(scene: Scene, basis: Basis) -> np.ndarray:
+    """(Z,) ``groove_edge`` of every ball's row [rad]."""
+    rows = [np.arccos(1.0 - groove_depth(one) / (0.5 * one.ball_diameter)) for one in scene.bearing.of_rows]
+    return np.asarray(np.array(rows)[basis.row])
+
+
 def ellipse_ends(basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Angle (..., Z) of the far end of each contact ellipse, inner and outer; angles (..., Z), forces (..., 2 Z)."""
-    z, radius = force.shape[-1] // 2, 0.5 * basis.geometry.ball_diameter
+    z, radius = force.shape[-1] // 2, basis.ball_radius
     return (
         np.abs(inner) + basis.inner.semi_axes(force[..., :z])[0] / radius,
         np.abs(outer) + basis.outer.semi_axes(force[..., z:])[0] / radius,
@@ -73,7 +79,7 @@ def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str,
     ConvergenceError
         With ``state``, the solution that says so.
     """
-    z, radius = len(force) // 2, 0.5 * basis.geometry.ball_diameter
+    z, radius = len(force) // 2, basis.ball_radius
     for race, ellipse, load in (("inner", basis.inner, force[:z]), ("outer", basis.outer, force[z:])):
         half = ellipse.semi_axes(load)[0] / radius
         if half.max(initial=0.0) >= 0.5 * np.pi:

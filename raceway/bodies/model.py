@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis
-from raceway.bodies.grooves import beyond_the_groove, contact_angles, ellipse_ends, groove_edge, refuse_impossible_ellipses
+from raceway.bodies.grooves import beyond_the_groove, contact_angles, ellipse_ends, groove_edges, refuse_impossible_ellipses
 from raceway.bodies.pressure import contact_ellipse
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
@@ -131,7 +131,7 @@ class Bearing(ABC):
     def over_edges(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> np.ndarray:
         """(n,) whether any contact of a state may run over its edge; angles (n, Z), forces (n, 2 Z)."""
         ends = ellipse_ends(self.basis, inner, outer, force)
-        return np.asarray(np.logical_or(*(end > groove_edge(model.scene) for end in ends)).any(axis=-1))
+        return np.asarray(np.logical_or(*(end > groove_edges(model.scene, self.basis) for end in ends)).any(axis=-1))
 
     @property
     def largest_motion(self) -> float:

@@ -13,9 +13,10 @@ import numpy as np
 from raceway.bodies.basis import Basis, first_guess
 from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.ring import Ring, Spin
+from raceway.core.ring.ring import Growth, Ring, Spin
 from raceway.errors import ConvergenceError
 from raceway.planning.recording import turns_of
+from raceway.scene.growth import grooves
 from raceway.scene.inner_ring import radial_growth
 from raceway.scene.tables import Scene
 from raceway.storage.tables import Tables
@@ -36,7 +37,7 @@ _SAMPLES, _SPEEDS = 1001, 17
 def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
     guess = first_guess(scene, basis)
-    growth, preloaded = radial_growth(scene), scene.bearing.preloaded
+    growth, preloaded = growth_of(scene, basis), scene.bearing.preloaded
     if preloaded:
         system.table[:, ring.SHIFT] = _mounted_shifts(scene, basis, system.as_mounted(growth))
         guess[0] = 0.0
@@ -50,6 +51,16 @@ def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
             system.spin = _follow_speed(scene, basis, system, system.spin, guess)
         guess = _follow_spring(scene, basis, system, guess)
     return guess
+
+
+def growth_of(scene: Scene, basis: Basis) -> Growth:
+    """By how much the grooves of the running, warm rows differ from the mounted ones'."""
+    rows = np.array([[*attrs.astuple(grooves(scene, k)), 0.0] for k in range(len(scene.bearing.rows))])
+    # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
+    common = rows[0].copy()
+    if scene.bearing.equal_rows:
+        common[0] = rows[:, 0].mean()
+    return Growth(common, (rows - common)[basis.row])
 
 
 def _mounted_shifts(scene: Scene, basis: Basis, mounted: R) -> np.ndarray:
@@ -193,7 +204,7 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
         return None
     mounted = bearing.preload
     if bearing.preload_of == "row":
-        mounted = _unloaded(model, model.system.as_mounted(radial_growth(model.scene)))
+        mounted = _unloaded(model, model.system.as_mounted(growth_of(model.scene, model.basis)))
     running = running_preload(model)
     rows = _row_forces(model, model.system, equilibrium.displacement, equilibrium.ball)
     return {

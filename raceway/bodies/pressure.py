@@ -23,8 +23,10 @@ def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray
     approach : (n,) [m]
     """
     system, n = surrogate(ring), len(approach)
-    row = race * system.ball_count
-    params, state = (np.repeat(each[row : row + 1], n, axis=0) for each in (system.law_params, system.law_state))
+    row, z = race * system.ball_count, system.ball_count
+    # A number of contacts that is that of the balls is theirs: rows may differ.
+    chosen = np.arange(row, row + z) if n == z else np.full(n, row)
+    params, state = (np.ascontiguousarray(each[chosen]) for each in (system.law_params, system.law_state))
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
     system.law(-np.ascontiguousarray(approach), np.zeros(n), params, state, state.copy(), 0.0, force, d_gap, d_rate)
     return force, -d_gap
@@ -56,6 +58,10 @@ def contact_ellipse(
     """
     ellipse: Ellipse = (basis.inner, basis.outer)[race]
     contact = scene.contact
+    if not scene.bearing.equal_rows and len(load) != len(basis.azimuth):
+        # Loads of no particular balls: of the row in which they press hardest.
+        each = [one.ellipses(basis.modulus)[race] for one in basis.geometries]
+        ellipse = max(each, key=lambda one: float(one.peak_pressure(1.0)))
     if not traits_of(scene).resultants or not getattr(contact.law, "foundation", False):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures

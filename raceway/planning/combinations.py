@@ -10,6 +10,7 @@ from raceway.core.schemes.drivers import missing_driver
 from raceway.errors import Mistake, SceneError
 from raceway.framework.duties import bodies, traits_of
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
+from raceway.scene.growth import growth_faults
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.tables import Scene
 
@@ -43,6 +44,8 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
     )
     refuse(scene.spin_changes and not compiled, *_slow(scene), why)
+    faults += growth_faults(scene)
+    _refuse_different_rows(scene, refuse)
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
         faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
     if scene.excitation is not None:
@@ -61,6 +64,21 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake("rotor.transverse_inertia", scene.rotor.transverse_inertia, why))
     if faults:
         raise SceneError(faults)
+
+
+def _refuse_different_rows(scene: Scene, refuse: _Refuse) -> None:
+    """What holds one number for the balls of all rows."""
+    if scene.bearing.equal_rows:
+        return
+    kinematics, rows = scene.kinematics, "the rows of this set are different bearings"
+    why = f"{rows}, whose balls travel at different speeds: set it false"
+    refuse(kinematics.orbiting, "kinematics.orbiting", True, why)
+    why = f"{rows}: moments are computed for balls of one kind only. Set it 'none'"
+    refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
+    why = f"{rows}: friction is computed for balls of one kind only. Set it 0"
+    refuse(scene.contact.friction > 0.0, "contact.friction", scene.contact.friction, why)
+    why = f"{rows}: a speed that changes is followed by balls of one kind only. Give one with kinematics.spin_speed_rpm"
+    refuse(scene.spin_changes, "excitation.kind", getattr(scene.excitation, "name", None), why)
 
 
 def _slow(scene: Scene) -> tuple[str, str]:

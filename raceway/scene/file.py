@@ -20,6 +20,7 @@ from raceway.scene.catalogue import preset
 from raceway.scene.given import Given
 from raceway.scene.requires import check_requires
 from raceway.scene.rig import Rig
+from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
 from raceway.scene.tables import TABLES, Scene
 from raceway.storage.tables import ReadTables, Tables
@@ -354,6 +355,7 @@ def rig_of(scene: Scene) -> Rig:
 
 
 def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
+    table = _with_rows(table, mistakes)
     name = table.get("preset")
     if name is None:
         return table
@@ -371,6 +373,26 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
         if isinstance(table.get(part), dict):
             merged[part] = {**values.get(part, {}), **table[part]}
     return merged
+
+
+def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
+    """The [bearing] table whose rows have the numbers of their presets."""
+    rows = table.get("row")
+    if not isinstance(rows, list | tuple):
+        return table
+    found = []
+    for k, row in enumerate(rows):
+        name = row.get("preset") if isinstance(row, dict) else None
+        if name is not None:
+            try:
+                values = preset(name)
+            except SceneError as error:
+                mistakes += [Mistake(f"bearing.row[{k}].preset", one.value, one.message) for one in error.mistakes]
+                row = {key: value for key, value in row.items() if key != "preset"}
+            else:
+                row = {**{key: value for key, value in values.items() if key in GEOMETRY}, **row}
+        found.append(row)
+    return {**table, "row": found}
 
 
 #: Stands in for a preset that does not exist, so that the other keys of the table are still checked.

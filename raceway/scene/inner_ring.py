@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
@@ -13,19 +15,21 @@ if TYPE_CHECKING:
 
 
 def ring_inertia(scene: Scene) -> tuple[float, float, float]:
-    """Mass [kg], transverse and polar inertia [kg m2] of the inner ring, or of a pair's two; zeros when bore or width are not known.
+    """Mass [kg], transverse and polar inertia [kg m2] of the inner rings of all rows; zeros when bore or width are not known.
 
     Notes
     -----
     Of ``bearing.inner_profile``, or of a hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h); the groove
     is cut out exactly.
     """
-    moments = _moments(scene.bearing, shoulder_height(scene))
-    places = [place for _, place in scene.bearing.rows]
-    if moments is None:
-        return 0.0, 0.0, 0.0
-    mass, transverse, polar = (scene.bearing.rings.density * moment for moment in moments)
-    return mass * len(places), sum(transverse + mass * place**2 for place in places), polar * len(places)
+    total = np.zeros(3)
+    for (_, place), bearing in zip(scene.bearing.rows, scene.bearing.of_rows, strict=True):
+        moments = _moments(bearing, groove_depth(bearing))
+        if moments is None:
+            return 0.0, 0.0, 0.0
+        mass, transverse, polar = (bearing.rings.density * moment for moment in moments)
+        total += mass, transverse + mass * place**2, polar
+    return float(total[0]), float(total[1]), float(total[2])
 
 
 @cache
@@ -42,8 +46,8 @@ def _moments(b: Bearing, depth: float) -> tuple[float, float, float] | None:
     return RingSection.of(b, depth).moments
 
 
-def radial_growth(scene: Scene) -> float:
-    """Radial growth of the inner raceway [m]: what the scene gives, and with ``ring_growth`` the centrifugal one.
+def radial_growth(scene: Scene, row: int = 0) -> float:
+    """Radial growth of a row's inner raceway [m]: what the scene gives, and with ``ring_growth`` the centrifugal one.
 
     Notes
     -----
@@ -55,9 +59,9 @@ def radial_growth(scene: Scene) -> float:
     Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
     """
     growth = scene.kinematics.radial_expansion
-    b = scene.bearing
+    b = scene.bearing.of_rows[row]
     if scene.kinematics.ring_growth and b.bore is not None and scene.spin_speed != 0.0:
-        growth += b.rings.density * scene.spin_speed**2 * _growth(b, shoulder_height(scene))
+        growth += b.rings.density * scene.spin_speed**2 * _growth(b, groove_depth(b))
     return growth
 
 
@@ -75,7 +79,12 @@ def _growth(b: Bearing, depth: float) -> float:
 
 def shoulder_height(scene: Scene) -> float:
     """Depth of the grooves [m]: given, or 0.2 D."""
-    return scene.bearing.shoulder_height or 0.2 * scene.bearing.ball_diameter
+    return groove_depth(scene.bearing)
+
+
+def groove_depth(bearing: Bearing) -> float:
+    """Depth of a bearing's grooves [m]: given, or 0.2 D."""
+    return bearing.shoulder_height or 0.2 * bearing.ball_diameter
 
 
 def load_at_edge(ellipse: Ellipse, ball_radius: float, angle: float) -> float:

@@ -15,6 +15,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import catalogue
 from raceway.scene.file import PLUGIN_TABLES as PLUGIN_TABLES
 from raceway.scene.file import STUDY_TABLES
+from raceway.scene.structure import table_of_list
 from raceway.scene.tables import TABLES
 from raceway.scene.units import PATTERN
 from raceway.storage.tables import Tables
@@ -93,13 +94,15 @@ def key_schema(field: Any) -> Tables:
     if attrs.has(field.type):
         return {**_table(field.type), "description": field.metadata.get("help", "")}
     facts = dict(getattr(field.validator, "facts", {}))
-    words = facts.pop("words", None)
+    words, pattern = facts.pop("words", None), facts.pop("pattern", None)
     kinds = [k for k in _members(field.type) if words is None or k is not str]
     limits = {key: facts[key] for key in _LIMITS if key in facts}
     unit, text = field.metadata.get("unit", ""), field.metadata.get("help", "")
     forms = [form for kind in kinds for form in _forms(kind, limits, bool(unit))]
     if words is not None:
         forms.append({"enum": words})
+    if pattern is not None:
+        forms.append({"type": "string", "pattern": pattern})
     schema: Tables = forms[0] if len(forms) == 1 else {"anyOf": forms}
     if "enum" in facts:
         schema["enum"] = facts["enum"]
@@ -117,6 +120,8 @@ def _members(kind: Any) -> list[Any]:
 
 def _forms(kind: Any, limits: dict[str, float], measured: bool) -> list[Tables]:
     """What a value may look like; one that is measured may be text with a unit, whose limits the loader alone checks."""
+    if (table := table_of_list(kind)) is not None:
+        return [{"type": "array", "items": _table(table)}]
     if get_origin(kind) is tuple:
         items = get_args(kind)
         inner = _forms(items[0], {}, measured)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar, get_args, get_origin
 
 import attrs
 import cattrs
@@ -155,10 +155,18 @@ def table_without_units(table: Tables, cls: type) -> Tables:
             continue
         if isinstance(value, dict) and field.type is not None and attrs.has(field.type):
             result[key] = table_without_units(value, field.type)
+        elif isinstance(value, list | tuple) and (one := table_of_list(field.type)) is not None:
+            result[key] = [table_without_units(each, one) if isinstance(each, dict) else each for each in value]
         elif isinstance(value, str | list | tuple):
             with suppress(ValueError):
                 result[key] = without_units(value, field)
     return result
+
+
+def table_of_list(kind: object) -> type | None:
+    """The class of the tables that a key is a list of; None for other keys."""
+    kinds = get_args(kind) if get_origin(kind) is tuple else ()
+    return kinds[0] if len(kinds) == 2 and kinds[1] is Ellipsis and attrs.has(kinds[0]) else None
 
 
 def _equal_to(kind: object) -> Callable[[object], bool]:
@@ -197,6 +205,8 @@ def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
     def hook(value: object, _type: object) -> Any:
         if isinstance(value, list | dict) and attribute.metadata.get("no_list"):
             raise ValueError(attribute.metadata["no_list"])
+        if table_of_list(attribute.type) is not None and not isinstance(value, list | tuple):
+            raise ValueError(f"must be a list of tables, not {_kind(value)}")
         result = converter.structure(without_units(value, attribute), attribute.type)
         if attribute.validator is not None:
             attribute.validator(None, attribute, result)
@@ -246,6 +256,9 @@ def _mistakes(error: BaseException, value: object, cls: Any, path: str) -> list[
             )
             for key in sorted(error.extra_fields)
         ]
+    if isinstance(error, cattrs.errors.IterableValidationError) and isinstance(value, list | tuple):
+        places, _ = error.group_exceptions()
+        return [m for inner, note in places for m in _mistakes(inner, value[note.index], note.type, f"{path}[{note.index}]")]
     if isinstance(error, cattrs.errors.BaseValidationError):
         return [m for inner in error.exceptions for m in _mistakes(inner, value, cls, path)]
     shown = None if isinstance(value, dict) else value

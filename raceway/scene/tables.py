@@ -55,6 +55,9 @@ class Material:
     young: float = option(212e9, unit="Pa", help="Young's modulus", rule=positive())
     poisson: float = option(0.29, help="Poisson's ratio", rule=inside(-1.0, 0.5))
     density: float = option(7810.0, unit="kg/m3", help="density", rule=positive())
+    thermal_expansion: float = option(
+        12.5e-6, unit="1/K", help="linear, where [mounting] gives temperatures; the default is that of bearing steel", rule=at_least(0.0)
+    )
 
 
 @attrs.frozen
@@ -194,7 +197,8 @@ class Bearing:
                 raise ValueError(f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction")
             return
         if len(set(self.signs)) < 2:
-            rows = f"the {len(self.signs)} rows of '{self.signs}' face" if len(self.signs) > 1 else "a single row faces"
+            word = self.signs if self.row else self.arrangement
+            rows = f"the {len(self.signs)} rows of '{word}' face" if len(self.signs) > 1 else "a single row faces"
             raise ValueError(
                 f"`preload` = {self.preload:g} N needs rows that brace each other, such as arrangement = 'DB', 'DF' or 'TBT': "
                 f"{rows} one way only. Give the force of a spring on such a bearing as load.axial"
@@ -359,6 +363,28 @@ class Kinematics:
 
 
 @attrs.frozen
+class Mounting:
+    inner_temperature: float = option(0.0, unit="K", help="of inner rings and shaft above that of mounting", rule=finite())
+    outer_temperature: float = option(0.0, unit="K", help="of outer rings and housing above that of mounting", rule=finite())
+    ball_temperature: float = option(0.0, unit="K", help="of the balls above that of mounting", rule=finite())
+    shaft_interference: float = option(
+        0.0, unit="m", help="by which the shaft is larger than the bore, on the diameter, at standstill", rule=at_least(0.0)
+    )
+    shaft_bore: float = option(0.0, unit="m", help="diameter of the hole in the shaft; 0: solid", rule=at_least(0.0))
+    housing_interference: float = option(
+        0.0, unit="m", help="by which the housing is smaller than the outer ring, on the diameter", rule=at_least(0.0)
+    )
+    housing_diameter: float | None = option(
+        None, unit="m", help="outer diameter of the housing; default: much larger than the bearing", rule=optional(length())
+    )
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """Temperatures and interferences that are not zero, by key."""
+        return {name: value for name, value in attrs.asdict(self).items() if value and not name.endswith(("_bore", "_diameter"))}
+
+
+@attrs.frozen
 class Contact:
     kind: str = option("hertz", help="contact law")
     discretisation: str = option(
@@ -403,7 +429,7 @@ class Scene(Shown):
     Attributes
     ----------
     title : str, says in its second line what was changed since it was read
-    bearing, supports, rotor, load, contact, kinematics, integrator, identifier : tables of the scene file
+    bearing, supports, rotor, load, contact, kinematics, mounting, integrator, identifier : tables of the scene file
     excitation, bodies, mesh : plug-ins with their options; excitation and mesh may be None
     source : the tree of plain tables it was made from, presets resolved
     given : what the user said, presets not resolved, from which ``with_`` goes on
@@ -430,6 +456,7 @@ class Scene(Shown):
     mesh: Any
     contact: Contact
     kinematics: Kinematics
+    mounting: Mounting
     integrator: Integration
     identifier: Identifying
     source: Tables = attrs.field(repr=False, eq=False)
@@ -549,6 +576,7 @@ TABLES: dict[str, type] = {
     "load": Load,
     "contact": Contact,
     "kinematics": Kinematics,
+    "mounting": Mounting,
     "integrator": Integration,
     "identifier": Identifying,
 }
@@ -565,7 +593,7 @@ def _plain(part: attrs.AttrsInstance) -> Tables:
             out[name] = value
         elif attrs.has(type(value)):
             out[name] = _plain(value)
-        elif value is not None:
+        elif value is not None and value != ():
             out[name] = _lists(value)
     return out
 
@@ -577,4 +605,6 @@ def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
 
 
 def _lists(value: object) -> object:
-    return [_lists(part) for part in value] if isinstance(value, tuple) else value
+    if isinstance(value, tuple):
+        return [_lists(part) for part in value]
+    return _plain(value) if attrs.has(type(value)) else value

@@ -15,8 +15,8 @@ import attrs
 
 from raceway.framework.options import nearest
 
-#: Powers of metre, kilogram, second and radian.
-Dimension = tuple[int, int, int, int]
+#: Powers of metre, kilogram, second, radian and kelvin.
+Dimension = tuple[int, int, int, int, int]
 
 
 @attrs.frozen
@@ -29,32 +29,33 @@ class Unit:
 
     def times(self, other: Unit, power: int) -> Unit:
         dimension = tuple(a + power * b for a, b in zip(self.dimension, other.dimension, strict=True))
-        m, kg, s, rad = dimension
-        return Unit((m, kg, s, rad), self.factor * other.factor**power, self.pi + power * other.pi)
+        m, kg, s, rad, kelvin = dimension
+        return Unit((m, kg, s, rad, kelvin), self.factor * other.factor**power, self.pi + power * other.pi)
 
 
-_ONE = Unit((0, 0, 0, 0))
+_ONE = Unit((0, 0, 0, 0, 0))
 #: With prefixes.
 _SCALED = {
-    "m": Unit((1, 0, 0, 0)),
-    "g": Unit((0, 1, 0, 0), Fraction(1, 1000)),
-    "s": Unit((0, 0, 1, 0)),
-    "N": Unit((1, 1, -2, 0)),
-    "Pa": Unit((-1, 1, -2, 0)),
-    "Hz": Unit((0, 0, -1, 1), Fraction(2), 1),
-    "rad": Unit((0, 0, 0, 1)),
+    "m": Unit((1, 0, 0, 0, 0)),
+    "g": Unit((0, 1, 0, 0, 0), Fraction(1, 1000)),
+    "s": Unit((0, 0, 1, 0, 0)),
+    "N": Unit((1, 1, -2, 0, 0)),
+    "Pa": Unit((-1, 1, -2, 0, 0)),
+    "Hz": Unit((0, 0, -1, 1, 0), Fraction(2), 1),
+    "rad": Unit((0, 0, 0, 1, 0)),
 }
 _PREFIXES = {"n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9}
-_TURN = Unit((0, 0, 0, 1), Fraction(2), 1)
+_TURN = Unit((0, 0, 0, 1, 0), Fraction(2), 1)
 #: As they are.
 _PLAIN = {
-    "in": Unit((1, 0, 0, 0), Fraction("0.0254")),
-    "min": Unit((0, 0, 1, 0), Fraction(60)),
-    "deg": Unit((0, 0, 0, 1), Fraction(1, 180), 1),
-    "°": Unit((0, 0, 0, 1), Fraction(1, 180), 1),
+    "in": Unit((1, 0, 0, 0, 0), Fraction("0.0254")),
+    "K": Unit((0, 0, 0, 0, 1)),
+    "min": Unit((0, 0, 1, 0, 0), Fraction(60)),
+    "deg": Unit((0, 0, 0, 1, 0), Fraction(1, 180), 1),
+    "°": Unit((0, 0, 0, 1, 0), Fraction(1, 180), 1),
     "r": _TURN,
     "rev": _TURN,
-    "rpm": Unit((0, 0, -1, 1), Fraction(1, 30), 1),
+    "rpm": Unit((0, 0, -1, 1, 0), Fraction(1, 30), 1),
 }
 #: Of each dimension, what a message offers.
 _OFFERED = {

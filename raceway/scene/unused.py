@@ -96,6 +96,10 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     own = {field.name for field in attrs.fields(type(scene.bodies))}
     others = [f"bodies.{key}" for key in scene.source.get("bodies", {}) if key != "kind" and key not in own]
     told(True, f"bodies.kind is '{scene.bodies.name}'", *others)
-    told(scene.bearing.arrangement == "single", "the bearing has one row", "bearing.row_distance")
-    told(scene.bearing.preload == 0.0, "bearing.preload is 0", "bearing.preload_kind")
+    told(len(scene.bearing.rows) == 1, "the bearing has one row", "bearing.row_distance")
+    without = "bearing.preload is 0"
+    told(not scene.bearing.preloaded, without, "bearing.preload_kind", "bearing.preload_of", "bearing.spring_travel")
+    told(scene.bearing.preload_kind == "rigid", "bearing.preload_kind is 'rigid'", "bearing.spring_travel")
+    told(scene.mounting.shaft_interference == 0.0, "mounting.shaft_interference is 0", "mounting.shaft_bore")
+    told(scene.mounting.housing_interference == 0.0, "mounting.housing_interference is 0", "mounting.housing_diameter")
     return found

@@ -141,9 +141,9 @@ def test_makers_tables_as_pairs(case):
 @pytest.mark.parametrize(
     ("bearing", "words"),
     [
-        ({"arrangement": "DT", "preload": 100.0}, "needs a pair that braces itself"),
+        ({"arrangement": "DT", "preload": 100.0}, "needs rows that brace each other"),
         ({"arrangement": "DX"}, "must be one of 'single', 'DB', 'DF', 'DT'"),
-        ({"preload": 100.0}, "needs a pair that braces itself"),
+        ({"preload": 100.0}, "needs rows that brace each other"),
         ({"arrangement": "DB", "preload": -1.0}, "at least 0"),
         ({"arrangement": "DB", "row_distance": 0.0}, "greater than 0"),
     ],

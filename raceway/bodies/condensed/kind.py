@@ -60,6 +60,12 @@ class Condensed:
             if attrs.asdict(scene.bearing, recurse=False)[key] is None:
                 why = "is needed by elastic rings: give it, or take bodies.kind = 'rigid'"
                 faults.append(Mistake(f"bearing.{key}", None, why))
+        if not scene.bearing.equal_rows:
+            why = "condensed bodies have one section for the rings of all rows: leave out what differs, or take bodies.kind = 'rigid'"
+            faults.append(Mistake("bearing.row", None, why))
+        for key, value in scene.mounting.changes.items() if _nodal(scene) else ():
+            why = "changes the shapes that surface points lie on: take contact.discretisation = 'resultant', or kinematics.radial_expansion"
+            faults.append(Mistake(f"mounting.{key}", value, why))
         unmeshed = unrefined(scene, "sections of condensed bodies")
         faults += unmeshed
         faults += seat_faults(scene)

@@ -189,7 +189,10 @@ def elastic_faults(scene: Scene) -> list[Mistake]:
     why = f"balls of elastic bodies do not turn: set it 'none', {other}"
     refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
     why = f"elastic bodies are one row of balls: use 'single', {other}"
-    refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, why)
+    refuse(len(b.rows) > 1, "bearing.arrangement" if not b.row else "bearing.row", b.signs if b.row else b.arrangement, why)
+    why = f"fits and temperatures change the shape of elastic bodies: give kinematics.radial_expansion instead, {other}"
+    for key, value in scene.mounting.changes.items():
+        refuse(True, f"mounting.{key}", value, why)
     why = f"the arm follows from the shape of elastic rings, which is that of 'groove': use it, {other}"
     refuse(b.tilt_arm != "groove", "bearing.tilt_arm", b.tilt_arm, why)
     return faults

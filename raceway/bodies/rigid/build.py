@@ -9,7 +9,7 @@ import numpy as np
 from raceway.bodies.basis import Basis, changing_speed, excitation, law_params, linear_parts, make_basis
 from raceway.bodies.contact_error import against_hertz
 from raceway.bodies.model import Bearing, Told
-from raceway.bodies.mounting import place_ring
+from raceway.bodies.mounting import growth_of, place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.address import by_address
@@ -19,7 +19,6 @@ from raceway.core.signatures import LAW
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.framework.probe import probe_excitation, probe_law
 from raceway.planning.plan import Plan
-from raceway.scene.inner_ring import radial_growth
 from raceway.scene.tables import Scene
 
 if TYPE_CHECKING:
@@ -58,8 +57,8 @@ def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
         law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
         law_params=law_params(scene, basis),
         law_state=np.zeros((2 * len(basis.azimuth), scene.contact.law.state_size)),
-        scalars=_scalars(scene, plan, basis.geometry, basis.inner, basis.outer, basis.ball_load),
-        table=_ball_table(scene, plan, basis.geometry, basis.inner, basis.outer, basis.azimuth, basis.row),
+        scalars=_scalars(scene, plan, basis),
+        table=_ball_table(scene, plan, basis),
         **linear_parts(scene, plan),
         **excitation(scene),
         spin=changing_speed(scene),
@@ -74,7 +73,7 @@ def probe(scene: Scene, basis: Basis, system: System) -> None:
     Loads of single balls are many times the mean.
     """
     load = basis.ball_load + 5.0 * max(np.abs(system.load[:3]).max(), 1.0) / len(basis.azimuth)
-    approach = float(basis.inner.approach(load))
+    approach = float(np.max(basis.inner.approach(load)))
     depths = [factor * approach for factor in (0.3, 1.0, 3.0, 10.0)]
     probe_law(scene.contact.law, system.law, system.law_params, system.law_state, depths=depths)
     if scene.excitation is not None:
@@ -94,16 +93,19 @@ def _bodies_kernels(plan: Plan) -> tuple[Kernel, Kernel]:
     return rigid_tangential, base
 
 
-def _scalars(
-    scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, reference: float
-) -> np.ndarray:
+def _grooves(scene: Scene, geometry: BallBearing) -> np.ndarray:
+    """(5,) of the scalars REST_AXIAL to TILT_ARM of a row's geometry, before anything grows [m]."""
+    arm = geometry.inner_centre_radius if scene.bearing.tilt_arm == "groove" else 0.5 * geometry.pitch_diameter
+    return np.array([*geometry.rest, geometry.offset_inner, geometry.offset_outer, arm])
+
+
+def _scalars(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
+    geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     b, kinematics = scene.bearing, scene.kinematics
-    out = np.zeros(ring.SCALARS)
+    out, growth = np.zeros(ring.SCALARS), growth_of(scene, basis)
     cage = geometry.cage_speed(scene.spin_speed)
-    out[ring.REST_AXIAL], out[ring.REST_RADIAL] = geometry.rest
-    out[ring.REST_RADIAL] += radial_growth(scene)
-    out[ring.OFFSET_INNER], out[ring.OFFSET_OUTER] = geometry.offset_inner, geometry.offset_outer
-    out[ring.TILT_ARM] = geometry.inner_centre_radius if b.tilt_arm == "groove" else 0.5 * b.pitch_diameter
+    out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(scene, geometry)
+    out[ring.REST_AXIAL : ring.TILT_ARM + 1] += growth.common
     out[ring.DAMPING] = scene.contact.damping
     if kinematics.orbiting:
         out[ring.CAGE] = cage
@@ -126,18 +128,21 @@ def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) 
     return 0.5 * sum(e.stick_ratio(nu)[0] * 1.5 * load / float(e.approach(load)) for e in (inner, outer))
 
 
-def _ball_table(
-    scene: Scene, plan: Plan, geometry: BallBearing, inner: Ellipse, outer: Ellipse, azimuth: np.ndarray, row: np.ndarray
-) -> np.ndarray:
-    z = len(azimuth)
-    centrifugal = 0.0
+def _ball_table(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
+    inner, outer, azimuth, row = basis.inner, basis.outer, basis.azimuth, basis.row
+    z, centrifugal = len(azimuth), np.zeros(len(basis.geometries))
     if plan.centrifugal:
-        cage = geometry.cage_speed(scene.spin_speed)
-        centrifugal = geometry.ball_mass(scene.bearing.balls.density) * 0.5 * geometry.pitch_diameter * cage**2
+        for k, one in enumerate(basis.geometries):
+            cage = one.cage_speed(scene.spin_speed)
+            centrifugal[k] = one.ball_mass(scene.bearing.balls.density) * 0.5 * one.pitch_diameter * cage**2
     softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
     share = softness[1] / sum(softness)
     table = np.zeros((z, ring.COLUMNS))
     table[:, ring.COSINE], table[:, ring.SINE] = np.cos(azimuth), np.sin(azimuth)
-    table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = centrifugal, share, outer.factor
+    table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = centrifugal[row], share, outer.factor
     table[:, [ring.SIDE, ring.LEVER]] = np.array(scene.bearing.rows)[row]
+    if not scene.bearing.equal_rows:
+        grooves = np.array([_grooves(scene, one) for one in basis.geometries])
+        table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] = (grooves - grooves[0])[row]
+    table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += growth_of(scene, basis).own
     return table

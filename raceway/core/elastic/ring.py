@@ -12,7 +12,7 @@ from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.stepped import SteppedElastic
 from raceway.core.elastic.superelements.solver import CondensedSolver
 from raceway.core.ring.increment import AT_ONCE, Increment
-from raceway.core.ring.ring import Evaluation
+from raceway.core.ring.ring import Evaluation, Growth
 from raceway.core.ring.surrogate import SteppedRing
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
@@ -160,7 +160,7 @@ class ElasticRing(SteppedRing):
     def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
         """(size,) equilibrium as mounted under an axial load [N] alone, the ring's other motions held."""
         only, load = np.arange(5) == 0, np.array([axial, 0.0, 0.0, 0.0, 0.0])
-        rigid = self.surrogate.as_mounted(self.bodies.setup.growth)
+        rigid = self.surrogate.as_mounted(Growth.of_inner_raceways(self.bodies.setup.growth, self.ball_count))
         rigid = attrs.evolve(rigid, free=only.astype(float), load=load)
         with self.bodies.mounted(), self._letting_free(only):
             found, _ = self.settled(self._undeformed(rigid, q * only), load)

@@ -28,7 +28,8 @@ class ChangingSpeed:
     reference : w_r that the system's constants were made for [rad/s]
     growth : of the inner raceway at w_r, as far as it goes with w^2 [m]
     gyroscopic : (5, 5) part of the system's damping at w_r that goes with w
-    shift : function of speeds (n,) [rad/s] -> shift of a sprung second row (n,) [m]; None where rows stay
+    shift : function of speeds (n,) [rad/s] -> shift of the first sprung row (n,) [m], with which all on the spring slide; None
+        where rows stay
 
     Notes
     -----
@@ -76,6 +77,7 @@ class ChangingSpeed:
         table[:, CENTRIFUGAL] *= ratio**2
         if self.shift is not None:
             second = table[:, SIDE] != table[0, SIDE]
-            table[second, SHIFT] = self.shift(np.array([speed]))[0]
+            apart = table[second, SHIFT] - table[second, SHIFT][0]
+            table[second, SHIFT] = self.shift(np.array([speed]))[0] + apart
         damping = system.damping + (ratio - 1.0) * self.gyroscopic
         return attrs.evolve(system, scalars=scalars, table=table, damping=damping, spin=None)

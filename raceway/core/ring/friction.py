@@ -63,7 +63,8 @@ def _place(system: System, record: Record) -> np.ndarray:
     shift = np.broadcast_to(table[:, SHIFT], azimuth.shape)
     if system.spin is not None and system.spin.shift is not None:
         second = table[:, SIDE] != table[0, SIDE]
-        shift = np.where(second, system.spin.shift(system.spin.speed(record.time))[:, None], shift)
+        apart = table[:, SHIFT] - table[second, SHIFT][0]
+        shift = np.where(second, system.spin.shift(system.spin.speed(record.time))[:, None] + apart, shift)
     x, y, z, tilt_y, tilt_z = (record.displacement[:, k, None] for k in range(5))
     side, lever = table[:, SIDE], table[:, LEVER]
     turn = side * (tilt_y * s - tilt_z * c)

@@ -18,7 +18,9 @@ from raceway.core.ring.kernels.layout import (
     GYROSCOPIC,
     OFFSET_INNER,
     OFFSET_OUTER,
-    REST_RADIAL,
+    OWN_REST_AXIAL,
+    OWN_TILT_ARM,
+    REST_AXIAL,
     SIDE,
     TILT_ARM,
     place,
@@ -54,6 +56,25 @@ class Evaluation:
     contact_force: np.ndarray
     ball: np.ndarray
     memory: np.ndarray
+
+
+@attrs.frozen(eq=False)
+class Growth:
+    """By how much the grooves of a running, warm bearing differ from the mounted one's [m].
+
+    Attributes
+    ----------
+    common : (5,) of the scalars REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM
+    own : (Z, 5) of the rows' own columns of the same, beyond that
+    """
+
+    common: np.ndarray
+    own: np.ndarray
+
+    @classmethod
+    def of_inner_raceways(cls, growth: float, balls: int) -> Growth:
+        """All inner raceways have grown alike, radially [m]."""
+        return cls(np.array([0.0, growth, 0.0, 0.0, 0.0]), np.zeros((balls, 5)))
 
 
 class Spin(Protocol):
@@ -204,11 +225,12 @@ class Ring(ABC):
         scalars[list(entries)] = 0.0
         return attrs.evolve(self, scalars=scalars)
 
-    def as_mounted(self, growth: float) -> Self:
-        """A copy at standstill whose inner raceway has not grown by ``growth`` [m]: the state in which bearings are mounted."""
+    def as_mounted(self, growth: Growth) -> Self:
+        """A copy at standstill whose grooves have not grown: the state in which bearings are mounted."""
         scalars, table = self.scalars.copy(), self.table.copy()
         scalars[[GYROSCOPIC, CAGE]] = 0.0
-        scalars[REST_RADIAL] -= growth
+        scalars[REST_AXIAL : TILT_ARM + 1] -= growth.common
+        table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] -= growth.own
         table[:, CENTRIFUGAL] = 0.0
         return attrs.evolve(self, scalars=scalars, table=table)
 

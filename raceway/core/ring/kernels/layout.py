@@ -3,9 +3,10 @@
 Notes
 -----
 A row of balls has a side (+1: a positive axial motion of the inner ring seats it, -1: the mirror image), a lever X (its
-axial distance from the reference point) and a shift (axial approach built in by the preload of a pair).  With
+axial distance from the reference point) and a shift (axial approach built in by the preload of a set).  With
 u = tilt_y sin - tilt_z cos and rho = y cos + z sin, the vector from the outer to the inner groove centre is
-e = (e_rest + shift + side (x + R u), e_rest + rho - X u).
+e = (e_rest + shift + side (x + R u), e_rest + rho - X u).  What ``scalars`` say of the grooves holds for all rows; a row that
+differs has the difference in its own columns of ``table``.
 """
 
 import numpy as np
@@ -26,7 +27,9 @@ SCALARS = 14
 #: Columns of ``table``, one row a ball: direction of the azimuth at time zero, centrifugal force [N], share of the
 #: approach that the outer race takes under Hertz, Hertz factor of the outer race [N/m^1.5], side, lever [m], shift [m].
 COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT = range(8)
-COLUMNS = 8
+#: Columns of what a ball's row has beyond the scalars of the same name without OWN: 0 in a set of equal rows.
+OWN_REST_AXIAL, OWN_REST_RADIAL, OWN_OFFSET_INNER, OWN_OFFSET_OUTER, OWN_TILT_ARM = range(8, 13)
+COLUMNS = 13
 
 
 @jit(void(float64, VECTOR, VECTOR, CONSTANTS, MATRIX, types.UniTuple(int64, 3)))
@@ -49,12 +52,13 @@ def place(t, q, v, constants, work, rows):
     vx, vy, vz, turn_y, turn_z = v[0], v[1] + cage * z, v[2] - cage * y, v[3] + cage * tilt_z, v[4] - cage * tilt_y
     for k in range(n):
         cosine, sine = table[k, COSINE], table[k, SINE]
-        side, lever, shift = table[k, SIDE], table[k, LEVER], table[k, SHIFT]
+        side, lever, shift = table[k, SIDE], table[k, LEVER], table[k, OWN_REST_AXIAL] + table[k, SHIFT]
+        own, reach = table[k, OWN_REST_RADIAL], arm + table[k, OWN_TILT_ARM]
         c, s = cosine * turn_c - sine * turn_s, sine * turn_c + cosine * turn_s
         u, u_rate = tilt_y * s - tilt_z * c, turn_y * s - turn_z * c
         work[direction, k], work[direction, n + k] = c, s
-        work[centre, k], work[centre, n + k] = rest_a + shift + side * (x + arm * u), rest_r + y * c + z * s - lever * u
-        work[velocity, k] = side * (vx + arm * u_rate)
+        work[centre, k], work[centre, n + k] = rest_a + shift + side * (x + reach * u), rest_r + own + y * c + z * s - lever * u
+        work[velocity, k] = side * (vx + reach * u_rate)
         work[velocity, n + k] = vy * c + vz * s - lever * u_rate
 
 
@@ -87,7 +91,7 @@ def ring_force(table, arm, work, direction, row, f):
     for k in range(n):
         c, s = work[direction, k], work[direction, n + k]
         axial, radial = table[k, SIDE] * work[row, k], work[row, n + k]
-        couple = arm * axial - table[k, LEVER] * radial
+        couple = (arm + table[k, OWN_TILT_ARM]) * axial - table[k, LEVER] * radial
         x += axial
         y += radial * c
         z += radial * s
@@ -116,13 +120,13 @@ def ring_tangent(table, arm, work, direction, row, K):
     uu_cc, uu_cs, uu_ss = 0.0, 0.0, 0.0
     z = table.shape[0]
     for k in range(z):
-        c, s, lever = work[direction, k], work[direction, z + k], table[k, LEVER]
+        c, s, lever, reach = work[direction, k], work[direction, z + k], table[k, LEVER], arm + table[k, OWN_TILT_ARM]
         aa, ar = work[row, k], table[k, SIDE] * work[row, z + k]
         ra, rr = table[k, SIDE] * work[row + 1, k], work[row + 1, z + k]
         cc, cs, ss = c * c, c * s, s * s
-        xu, ux = arm * aa - lever * ar, arm * aa - lever * ra
-        ru, ur = arm * ra - lever * rr, arm * ar - lever * rr
-        uu = arm * xu - lever * ru
+        xu, ux = reach * aa - lever * ar, reach * aa - lever * ra
+        ru, ur = reach * ra - lever * rr, reach * ar - lever * rr
+        uu = reach * xu - lever * ru
         xx += aa
         xr_c += ar * c
         xr_s += ar * s

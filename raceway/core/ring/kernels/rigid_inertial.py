@@ -42,6 +42,8 @@ from raceway.core.ring.kernels.layout import (
     OFFSET_OUTER,
     OUTER_FACTOR,
     OUTER_SHARE,
+    OWN_OFFSET_INNER,
+    OWN_OFFSET_OUTER,
     TILT_ARM,
     move_centres,
     place,
@@ -68,7 +70,8 @@ CARRIED, STIFF, VISCOUS = 9, 5, 7
 @jit(void(int64, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
 def _first_guess(k, scalars, table, ball, work):
     """Begin with ball k where it is, or on its seat."""
-    z, li, lo = table.shape[0], scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    z = table.shape[0]
+    li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
     work[SEARCH, k] = 0.0
     work[DONE, z + k] = 0.0
     if ball[k, 0] * ball[k, 0] + ball[k, 1] * ball[k, 1] > lo * lo:
@@ -82,10 +85,11 @@ def _first_guess(k, scalars, table, ball, work):
         ball[k, 0], ball[k, 1] = 0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
 
 
-@jit(void(int64, VECTOR, MATRIX, float64, MATRIX, MATRIX), inline=True)
-def _approach(k, scalars, ball, ball_gain, ball_known, work):
+@jit(void(int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, MATRIX), inline=True)
+def _approach(k, scalars, table, ball, ball_gain, ball_known, work):
     """Directions, lengths, gaps and gap rates of both contacts of ball k."""
-    z, li, lo = ball.shape[0], scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    z = ball.shape[0]
+    li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
     pa, pr = ball[k, 0], ball[k, 1]
     xa, xr = work[CENTRE, k] - pa, work[CENTRE, z + k] - pr
     so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
@@ -234,7 +238,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     moving = z
     for _ in range(_ITERATIONS):
         for k in range(z):
-            _approach(k, scalars, ball, ball_gain, ball_known, work)
+            _approach(k, scalars, table, ball, ball_gain, ball_known, work)
         law(gap, rate, law_params, law_old, law_new, dt, force, by_gap, by_rate)
         add_damping(scalars[DAMPING], gap, rate, force, by_gap, by_rate)
         for k in range(z):

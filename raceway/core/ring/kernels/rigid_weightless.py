@@ -38,6 +38,8 @@ from raceway.core.ring.kernels.layout import (
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_SHARE,
+    OWN_OFFSET_INNER,
+    OWN_OFFSET_OUTER,
     TILT_ARM,
     move_centres,
     place,
@@ -58,7 +60,8 @@ APPROACH, OUTER = SPEED, LENGTH
 @jit(void(int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, MATRIX), inline=True)
 def _share(k, scalars, table, ball, ball_gain, ball_known, work):
     """First guess of ball k: direction and length of its line, and the approach shared as Hertzian contacts share it."""
-    z, li, lo = table.shape[0], scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    z = table.shape[0]
+    li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
     a, r = work[NORMAL, k], work[NORMAL, z + k]
     length = np.sqrt(a * a + r * r)
     inverse = 1.0 / max(length, 1e-300)
@@ -176,7 +179,7 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
     for k in range(z):
         closed = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
         fi, fo, na, nr = force[k] * closed, force[z + k] * closed, work[NORMAL, k], work[NORMAL, z + k]
-        ball[k, 0] = scalars[OFFSET_OUTER] + work[SHIFT, z + k] + work[OUTER, z + k]
+        ball[k, 0] = scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER] + work[SHIFT, z + k] + work[OUTER, z + k]
         force[k], force[z + k] = fi, fo
         work[CARRIED, k], work[CARRIED, z + k] = fi * na, fi * nr
     ring_force(table, arm, work, DIRECTION, CARRIED, f)

@@ -1,0 +1,176 @@
+"""By how much the grooves of a running, warm bearing differ from the mounted one's: speed, fits, temperatures.
+
+Temperatures are given numbers: nothing here knows where the heat comes from.
+"""
+
+from __future__ import annotations
+
+from math import acos, cos, degrees, pi, sin
+from typing import TYPE_CHECKING
+
+import attrs
+
+from raceway.errors import Mistake
+from raceway.scene.inner_ring import groove_depth, radial_growth
+
+if TYPE_CHECKING:
+    from raceway.scene.tables import Bearing, Scene
+
+
+@attrs.frozen
+class Grooves:
+    """Growth of one row's grooves [m].
+
+    Attributes
+    ----------
+    axial, radial : of the vector from the outer to the inner groove centre, at rest
+    inner, outer : of the distance of groove centre and ball centre at the first touch
+    """
+
+    axial: float
+    radial: float
+    inner: float
+    outer: float
+
+
+def grooves(scene: Scene, row: int = 0) -> Grooves:
+    """Growth of the grooves of one row.
+
+    Notes
+    -----
+    A ring whose temperature rises by T grows by a T in all lengths: the circles of the groove centres R_i and R_o, the groove
+    radii f D; a ball likewise.  Shaft and housing have the temperatures of their rings, so that a row at the place X moves
+    axially by a (T_i - T_o) X.  At one temperature for all, everything keeps its shape.
+    """
+    b, (side, place), warm = scene.bearing.of_rows[row], scene.bearing.rows[row], scene.mounting
+    angle, half = b.contact_angle, 0.5 * b.ball_diameter
+    to_inner, to_outer = ((f - 0.5) * b.ball_diameter for f in (b.conformity_inner, b.conformity_outer))
+    by_inner = b.rings.thermal_expansion * warm.inner_temperature
+    by_outer = b.rings.thermal_expansion * warm.outer_temperature
+    by_ball = b.balls.thermal_expansion * warm.ball_temperature
+    circle = 0.5 * b.pitch_diameter + to_inner * cos(angle)
+    other = 0.5 * b.pitch_diameter - to_outer * cos(angle)
+    fits = inner_fit(scene, b) - outer_fit(scene, b)
+    return Grooves(
+        axial=(by_inner * to_inner + by_outer * to_outer) * sin(angle) + side * (by_inner - by_outer) * place,
+        radial=radial_growth(scene, row) + fits + by_inner * circle - by_outer * other,
+        inner=by_inner * (to_inner + half) - by_ball * half,
+        outer=by_outer * (to_outer + half) - by_ball * half,
+    )
+
+
+def inner_fit(scene: Scene, bearing: Bearing) -> float:
+    """Radial growth of the inner raceway by the interference on the shaft [m].
+
+    Notes
+    -----
+    Thick-walled cylinders of one material: with bore d, raceway d_1 = d_m - D and hole d_s the raceway grows, on the radius, by
+    I/2 (d_1 / d) (d^2 - d_s^2) / (d_1^2 - d_s^2).  With the centrifugal growth of the ring the interference falls by as much as
+    the ring's bore grows beyond the shaft.
+
+    References
+    ----------
+    Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 3 (interference fitting and clearance).
+    """
+    interference = running_interference(scene, bearing)
+    if interference <= 0.0 or bearing.bore is None:
+        return 0.0
+    d, race, hole = bearing.bore, bearing.pitch_diameter - bearing.ball_diameter, scene.mounting.shaft_bore
+    return 0.5 * interference * race / d * (d**2 - hole**2) / (race**2 - hole**2)
+
+
+def outer_fit(scene: Scene, bearing: Bearing) -> float:
+    """Radial growth of the outer raceway by the interference in the housing [m], negative: as ``inner_fit``, from outside."""
+    interference = scene.mounting.housing_interference
+    if interference == 0.0 or bearing.outer_diameter is None:
+        return 0.0
+    d, race, wide = bearing.outer_diameter, bearing.pitch_diameter + bearing.ball_diameter, scene.mounting.housing_diameter
+    if wide is None:
+        return -0.5 * interference * race / d
+    return -0.5 * interference * race / d * (wide**2 - d**2) / (wide**2 - race**2)
+
+
+def running_interference(scene: Scene, bearing: Bearing) -> float:
+    """Interference of ring and shaft at speed, on the diameter [m].
+
+    Notes
+    -----
+    Of plane-stress annuli: the bore a of a ring up to the radius b grows by rho w^2 a / (4 E) ((1 - nu) a^2 + (3 + nu) b^2), a
+    shaft with the hole c by the same with a and c.  Difference: rho w^2 a (3 + nu) (b^2 - c^2) / (4 E).
+
+    References
+    ----------
+    Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
+    """
+    given, steel = scene.mounting.shaft_interference, bearing.rings
+    if given == 0.0 or bearing.bore is None or not scene.kinematics.ring_growth:
+        return given
+    a, c = 0.5 * bearing.bore, 0.5 * scene.mounting.shaft_bore
+    b = 0.5 * (bearing.pitch_diameter - bearing.ball_diameter) + groove_depth(bearing)
+    lost = steel.density * scene.spin_speed**2 * a * (3.0 + steel.poisson) * (b**2 - c**2) / (4.0 * steel.young)
+    return float(given - 2.0 * lost)
+
+
+def growth_faults(scene: Scene) -> list[Mistake]:
+    """Fits that lack a dimension or are lost at speed; growth that leaves no bearing."""
+    found, warm = [], scene.mounting
+    for key, dimension in (("shaft_interference", "bore"), ("housing_interference", "outer_diameter")):
+        if getattr(warm, key) > 0.0 and any(getattr(b, dimension) is None for b in scene.bearing.of_rows):
+            found.append(Mistake(f"mounting.{key}", getattr(warm, key), f"needs the bearing's `{dimension}`"))
+    narrow = min((b.bore for b in scene.bearing.of_rows if b.bore is not None), default=None)
+    if narrow is not None and warm.shaft_bore >= narrow:
+        found.append(Mistake("mounting.shaft_bore", warm.shaft_bore, f"must be smaller than the bearing's bore, {narrow:g} m"))
+    wide = max((b.outer_diameter for b in scene.bearing.of_rows if b.outer_diameter is not None), default=None)
+    if wide is not None and warm.housing_diameter is not None and warm.housing_diameter <= wide:
+        rule = f"must be larger than the bearing's outer diameter, {wide:g} m"
+        found.append(Mistake("mounting.housing_diameter", warm.housing_diameter, rule))
+    if found:
+        return found
+    for row, bearing in enumerate(scene.bearing.of_rows):
+        found = _row_faults(scene, row, bearing)
+        if found:
+            break
+    return found
+
+
+def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
+    """Of one row: a shaft that comes loose, a bearing that is closed or opened by its growth."""
+    left = running_interference(scene, bearing)
+    if left < 0.0:
+        rule = (
+            f"is lost at {30.0 * scene.spin_speed / pi:.4g} r/min: the bore grows by {1e6 * (scene.mounting.shaft_interference - left):.3g} um "
+            "more than the shaft, on the diameter, and the ring comes loose. Fit it tighter, or turn it slower"
+        )
+        return [Mistake("mounting.shaft_interference", scene.mounting.shaft_interference, rule)]
+    if not scene.mounting.changes:
+        return []  # what kinematics.radial_expansion does alone is told where the equilibrium is
+    grown, angle = grooves(scene, row), bearing.contact_angle
+    distance = (bearing.conformity_inner + bearing.conformity_outer - 1.0) * bearing.ball_diameter
+    centres, between = distance + grown.inner + grown.outer, distance * cos(angle) + grown.radial
+    edge = acos(1.0 - groove_depth(bearing) / (0.5 * bearing.ball_diameter))
+    words, key = "temperatures and fits", _cause(scene)
+    value = getattr(scene.mounting, key)
+    if centres <= 0.0 or between >= centres:
+        short = 1e6 * (between - max(centres, 0.0))
+        rule = (
+            f"{words} close the bearing: its grooves leave {short:.3g} um too little room for the balls, which would be squeezed all "
+            "around at a contact angle of 0. Take smaller differences of temperature, a looser fit, or more clearance"
+        )
+        return [Mistake(f"mounting.{key}", value, rule)]
+    if between <= 0.0 or acos(between / centres) >= edge:
+        at = 90.0 if between <= 0.0 else degrees(acos(between / centres))
+        rule = (
+            f"{words} open the bearing: balls would touch at {at:.3g} deg, beyond the groove's edge at {degrees(edge):.3g} deg. "
+            "Take smaller differences of temperature"
+        )
+        return [Mistake(f"mounting.{key}", value, rule)]
+    return []
+
+
+def _cause(scene: Scene) -> str:
+    """The key that does most to the grooves: the temperature furthest from the others, or an interference."""
+    warm = {name: value for name, value in attrs.asdict(scene.mounting).items() if name.endswith("_temperature")}
+    mean = sum(warm.values()) / len(warm)
+    if any(warm.values()):
+        return max(warm, key=lambda name: abs(warm[name] - mean))
+    return "shaft_interference" if scene.mounting.shaft_interference > 0.0 else "housing_interference"
