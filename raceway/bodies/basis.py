@@ -60,7 +60,12 @@ def make_basis(scene: Scene) -> Basis:
     b = scene.bearing
     geometries = tuple(
         BallBearing(
-            one.ball_diameter, one.pitch_diameter, one.ball_count, one.contact_angle, one.conformity_inner, one.conformity_outer
+            one.ball_diameter,
+            one.pitch_diameter,
+            one.ball_count,
+            one.contact_angle,
+            one.conformity_inner,
+            one.conformity_outer,
         )
         for one in b.of_rows
     )

@@ -264,12 +264,14 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         columns[f"semi_major_{word}_m"] = a
         columns[f"semi_minor_{word}_m"] = b
     columns |= model.bearing.ball_columns(model, equilibrium)
+    several = len(model.scene.bearing.rows) > 1
+    rows: list[Tables] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
     return {
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),
         "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
         "free_contact_angle_deg": math.degrees(model.scene.bearing.contact_angle),
-        "balls": [{key: float(column[k]) for key, column in columns.items()} for k in range(z)],
+        "balls": [{**rows[k], **{key: float(column[k]) for key, column in columns.items()}} for k in range(z)],
         "preload": preload_table(model, equilibrium),
         "held_axial": held_table(model, equilibrium),
         "iterations": equilibrium.iterations,

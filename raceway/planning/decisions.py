@@ -81,8 +81,8 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
     )
     orbiting = scene.kinematics.orbiting
     parts.decide(orbiting, "orbiting balls", "kinematics.orbiting at cage speed", "kinematics.orbiting is false")
-    pair = f"bearing.arrangement is {scene.bearing.arrangement}"
-    parts.decide(len(scene.bearing.rows) > 1, "second row of balls", pair, pair)
+    rows = f"bearing.arrangement is {scene.bearing.arrangement if not scene.bearing.row else scene.bearing.signs}"
+    parts.decide(len(scene.bearing.rows) > 1, "further rows of balls", rows, rows)
     kind = "tangential" if friction or moments else "inertial" if inertia else "weightless"
     return Balls(kind, inertia, moments, friction)
 

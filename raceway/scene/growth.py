@@ -119,7 +119,9 @@ def growth_faults(scene: Scene) -> list[Mistake]:
             found.append(Mistake(f"mounting.{key}", getattr(warm, key), f"needs the bearing's `{dimension}`"))
     narrow = min((b.bore for b in scene.bearing.of_rows if b.bore is not None), default=None)
     if narrow is not None and warm.shaft_bore >= narrow:
-        found.append(Mistake("mounting.shaft_bore", warm.shaft_bore, f"must be smaller than the bearing's bore, {narrow:g} m"))
+        found.append(
+            Mistake("mounting.shaft_bore", warm.shaft_bore, f"must be smaller than the bearing's bore, {narrow:g} m")
+        )
     wide = max((b.outer_diameter for b in scene.bearing.of_rows if b.outer_diameter is not None), default=None)
     if wide is not None and warm.housing_diameter is not None and warm.housing_diameter <= wide:
         rule = f"must be larger than the bearing's outer diameter, {wide:g} m"

@@ -8,7 +8,19 @@ from __future__ import annotations
 
 import attrs
 
-from raceway.framework.options import Rule, at_least, between, finite, inside, length, nearest, one_of, option, optional, worded
+from raceway.framework.options import (
+    Rule,
+    at_least,
+    between,
+    finite,
+    inside,
+    length,
+    nearest,
+    one_of,
+    option,
+    optional,
+    worded,
+)
 
 #: Rows that face "+" and "-", and how they stand: with the "+" rows on the side of -x the pressure lines diverge towards the
 #: axis, back to back; the other way round they stand face to face.
@@ -72,7 +84,9 @@ class Row:
     """One row of a set: where it stands, which way it faces, and what of its bearing differs from the set's."""
 
     direction: str | None = option(
-        None, help="'+': a positive axial motion of the inner ring seats it; '-'; default: as the arrangement says", rule=optional(one_of("+", "-"))
+        None,
+        help="'+': a positive axial motion of the inner ring seats it; '-'; default: as the arrangement says",
+        rule=optional(one_of("+", "-")),
     )
     position: float | None = option(
         None,
@@ -81,14 +95,23 @@ class Row:
         rule=optional(finite()),
     )
     preload: float | None = option(
-        None, unit="N", help="that this row was ground for, with preload_of = 'row'; default: bearing.preload", rule=optional(at_least(0.0))
+        None,
+        unit="N",
+        help="that this row was ground for, with preload_of = 'row'; default: bearing.preload",
+        rule=optional(at_least(0.0)),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys of the row override it")
-    ball_diameter: float | None = option(None, unit="m", help="D; default: the bearing's, as all that follow", rule=optional(length()))
+    ball_diameter: float | None = option(
+        None, unit="m", help="D; default: the bearing's, as all that follow", rule=optional(length())
+    )
     pitch_diameter: float | None = option(None, unit="m", help="d_m", rule=optional(length()))
     ball_count: int | None = option(None, help="Z", rule=optional(at_least(1)))
-    conformity_inner: float | None = option(None, help="groove radius / ball diameter, inner", rule=optional(inside(0.5, 1.0)))
-    conformity_outer: float | None = option(None, help="groove radius / ball diameter, outer", rule=optional(inside(0.5, 1.0)))
+    conformity_inner: float | None = option(
+        None, help="groove radius / ball diameter, inner", rule=optional(inside(0.5, 1.0))
+    )
+    conformity_outer: float | None = option(
+        None, help="groove radius / ball diameter, outer", rule=optional(inside(0.5, 1.0))
+    )
     contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0)))
     bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
     outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))

@@ -56,7 +56,10 @@ class Material:
     poisson: float = option(0.29, help="Poisson's ratio", rule=inside(-1.0, 0.5))
     density: float = option(7810.0, unit="kg/m3", help="density", rule=positive())
     thermal_expansion: float = option(
-        12.5e-6, unit="1/K", help="linear, where [mounting] gives temperatures; the default is that of bearing steel", rule=at_least(0.0)
+        12.5e-6,
+        unit="1/K",
+        help="linear, where [mounting] gives temperatures; the default is that of bearing steel",
+        rule=at_least(0.0),
     )
 
 
@@ -95,7 +98,8 @@ class Bearing:
         rule=arrangement(),
     )
     row: tuple[Row, ...] = option(
-        (), help="rows one by one, in tables [[bearing.row]]: places, directions, preloads, and what differs from this bearing"
+        (),
+        help="rows one by one, in tables [[bearing.row]]: places, directions, preloads, and what differs from this bearing",
     )
     preload: float = option(
         0.0,
@@ -121,7 +125,10 @@ class Bearing:
         rule=one_of("rigid", "spring"),
     )
     spring_travel: float | None = option(
-        None, unit="m", help="by which those rings can slide against the spring from where they were mounted, either way; default: any", rule=optional(_travel())
+        None,
+        unit="m",
+        help="by which those rings can slide against the spring from where they were mounted, either way; default: any",
+        rule=optional(_travel()),
     )
     row_distance: float | None = option(
         None,
@@ -170,10 +177,14 @@ class Bearing:
     def _check_set(self) -> None:
         signs = signs_of(self.arrangement)
         if self.row and self.arrangement != "single" and len(self.row) != len(signs):
-            raise ValueError(f"`row` has {len(self.row)} tables, but arrangement = '{self.arrangement}' is {len(signs)} rows")
+            raise ValueError(
+                f"`row` has {len(self.row)} tables, but arrangement = '{self.arrangement}' is {len(signs)} rows"
+            )
         without = [k for k, row in enumerate(self.row) if self.arrangement == "single" and row.direction is None]
         if without:
-            raise ValueError(f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`")
+            raise ValueError(
+                f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`"
+            )
         placed = bool(self.row) and all(row.position is not None for row in self.row)
         if len(self.signs) > 1 and not placed and self.row_distance is None and self.width is None:
             raise ValueError(
@@ -191,10 +202,14 @@ class Bearing:
         if ground is not None and self.preload_of != "row":
             raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")
         if self.second_preload is not None and self.preload_of == "row":
-            raise ValueError("`second_preload` is a force between rows: set preload_of = 'set', or give each row its `preload`")
+            raise ValueError(
+                "`second_preload` is a force between rows: set preload_of = 'set', or give each row its `preload`"
+            )
         if not self.preloaded:
             if self.second_preload is not None:
-                raise ValueError(f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction")
+                raise ValueError(
+                    f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction"
+                )
             return
         if len(set(self.signs)) < 2:
             word = self.signs if self.row else self.arrangement
@@ -381,7 +396,9 @@ class Mounting:
     @property
     def changes(self) -> dict[str, float]:
         """Temperatures and interferences that are not zero, by key."""
-        return {name: value for name, value in attrs.asdict(self).items() if value and not name.endswith(("_bore", "_diameter"))}
+        return {
+            name: value for name, value in attrs.asdict(self).items() if value and not name.endswith(("_bore", "_diameter"))
+        }
 
 
 @attrs.frozen
@@ -604,7 +621,7 @@ def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
     return tuple((field.name, "plugin" in field.metadata) for field in attrs.fields(cls))
 
 
-def _lists(value: object) -> object:
+def _lists(value: Any) -> object:
     if isinstance(value, tuple):
         return [_lists(part) for part in value]
     return _plain(value) if attrs.has(type(value)) else value

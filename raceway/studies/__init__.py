@@ -2,6 +2,7 @@
 
 many        what they share: the engine (items in, rows out, kept and resumed), points, axes, row store, pages
 compare, precision, stability, sweep, verify, view, ross, measured    one folder a command, with what it prints and draws
+limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
 article, rig, map    whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
 command     ``raceway study``
 shaft       the rotor that ``rig`` and ``measured`` set the bearing in
@@ -50,5 +51,10 @@ def raceway_studies() -> list[type]:
             "map",
             "Hardening or softening of k(speed) over axial load, tilt and contact angle.",
             "raceway.studies.map.command:study_map",
+        ),
+        _study(
+            "limits",
+            "Axial loads at which a set's rows lift off, and those that its contacts carry.",
+            "raceway.studies.limits.command:study_limits",
         ),
     ]

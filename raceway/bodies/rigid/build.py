@@ -139,7 +139,11 @@ def _ball_table(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
     share = softness[1] / sum(softness)
     table = np.zeros((z, ring.COLUMNS))
     table[:, ring.COSINE], table[:, ring.SINE] = np.cos(azimuth), np.sin(azimuth)
-    table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = centrifugal[row], share, outer.factor
+    table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = (
+        centrifugal[row],
+        share,
+        outer.factor,
+    )
     table[:, [ring.SIDE, ring.LEVER]] = np.array(scene.bearing.rows)[row]
     if not scene.bearing.equal_rows:
         grooves = np.array([_grooves(scene, one) for one in basis.geometries])

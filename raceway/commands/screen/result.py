@@ -18,6 +18,7 @@ from raceway.commands.screen.result_parts import (
 )
 from raceway.commands.screen.text import micro, sections, written
 from raceway.commands.screen.wrapping import Words
+from raceway.scene.sets import GEOMETRY, signs_of
 from raceway.storage.tables import ReadTables
 
 _LEFT_OUT_SHOWN = 3
@@ -64,8 +65,8 @@ def _bearing(result: ReadTables) -> str:
         angle += ", from the clearance"
     balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
     words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}"]
-    if b.get("arrangement", "single") != "single":
-        words.append(_pair(b))
+    if b.get("arrangement", "single") != "single" or b.get("row"):
+        words.append(_set(b))
     words += [
         f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}",
         f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",
@@ -79,9 +80,21 @@ def _bearing(result: ReadTables) -> str:
 _PAIRS = {"DB": "back to back", "DF": "face to face", "DT": "tandem"}
 
 
-def _pair(bearing: ReadTables) -> str:
-    kind = bearing["arrangement"]
-    mounted = (
-        f"mounted with {bearing['preload']:g} N ({bearing['preload_kind']})" if bearing.get("preload") else "without preload"
+def _set(bearing: ReadTables) -> str:
+    """Arrangement, distances and preload of a set of rows."""
+    kind, own = bearing.get("arrangement", "single"), bearing.get("row") or []
+    forces = f"{bearing['preload']:g} N" if bearing.get("preload") else "the rows' own forces"
+    if bearing.get("second_preload"):
+        forces += f" and {bearing['second_preload']:g} N"
+    braced = bearing.get("preload") or any(row.get("preload") for row in own)
+    each = " of each row, as ground" if bearing.get("preload_of") == "row" else ""
+    mounted = f"mounted with {forces}{each} ({bearing['preload_kind']})" if braced else "without preload"
+    count = len(own) if kind == "single" else len(signs_of(kind))
+    apart = bearing.get("row_distance") or bearing.get("width")
+    placed = own and all(row.get("position") is not None for row in own)
+    places = (
+        ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm" if placed else f"{1e3 * (apart or 0.0):g} mm apart"
     )
-    return f"pair {kind}, {_PAIRS.get(kind, kind)}: two rows of these balls, {1e3 * bearing['row_distance']:g} mm apart, {mounted}"
+    what = "rows that differ, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
+    name = f"pair {kind}, {_PAIRS[kind]}" if kind in _PAIRS else f"set {kind}" if kind != "single" else "set of rows"
+    return f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounted}"

@@ -55,11 +55,11 @@ def tangent_rows(result: ReadTables) -> list[Row]:
 
 def loaded_ball(result: ReadTables, word: str) -> Row:
     """The ``most`` or the ``least`` loaded ball, by row and number in its row, with load, azimuth and pressure."""
-    balls, count = result["equilibrium"]["balls"], result["scene"]["bearing"]["ball_count"]
+    balls = result["equilibrium"]["balls"]
     pick = max if word == "most" else min
     index, ball = pick(enumerate(balls), key=lambda item: item[1]["load_inner_n"])
-    row, place = divmod(index, count)
-    name = f"row {row + 1}, ball {place}" if len(balls) > count else f"ball {place}"
+    place = sum(one.get("row") == ball.get("row") for one in balls[:index])
+    name = f"row {ball['row']}, ball {place}" if "row" in ball else f"ball {place}"
     angle = ball["contact_angle_inner_deg"]
     pressure = f"inner race {_pressure(ball)}, {angle:.2f} deg" if angle is not None else "open"
     return f"{word} loaded ball", number(ball["load_inner_n"], "N"), f"{name} at {ball['azimuth_deg']:.4g} deg; {pressure}"

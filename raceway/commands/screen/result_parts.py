@@ -33,10 +33,10 @@ def _mounted(found: ReadTables) -> list[Row]:
     rows, preload, held = [], found["preload"], found["held_axial"]
     if preload is not None:
         forces = ", ".join(f"{force:.5g}" for force in preload["rows_n"])
-        what = {"rigid": "the offset of the rows", "spring": "the second row's force"}[preload["kind"]]
+        what = {"rigid": "the offset of the rows", "spring": "the force of the rows on the spring"}[preload["kind"]]
         how = f"running, without loads; mounted {preload['mounted_n']:g} N, {what} stays"
         rows.append(("preload", number(preload["running_n"], "N"), how))
-        rows.append(("axial force of rows", f"{forces} N", "rows 1, 2 under the loads"))
+        rows.append(("axial force of rows", f"{forces} N", f"rows 1 to {len(preload['rows_n'])} under the loads"))
     if held is not None:
         how = f"what the held displacement takes now; mounted {held['mounted_n']:g} N"
         rows.append(("axial force", number(held["running_n"], "N"), how))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.errors import MeshError
 from raceway.framework.options import between, option, optional, positive, word_or
 
 if TYPE_CHECKING:
@@ -110,6 +111,8 @@ class Structured:
         from raceway.core.mesh.ring_shape import ring_shape
         from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
 
+        if not bearing.equal_rows:
+            raise MeshError("bearing.row holds rows of different bearings: mesh each by itself, as a scene of one row")
         volume = pi / 6.0 * bearing.ball_diameter**3 * bearing.ball_count
         for inner, word in ((True, "inner"), (False, "outer")):
             shape = ring_shape(bearing, inner)

@@ -80,7 +80,8 @@ def ball_loads(axes: Any, result: Result) -> None:
     """Inner contact load of each ball on polar axes: static, and its range over the recorded turns."""
     import numpy as np
 
-    azimuth, count = result.model.azimuth, result.model.geometry.ball_count
+    azimuth, row = result.model.azimuth, result.model.basis.row
+    count = result.model.geometry.ball_count
     z = len(azimuth)
     static = result.equilibrium.contact_force[:z]
     top = max(static.max(), 1e-12) * 1.2
@@ -89,10 +90,19 @@ def ball_loads(axes: Any, result: Result) -> None:
         low, high = loads.min(axis=0), loads.max(axis=0)
         axes.vlines(azimuth, low, high, color=_USED, linewidth=6.0, alpha=0.45, label="range over the orbit")
         top = max(top, high.max() * 1.2)
-    for row, mark in zip(range(z // count), ("o-", "s--"), strict=False):
-        closed = row * count + np.append(np.arange(count), 0)
-        words = "static" if z == count else f"static, row {row + 1}"
-        axes.plot(azimuth[closed], static[closed], mark, color=_STATIC, linewidth=1.6, markersize=5, label=words)
+    for one in range(row[-1] + 1):
+        balls = np.flatnonzero(row == one)
+        closed = np.append(balls, balls[0])
+        words = "static" if z == count else f"static, row {one + 1}"
+        axes.plot(
+            azimuth[closed],
+            static[closed],
+            ("o-", "s--", "^-.", "v:")[one % 4],
+            color=_STATIC,
+            linewidth=1.6,
+            markersize=5,
+            label=words,
+        )
     for k in range(count):
         axes.text(azimuth[k], top * 0.94, str(k), ha="center", va="center", fontsize=9, color="#5a6570")
     axes.set_ylim(0.0, top)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.errors import SceneError
 from raceway.studies.view import surfaces
 from raceway.studies.view.surfaces import Surface
 
@@ -83,8 +84,18 @@ class Bearing:
 
     @classmethod
     def of(cls, result: Result) -> Bearing:
-        """From a result; rings without dimensions get usual ones, which are named."""
+        """From a result; rings without dimensions get usual ones, which are named.
+
+        Raises
+        ------
+        SceneError
+            Rows of different bearings.
+        """
         b = result.model.scene.bearing
+        if not b.equal_rows:
+            raise SceneError.at(
+                "bearing.row", None, "holds rows of different bearings, which are not drawn: leave out what differs"
+            )
         wall = 0.85 * b.ball_diameter
         usual = {
             "bore": b.pitch_diameter - 2.0 * wall, "outer_diameter": b.pitch_diameter + 2.0 * wall, "width": 1.7 * b.ball_diameter
