@@ -17,7 +17,6 @@ from raceway.core.ring.ring import Growth, Ring, Spin
 from raceway.errors import ConvergenceError
 from raceway.planning.recording import turns_of
 from raceway.scene.growth import grooves
-from raceway.scene.inner_ring import radial_growth
 from raceway.scene.tables import Scene
 from raceway.storage.tables import Tables
 
@@ -241,10 +240,15 @@ def lost_preload(model: Model) -> str:
     bearing, kinematics = model.scene.bearing, model.scene.kinematics
     if not bearing.preloaded or running_preload(model) > 0.0:
         return ""
+    radial = growth_of(model.scene, model.basis).common[1]
+    shrunk = f"the inner raceway has shrunk by {-1e6 * radial:.3g} um (kinematics.radial_expansion = {kinematics.radial_expansion:g} m)"
+    warm = ", ".join(
+        f"mounting.{key} = {value:g} {'K' if 'temperature' in key else 'm'}"
+        for key, value in model.scene.mounting.changes.items()
+    )
     return (
-        f"The preload of {bearing.preload:g} N is gone: both rows are loose, as the inner raceway has shrunk by "
-        f"{-1e6 * radial_growth(model.scene):.3g} um (kinematics.radial_expansion = {kinematics.radial_expansion:g} m) since they "
-        "were mounted. Raise bearing.preload, shrink it less, or take preload_kind = 'spring'."
+        f"The preload of {bearing.preload:g} N is gone: both rows are loose, as {shrunk if not warm else f'the grooves have grown apart ({warm})'} "
+        "since they were mounted. Raise bearing.preload, shrink it less, or take preload_kind = 'spring'."
     )
 
 

@@ -44,6 +44,8 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
     )
     refuse(scene.spin_changes and not compiled, *_slow(scene), why)
+    why = "does not follow a speed that changes: set it false, or give one speed with kinematics.spin_speed_rpm"
+    refuse(kinematics.ball_growth and scene.spin_changes, "kinematics.ball_growth", True, why)
     faults += growth_faults(scene)
     _refuse_different_rows(scene, refuse)
     if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:

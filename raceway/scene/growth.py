@@ -47,16 +47,40 @@ def grooves(scene: Scene, row: int = 0) -> Grooves:
     to_inner, to_outer = ((f - 0.5) * b.ball_diameter for f in (b.conformity_inner, b.conformity_outer))
     by_inner = b.rings.thermal_expansion * warm.inner_temperature
     by_outer = b.rings.thermal_expansion * warm.outer_temperature
-    by_ball = b.balls.thermal_expansion * warm.ball_temperature
+    ball = b.balls.thermal_expansion * warm.ball_temperature * half
+    if scene.kinematics.ball_growth:
+        ball += ball_growth(b, scene.spin_speed)
     circle = 0.5 * b.pitch_diameter + to_inner * cos(angle)
     other = 0.5 * b.pitch_diameter - to_outer * cos(angle)
     fits = inner_fit(scene, b) - outer_fit(scene, b)
     return Grooves(
         axial=(by_inner * to_inner + by_outer * to_outer) * sin(angle) + side * (by_inner - by_outer) * place,
         radial=radial_growth(scene, row) + fits + by_inner * circle - by_outer * other,
-        inner=by_inner * (to_inner + half) - by_ball * half,
-        outer=by_outer * (to_outer + half) - by_ball * half,
+        inner=by_inner * (to_inner + half) - ball,
+        outer=by_outer * (to_outer + half) - ball,
     )
+
+
+def ball_growth(bearing: Bearing, spin_speed: float) -> float:
+    """Centrifugal growth of a ball's radius at its equator, where it rolls [m].
+
+    Notes
+    -----
+    A free elastic sphere of the radius R that turns with w_b grows there by
+    rho w_b^2 R^3 / E (2 (1 - 2 nu) / 15 + (1 + nu) (2 + nu) / (3 (7 + 5 nu))): the solution of the equations of elasticity in the
+    second spherical harmonic.  A ball that rolls on a standing outer ring at the free contact angle has, with g = D cos(alpha)/d_m,
+    w_b = w (d_m / (2 D) (1 - g^2) - (1 - g) / 2) about an axis next to the bearing's.
+
+    References
+    ----------
+    Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., chapter XI (solid sphere under a body force).
+    """
+    d, dm, ball = bearing.ball_diameter, bearing.pitch_diameter, bearing.balls
+    g = d * cos(bearing.contact_angle) / dm
+    speed = spin_speed * (0.5 * dm / d * (1.0 - g**2) - 0.5 * (1.0 - g))
+    nu = ball.poisson
+    shape = 2.0 * (1.0 - 2.0 * nu) / 15.0 + (1.0 + nu) * (2.0 + nu) / (3.0 * (7.0 + 5.0 * nu))
+    return float(shape * ball.density * speed**2 * (0.5 * d) ** 3 / ball.young)
 
 
 def inner_fit(scene: Scene, bearing: Bearing) -> float:

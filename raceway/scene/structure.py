@@ -258,7 +258,9 @@ def _mistakes(error: BaseException, value: object, cls: Any, path: str) -> list[
         ]
     if isinstance(error, cattrs.errors.IterableValidationError) and isinstance(value, list | tuple):
         places, _ = error.group_exceptions()
-        return [m for inner, note in places for m in _mistakes(inner, value[int(note.index)], note.type, f"{path}[{note.index}]")]
+        return [
+            m for inner, note in places for m in _mistakes(inner, value[int(note.index)], note.type, f"{path}[{note.index}]")
+        ]
     if isinstance(error, cattrs.errors.BaseValidationError):
         return [m for inner in error.exceptions for m in _mistakes(inner, value, cls, path)]
     shown = None if isinstance(value, dict) else value

@@ -375,6 +375,7 @@ class Kinematics:
     )
     radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
     ring_growth: bool = option(False, help="adds the centrifugal growth of the inner ring")
+    ball_growth: bool = option(False, help="adds the centrifugal growth of the balls")
 
 
 @attrs.frozen

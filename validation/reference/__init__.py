@@ -5,6 +5,7 @@ Nothing here imports ``raceway``: every number is computed a second time, from p
 hertz      exact elliptic Hertz by quadrature and root finding
 half_space  stresses below Hertz's pressure by quadrature of point loads
 ring       rigid-ring bearing: balls in series (weightless) or with centrifugal force, force and tangent of the ring
+row_set    rows mirrored, placed and pressed together on one shaft
 statics    equilibrium by scipy's root finders
 shooting   periodic motion by DOP853 and Newton on the monodromy matrix; 1x dynamic stiffness
 """

@@ -63,9 +63,12 @@ class Condensed:
         if not scene.bearing.equal_rows:
             why = "condensed bodies have one section for the rings of all rows: leave out what differs, or take bodies.kind = 'rigid'"
             faults.append(Mistake("bearing.row", None, why))
-        for key, value in scene.mounting.changes.items() if _nodal(scene) else ():
+        grown = {f"mounting.{key}": value for key, value in scene.mounting.changes.items()}
+        if scene.kinematics.ball_growth:
+            grown["kinematics.ball_growth"] = 1.0
+        for key, value in grown.items() if _nodal(scene) else ():
             why = "changes the shapes that surface points lie on: take contact.discretisation = 'resultant', or kinematics.radial_expansion"
-            faults.append(Mistake(f"mounting.{key}", value, why))
+            faults.append(Mistake(key, value, why))
         unmeshed = unrefined(scene, "sections of condensed bodies")
         faults += unmeshed
         faults += seat_faults(scene)

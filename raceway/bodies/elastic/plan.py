@@ -190,6 +190,8 @@ def elastic_faults(scene: Scene) -> list[Mistake]:
     refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
     why = f"elastic bodies are one row of balls: use 'single', {other}"
     refuse(len(b.rows) > 1, "bearing.arrangement" if not b.row else "bearing.row", b.signs if b.row else b.arrangement, why)
+    why = f"balls of elastic bodies do not turn: set it false, {other}"
+    refuse(kinematics.ball_growth, "kinematics.ball_growth", True, why)
     why = f"fits and temperatures change the shape of elastic bodies: give kinematics.radial_expansion instead, {other}"
     for key, value in scene.mounting.changes.items():
         refuse(True, f"mounting.{key}", value, why)

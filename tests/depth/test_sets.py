@@ -1,0 +1,281 @@
+"""Sets of rows: names, equal and different rows against independent rings, preloads of every kind, bad input."""
+
+from __future__ import annotations
+
+from math import radians
+
+import attrs
+import numpy as np
+import pytest
+
+from raceway import SceneError, build_model, make_plan, scene_from_dict
+from raceway.bodies.mounting import preload_table
+from raceway.errors import ConvergenceError
+from raceway.pipeline.settle import settle
+from raceway.scene.sets import NAMES
+from raceway.studies.limits.study import axial_limits
+from validation.command_line import EXAMPLES, invoke
+from validation.reference.ring import Ring
+from validation.reference.row_set import RowSet, press, press_together
+
+DISTANCE = 16e-3
+#: Equilibria are solved to 1e-11; the references' Hertz factors, by quadrature and root finding, agree to 1e-9.
+SAME = 1e-8
+
+
+def scene(arrangement="TBT", preload=200.0, bearing=None, **tables):
+    given = {"preset": "B7206E", "arrangement": arrangement, "row_distance": DISTANCE, "preload": preload, **(bearing or {})}
+    given = {key: value for key, value in given.items() if value is not None}
+    kinematics = {"ball_inertia": False, **tables.pop("kinematics", {})}
+    return scene_from_dict({"title": "set", "bearing": given, "kinematics": kinematics, **tables})
+
+
+def built(*args, **more):
+    one = scene(*args, **more)
+    model = build_model(one, make_plan(one))
+    return model, settle(model)
+
+
+def ring(angle=25.0, balls=12, spin_rpm=0.0, first=0.0, diameter=9.525e-3):
+    return Ring(
+        diameter,
+        46e-3,
+        balls,
+        radians(angle),
+        0.522,
+        0.522,
+        spin_speed=spin_rpm * np.pi / 30.0,
+        first_azimuth=radians(first),
+    )
+
+
+@pytest.mark.parametrize(
+    ("word", "signs"),
+    [("TBT", "++-"), ("DBD", "++-"), ("QBC", "++--"), ("DBB", "++--"), ("DTBT", "++--"), ("QBT", "+++-"), ("PT", "+++++")],
+)
+def test_names_say_how_rows_face(word, signs):
+    rows = scene(word, None).bearing.rows
+    assert [side for side, _ in rows] == [1.0 if sign == "+" else -1.0 for sign in signs]
+    middle = 0.5 * (len(signs) - 1)
+    assert [place for _, place in rows] == pytest.approx([(k - middle) * DISTANCE for k in range(len(signs))])
+
+
+def test_rows_face_to_face_stand_the_other_way_round():
+    back, face = (scene(word, None).bearing.rows for word in ("TBT", "TFT"))
+    assert [side for side, _ in back] == [side for side, _ in face]
+    assert [place for _, place in back] == pytest.approx([-place for _, place in face])
+    assert scene("++-", None).bearing.rows == back
+
+
+def test_every_name_is_braced_or_in_tandem():
+    for word in NAMES:
+        sides = {side for side, _ in scene(word, None).bearing.rows}
+        assert (len(sides) == 2) == (word not in ("single", "DT", "DTD", "TT", "QT", "PT"))
+
+
+@pytest.mark.parametrize(("word", "rows"), [("DB", 1), ("TBT", 2), ("QBT", 3)])
+def test_rows_that_were_ground_share_their_offset(word, rows):
+    """n rows against one, each ground for P0: F^(2/3) (1 + n^(-2/3)) = 2 P0^(2/3) at a constant angle, met to 1 % at 20 N."""
+    model, now = built(word, 20.0, {"preload_of": "row"})
+    found = preload_table(model, now)
+    assert found["mounted_n"] / 20.0 == pytest.approx((2.0 / (1.0 + rows ** (-2.0 / 3.0))) ** 1.5, rel=0.01)
+    offset = press(ring(), 20.0)
+    expected = RowSet([ring() for _ in range(rows + 1)], [1.0] * rows + [-1.0], [0.0] * (rows + 1), [offset] * (rows + 1))
+    assert found["rows_n"] == pytest.approx(expected.rows(expected.settle(np.zeros(3))), rel=SAME)
+
+
+def test_twice_a_pair_is_twice_as_stiff():
+    """Of equal rows in tandem back to back: the offset stays that of a pair."""
+    (_, pair), (_, four) = (built(word, 200.0, {"preload_of": "row"}) for word in ("DB", "QBC"))
+    np.testing.assert_allclose(np.diag(four.stiffness)[:3], 2.0 * np.diag(pair.stiffness)[:3], rtol=SAME)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_rows_in_tandem_share_a_load(count):
+    """The deflection is that of one row under its share, which Hertz's contacts make n^(-2/3) at a constant angle."""
+    word = {2: "DT", 3: "TT", 4: "QT"}[count]
+    deflections = [built(kind, None, load={"axial": 50.0})[1].displacement[0] for kind in ("single", word)]
+    assert deflections[1] == pytest.approx(press(ring(), 50.0 / count), rel=SAME)
+    assert deflections[1] / deflections[0] == pytest.approx(count ** (-2.0 / 3.0), rel=0.02)
+
+
+@pytest.mark.parametrize("rpm", [0.0, 15000.0])
+def test_rows_of_different_bearings(rpm):
+    """Angle, ball count, ball diameter and azimuth of a row are its own: force and tangent at a general motion."""
+    own = [{}, {"contact_angle_deg": 15.0, "first_ball_azimuth_deg": 7.0}, {"ball_count": 10, "ball_diameter": 10e-3}]
+    kinematics = {"ball_inertia": rpm > 0.0, "spin_speed_rpm": rpm}
+    model, now = built("TBT", 200.0, {"row": own}, kinematics=kinematics, load={"axial": 60.0, "radial": [50.0, 20.0]})
+    still = [ring(), ring(15.0, first=7.0), ring(balls=10, diameter=10e-3)]
+    first, last = press_together(still[:2], 200.0), press(still[2], 200.0)
+    rings = [ring(spin_rpm=rpm), ring(15.0, spin_rpm=rpm, first=7.0), ring(balls=10, diameter=10e-3, spin_rpm=rpm)]
+    expected = RowSet(rings, [1.0, 1.0, -1.0], [-DISTANCE, 0.0, DISTANCE], [first, first, last])
+    q = expected.settle(np.array([60.0, 50.0, 20.0]))
+    assert now.displacement == pytest.approx(q, rel=1e-6, abs=1e-13)
+    off = now.displacement + np.array([1e-7, -3e-7, 5e-7, 2e-5, -1e-5])
+    here, (force, tangent) = model.system.evaluate(off), expected(off)
+    scale = np.array([1.0, 1.0, 1.0, 1.0 / 0.023, 1.0 / 0.023])
+    np.testing.assert_allclose(here.force * scale, force * scale, atol=1e-6 * np.abs(force * scale).max())
+    scaled = tangent * scale[:, None] * scale
+    np.testing.assert_allclose(here.stiffness * scale[:, None] * scale, scaled, atol=1e-5 * np.abs(scaled).max())
+    assert preload_table(model, now)["rows_n"] == pytest.approx(expected.rows(q), rel=1e-5)
+
+
+def test_a_row_that_repeats_its_bearing_changes_no_digit():
+    plain = built("TBT", 200.0, load={"radial": [80.0, 0.0]})[1]
+    told = {"ball_diameter": 9.525e-3, "pitch_diameter": 46e-3, "bore": 30e-3, "outer_diameter": 62e-3, "width": 16e-3}
+    places = [{"direction": sign, "position": (k - 1) * DISTANCE} for k, sign in enumerate("++-")]
+    for rows in ([{}, told, {}], places):
+        word = "TBT" if rows[0] == {} else None
+        found = built(word, 200.0, {"row": rows}, load={"radial": [80.0, 0.0]})[1]
+        assert found.stiffness.tolist() == plain.stiffness.tolist()
+
+
+def test_peak_pressures_and_edges_are_those_of_each_row():
+    """A row with other balls has its own ellipses: pressures of a set are those of its rows as single bearings."""
+    model, now = built("DB", 300.0, {"row": [{}, {"ball_diameter": 8e-3}]})
+    z = model.system.ball_count
+    found = model.bearing.contact_ellipse(model, 0, now.contact_force[:z])[0]
+    for row, own in enumerate(({}, {"ball_diameter": 8e-3})):
+        alone, at = built("single", None, own, load={"axial": 300.0})
+        expected = alone.bearing.contact_ellipse(alone, 0, at.contact_force[:12])[0]
+        np.testing.assert_allclose(found[row * 12 : row * 12 + 12], expected, rtol=SAME)
+
+
+def test_both_forces_given():
+    """Under their difference as an axial load both directions carry their own."""
+    model, now = built("QBT", 300.0, {"second_preload": 120.0}, load={"axial": 180.0})
+    rows = preload_table(model, now)["rows_n"]
+    assert (sum(rows[:3]), rows[3]) == pytest.approx((300.0, 120.0), rel=SAME)
+    assert abs(now.displacement[0]) < 1e-13
+
+
+@pytest.mark.parametrize("own", [None, [{}, {"contact_angle_deg": 15.0}, {}]])
+def test_rows_on_a_spring_share_its_force(own):
+    """Two rows on the spring: together its force, under any load; the first one carries the rest."""
+    bearing = {"preload_kind": "spring", **({} if own is None else {"row": own})}
+    kinematics = {"ball_inertia": True, "spin_speed_rpm": 20000.0, "radial_expansion": 2e-6}
+    model, now = built("+--", 300.0, bearing, load={"axial": 90.0}, kinematics=kinematics)
+    rows = preload_table(model, now)["rows_n"]
+    assert (rows[0], rows[1] + rows[2]) == pytest.approx((390.0, 300.0), rel=SAME)
+
+
+def test_a_spring_has_its_travel():
+    more = {"preload_kind": "spring", "spring_travel": 1e-6}
+    with pytest.raises(ConvergenceError, match=r"would slide .* beyond `bearing.spring_travel` = 1e-06 m.*more travel"):
+        built("DB", 300.0, more, load={"axial": 500.0})
+    assert built("DB", 300.0, {**more, "spring_travel": 50e-6}, load={"axial": 500.0})[1].displacement[0] > 0.0
+
+
+@pytest.mark.parametrize("rpm", [0.0, 20000.0])
+def test_preload_of_a_running_set(rpm):
+    """Offsets are ground at standstill; centrifugal forces then press the rows together."""
+    model, now = built("TBT", 200.0, kinematics={"ball_inertia": True, "spin_speed_rpm": rpm})
+    shifts = [press(ring(), 100.0)] * 2 + [press(ring(), 200.0)]
+    expected = RowSet([ring(spin_rpm=rpm) for _ in range(3)], [1.0, 1.0, -1.0], [-DISTANCE, 0.0, DISTANCE], shifts)
+    assert preload_table(model, now)["running_n"] == pytest.approx(expected.rows(expected.settle(np.zeros(3)))[2], rel=1e-6)
+
+
+def test_condensed_rows():
+    """Elastic rings and balls: a set of equal rows is its rows, too."""
+    (_, pair), (_, four) = (
+        built(word, 200.0, {"preload_of": "row"}, bodies={"kind": "condensed"}) for word in ("DB", "QBC")
+    )
+    np.testing.assert_allclose(np.diag(four.stiffness)[:3], 2.0 * np.diag(pair.stiffness)[:3], rtol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("word", "told"), [("DB", (2.95, 2.95)), ("TBT", (5.91, 2.95)), ("QBC", (5.91, 5.91)), ("QBT", (8.87, 2.95))]
+)
+def test_lift_off(word, told):
+    """Against an independent program's digits (1 %), the reference (1e-8) and the constant angle: n 2^1.5, less than 5 % below."""
+    found = axial_limits(scene(word, 200.0, {"preload_of": "row"}))
+    model, _ = built(word, 200.0, {"preload_of": "row"})
+    sides, places = zip(*model.scene.bearing.rows, strict=True)
+    offset = press(ring(), 200.0)
+    expected = RowSet([ring() for _ in sides], list(sides), list(places), [offset] * len(sides))
+    for one, sense, ratio in zip(found, (1.0, -1.0), told, strict=True):
+        assert one.over_preload == pytest.approx(ratio, rel=0.01)
+        assert one.lift_off.load_n == pytest.approx(expected.lift_off(sense), rel=1e-7)
+        rows = sides.count(sense)
+        assert 1.0 < one.over_preload / (rows * 2.0**1.5) < 1.05
+
+
+def test_limits_are_met_where_they_say():
+    """A run under the limiting loads: the row has left, the pressure is the limit."""
+    bearing = {"row": [{}, {}, {"contact_angle_deg": 15.0}]}
+    for one in axial_limits(scene("TBT", 200.0, bearing), 2.5e9):
+        model, now = built("TBT", 200.0, bearing, load={"axial": one.lift_off.load_n})
+        rows = preload_table(model, now)["rows_n"]
+        # At lift-off a force goes with the 1.5th power of a displacement that is solved to 1e-11 of all forces.
+        assert rows[one.lift_off.row - 1] < 1e-4 * 200.0
+        model, now = built("TBT", 200.0, bearing, load={"axial": one.pressure.load_n})
+        z = model.system.ball_count
+        peak = model.bearing.contact_ellipse(model, 0, now.contact_force[:z])[0]
+        assert peak.max() == pytest.approx(2.5e9, rel=1e-6)
+        assert model.basis.row[int(peak.argmax())] + 1 == one.pressure.row
+        assert one.limiting == min(abs(one.pressure.load_n), abs(one.edge.load_n))
+
+
+def test_limits_of_a_sprung_set():
+    """Rows on a spring never leave; the others do under the spring's force."""
+    along, against = axial_limits(scene("TBT", 200.0, {"preload_kind": "spring"}))
+    assert along.lift_off.load_n is None and along.limiting is not None
+    assert against.lift_off.load_n == pytest.approx(-200.0, rel=1e-6)
+
+
+def test_the_command_prints_limits():
+    example = EXAMPLES / "set_tbt.toml"
+    told = invoke("study", "limits", example, "--json")
+    assert told.exit_code == 0 and '"over_preload": 5.9' in told.output
+    assert "5.91" in invoke("study", "limits", example).output
+    assert "must be a pressure" in invoke("study", "limits", example, "--pressure", "-1").output
+
+
+@pytest.mark.parametrize(
+    ("bearing", "words"),
+    [
+        ({"arrangement": "DBX"}, r"must be one of 'single', 'DB'.*\+\+-"),
+        ({"arrangement": "DBT"}, "is ambiguous: three rows in NTN's catalogue and four in NSK's: write 'TBT'"),
+        ({"arrangement": ""}, "must be one of"),
+        ({"arrangement": "TT"}, "needs rows that brace each other.*the 3 rows of 'TT' face one way only.*load.axial"),
+        ({"arrangement": "--"}, "needs rows that brace each other"),
+        ({"row": [{}, {}]}, r"`row` has 2 tables, but arrangement = 'TBT' is 3 rows"),
+        ({"arrangement": "single", "row": [{}]}, r"`row\[0\]` has no `direction`"),
+        ({"row": [{}, {}, {"direction": "left"}]}, r"bearing.row\[2\].direction` = 'left'.*must be one of '\+', '-'"),
+        ({"row": [{}, {"angle": 3}, {}]}, r"bearing.row\[1\].angle` = 3: unknown key"),
+        ({"row": [{}, {"preset": "nothing"}, {}]}, r"bearing.row\[1\].preset` = 'nothing': no such preset"),
+        ({"row": [{}, {"ball_count": 99}, {}]}, r"`row\[1\]`: `ball_count` = 99 .* do not fit"),
+        ({"row": [{}, {"preload": 10.0}, {}]}, r"`row\[1\].preload` .* set preload_of = 'row'"),
+        ({"row": "TBT"}, "must be a list of tables, not a string"),
+        ({"second_preload": 10.0, "preload_of": "row"}, "set preload_of = 'set'"),
+        ({"preload": 0.0, "second_preload": 10.0}, "needs a `preload`"),
+        ({"preload_kind": "spring", "preload_of": "row"}, "with preload_kind = 'spring' use 'set'"),
+        ({"preload_kind": "spring", "spring_travel": 0.0}, "a spring without travel is no spring.*preload_kind = 'rigid'"),
+    ],
+)
+def test_bad_sets_are_refused(bearing, words):
+    with pytest.raises(SceneError, match=words):
+        scene("TBT", bearing=bearing)
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "balls travel at different speeds"),
+        ({"kinematics": {"ball_inertia": True, "gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "moments are computed"),
+        ({"contact": {"friction": 0.1}}, "friction is computed for balls of one kind"),
+        ({"bodies": {"kind": "condensed"}}, "one section for the rings of all rows"),
+        ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "elastic bodies are one row of balls"),
+    ],
+)
+def test_what_different_rows_cannot_have_is_refused(tables, words):
+    one = scene("DB", 200.0, {"row": [{}, {"contact_angle_deg": 15.0}]}, **tables)
+    with pytest.raises(SceneError, match=words):
+        make_plan(one)
+
+
+def test_a_set_goes_through_a_file(tmp_path):
+    """Every key of a scene comes back from its tables, rows too; numbers with units in rows are read."""
+    one = scene("TBT", 200.0, {"row": [{}, {"position": "1 mm", "preset": "B7206C"}, {}]})
+    assert one.bearing.rows[1] == (1.0, 1e-3) and one.bearing.of_rows[1].contact_angle_deg == 15.0
+    assert attrs.evolve(scene_from_dict(one.to_dict()), given=None, source={}) == attrs.evolve(one, given=None, source={})

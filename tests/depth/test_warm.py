@@ -1,0 +1,231 @@
+"""Growth of grooves and balls by speed, fits and temperatures, against elasticity solved here and an independent ring."""
+
+from __future__ import annotations
+
+from math import radians
+
+import numpy as np
+import pytest
+
+from raceway import SceneError, build_model, make_plan, scene_from_dict
+from raceway.bodies.mounting import preload_table
+from raceway.errors import ConvergenceError
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.scene.growth import ball_growth, inner_fit, outer_fit, running_interference
+from validation.reference.ring import Ring
+from validation.reference.row_set import RowSet, press, warmed
+
+DISTANCE = 16e-3
+STEEL = 12.5e-6
+TEMPERATURES = {"inner_temperature": 14.0, "outer_temperature": 5.0, "ball_temperature": 11.0}
+
+
+def scene(word="DB", preload=300.0, kinematics=None, bearing=None, **mounting):
+    given = {"preset": "B7206C", "arrangement": word, "row_distance": DISTANCE, "preload": preload, **(bearing or {})}
+    given = {key: value for key, value in given.items() if value is not None}
+    tables = {"title": "warm", "bearing": given, "kinematics": {"ball_inertia": False, **(kinematics or {})}}
+    return scene_from_dict({**tables, "mounting": mounting})
+
+
+def settled(one):
+    model = build_model(one, make_plan(one))
+    return model, settle(model)
+
+
+def ring():
+    return Ring(9.525e-3, 46e-3, 12, radians(15.0), 0.522, 0.522)
+
+
+@pytest.mark.parametrize("word", ["DB", "DF", "TBT"])
+def test_preload_of_a_warm_set(word):
+    """Circles, grooves, balls and the distances of the rows grow, each at its temperature."""
+    one = scene(word, **TEMPERATURES)
+    model, now = settled(one)
+    sides, places = zip(*one.bearing.rows, strict=True)
+    inner, outer, ball = (STEEL * TEMPERATURES[f"{name}_temperature"] for name in ("inner", "outer", "ball"))
+    mounted = {1.0: press(ring(), 300.0 / sides.count(1.0)), -1.0: press(ring(), 300.0)}
+    shifts = [mounted[side] + side * (inner - outer) * place for side, place in zip(sides, places, strict=True)]
+    expected = RowSet([warmed(ring(), inner, outer, ball) for _ in sides], list(sides), list(places), shifts)
+    q = expected.settle(np.zeros(3))
+    assert now.displacement == pytest.approx(q, rel=1e-6, abs=1e-12)
+    assert preload_table(model, now)["rows_n"] == pytest.approx(expected.rows(q), rel=1e-6)
+    assert preload_table(model, now)["mounted_n"] == 300.0
+
+
+def test_one_temperature_changes_next_to_nothing():
+    """Everything keeps its shape; of the offset that was built in 4e-4 are missing, and 1.5 times that of the force."""
+    same = dict.fromkeys(TEMPERATURES, 30.0)
+    (_, cold), (model, warm) = settled(scene()), settled(scene(**same))
+    assert preload_table(model, warm)["running_n"] == pytest.approx(300.0, rel=1e-3)
+    np.testing.assert_allclose(np.diag(warm.stiffness)[:3], np.diag(cold.stiffness)[:3], rtol=1e-3)
+
+
+def test_a_longer_shaft_loosens_rows_back_to_back_and_presses_rows_face_to_face():
+    def running(word, distance):
+        model, now = settled(scene(word, bearing={"row_distance": distance}, inner_temperature=6.0))
+        return preload_table(model, now)["running_n"]
+
+    assert running("DB", 40e-3) < running("DB", 16e-3) < running("DF", 16e-3) < running("DF", 40e-3)
+
+
+def test_a_held_displacement_and_condensed_bodies_warm_up_alike():
+    """Growth is built into the same constants for both kinds of bodies: the preload rises by the same part, to some percent."""
+    found = []
+    for kind in ("rigid", "condensed"):
+        tables = {**scene(**TEMPERATURES).to_dict(), "bodies": {"kind": kind}}
+        model, now = settled(scene_from_dict(tables))
+        found.append(preload_table(model, now)["running_n"])
+    assert found[0] > 310.0 and found[1] == pytest.approx(found[0], rel=0.05)
+
+
+def lame(inside, outside, pressures, radius, steel):
+    """Radial displacement [m] of a plane-stress annulus under pressures inside and outside [Pa], at a radius."""
+    a, b, (p, q) = inside, outside, pressures
+    first = (p * a**2 - q * b**2) / (b**2 - a**2)
+    second = (p - q) * a**2 * b**2 / (b**2 - a**2)
+    return ((1.0 - steel.poisson) * first * radius + (1.0 + steel.poisson) * second / radius) / steel.young
+
+
+@pytest.mark.parametrize("hole", [0.0, 12e-3])
+def test_fits_against_two_annuli(hole):
+    """The pressure at which both surfaces meet, from each body's own displacement."""
+    one = scene(shaft_interference=10e-6, shaft_bore=hole, housing_interference=6e-6, housing_diameter=90e-3)
+    b = one.bearing
+    race, bore, steel = 0.5 * (b.pitch_diameter - b.ball_diameter), 0.5 * b.bore, b.rings
+    core = max(0.5 * hole, 1e-9)
+    unit = lame(bore, race, (1.0, 0.0), bore, steel) - lame(core, bore, (0.0, 1.0), bore, steel)
+    assert inner_fit(one, b) == pytest.approx(lame(bore, race, (5e-6 / unit, 0.0), race, steel), rel=1e-9)
+    race, seat, wide = 0.5 * (b.pitch_diameter + b.ball_diameter), 0.5 * b.outer_diameter, 45e-3
+    unit = lame(seat, wide, (1.0, 0.0), seat, steel) - lame(race, seat, (0.0, 1.0), seat, steel)
+    assert outer_fit(one, b) == pytest.approx(lame(race, seat, (0.0, 3e-6 / unit), race, steel), rel=1e-9)
+
+
+def test_a_fit_is_a_radial_expansion():
+    """Inner raceways out, outer ones in: a set cannot tell them apart."""
+    one = scene(shaft_interference=4e-6, housing_interference=2e-6)
+    growth = inner_fit(one, one.bearing) - outer_fit(one, one.bearing)
+    assert growth > 2e-6
+    (_, fitted), (_, given) = settled(one), settled(scene(kinematics={"radial_expansion": growth}))
+    np.testing.assert_allclose(fitted.stiffness, given.stiffness, rtol=1e-10)
+
+
+def test_speed_loosens_a_fit():
+    """As much as a solid shaft grows less than the ring's bore: annuli under their own centrifugal force, by finite differences."""
+    one = scene(kinematics={"ring_growth": True, "spin_speed_rpm": 30000.0}, shaft_interference=20e-6)
+    b = one.bearing
+    steel, w = b.rings, one.spin_speed
+    outside = 0.5 * (b.pitch_diameter - b.ball_diameter) + 0.2 * b.ball_diameter
+
+    def bore_growth(inside, outside, at):
+        r = np.linspace(inside, outside, 1001)
+        h, n = r[1] - r[0], len(r)
+        matrix, right = np.zeros((n, n)), -(1.0 - steel.poisson**2) * steel.density * w**2 / steel.young * r * h**2
+        k = np.arange(1, n - 1)
+        matrix[k, k - 1], matrix[k, k + 1] = 1.0 - 0.5 * h / r[k], 1.0 + 0.5 * h / r[k]
+        matrix[k, k] = -2.0 - (h / r[k]) ** 2
+        matrix[0, :3], matrix[-1, -3:] = [-1.5, 2.0, -0.5], [0.5, -2.0, 1.5]
+        matrix[0, 0] += steel.poisson * h / r[0]
+        matrix[-1, -1] += steel.poisson * h / r[-1]
+        right[[0, -1]] = 0.0
+        return float(np.linalg.solve(matrix, right)[at])
+
+    lost = 2.0 * (bore_growth(0.5 * b.bore, outside, 0) - bore_growth(1e-5, 0.5 * b.bore, -1))
+    assert running_interference(one, b) == pytest.approx(20e-6 - lost, rel=1e-3)
+
+
+def test_growth_of_a_ball():
+    """A sphere under its centrifugal force, by Ritz's method: displacements in powers of r and z up to the third."""
+    b = scene().bearing
+    nu, rho, radius = b.balls.poisson, b.balls.density, 0.5 * b.ball_diameter
+    u = ball_growth(b, 1000.0)
+    g = b.ball_diameter * np.cos(b.contact_angle) / b.pitch_diameter
+    w = 1000.0 * (0.5 * b.pitch_diameter / b.ball_diameter * (1.0 - g**2) - 0.5 * (1.0 - g))
+    # Unit sphere, E = rho w^2 = 1; u_s = s (a + b s^2 + c z^2), u_z = z (d + e s^2 + f z^2) are the solution's own terms.
+    x, wx = np.polynomial.legendre.leggauss(12)
+    rr, wr = 0.5 * (x + 1.0), 0.5 * wx
+    r, c = np.meshgrid(rr, x, indexing="ij")
+    s, z, weight = r * np.sqrt(1.0 - c**2), r * c, np.outer(wr, wx) * r**2
+    zero, one = np.zeros_like(s), np.ones_like(s)
+    # Strains (ss, tt, zz, sz) of each term.
+    strains = [
+        (one, one, zero, zero), (3 * s**2, s**2, zero, zero), (z**2, z**2, zero, 2 * s * z),
+        (zero, zero, one, zero), (zero, zero, s**2, 2 * s * z), (zero, zero, 3 * z**2, zero),
+    ]  # fmt: skip
+    along = [s, s**3, s * z**2, zero, zero, zero]
+    lam, mu = nu / ((1 + nu) * (1 - 2 * nu)), 0.5 / (1 + nu)
+    stiff, load = np.zeros((6, 6)), np.zeros(6)
+    for i, (a1, a2, a3, a4) in enumerate(strains):
+        load[i] = (weight * s * along[i]).sum()
+        for j, (b1, b2, b3, b4) in enumerate(strains):
+            density = lam * (a1 + a2 + a3) * (b1 + b2 + b3) + 2 * mu * (a1 * b1 + a2 * b2 + a3 * b3) + mu * a4 * b4
+            stiff[i, j] = (weight * density).sum()
+    found = np.linalg.solve(stiff, load)
+    assert u == pytest.approx((found[0] + found[1]) * rho * w**2 * radius**3 / b.balls.young, rel=1e-9)
+
+
+def test_growing_balls_press_a_set():
+    kinematics = {"spin_speed_rpm": 40000.0}
+    (slow, a), (fast, b) = (settled(scene(kinematics={**kinematics, "ball_growth": on})) for on in (False, True))
+    assert preload_table(fast, b)["running_n"] > preload_table(slow, a)["running_n"] == pytest.approx(300.0, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("mounting", "kinematics", "words"),
+    [
+        ({"inner_temperature": 80.0}, {}, r"mounting.inner_temperature` = 80.*close the bearing: its grooves leave .* um too little room"),
+        ({"ball_temperature": 400.0}, {}, "mounting.ball_temperature` = 400.*close the bearing"),
+        ({"outer_temperature": 700.0}, {}, "mounting.outer_temperature` = 700.*open the bearing: balls would touch at"),
+        ({"shaft_interference": 80e-6}, {}, "mounting.shaft_interference` = 8e-05.*close the bearing"),
+        (
+            {"shaft_interference": 1e-6}, {"ring_growth": True, "spin_speed_rpm": 40000.0},
+            r"mounting.shaft_interference` = 1e-06: is lost at 4e\+04 r/min: the bore grows by .* comes loose",
+        ),
+        ({"shaft_interference": 1e-6, "shaft_bore": 40e-3}, {}, "mounting.shaft_bore` = 0.04: must be smaller than the bearing's bore"),
+        ({"housing_interference": 1e-6, "housing_diameter": 50e-3}, {}, "mounting.housing_diameter` = 0.05: must be larger than"),
+    ],
+)  # fmt: skip
+def test_growth_that_leaves_no_bearing_is_refused(mounting, kinematics, words):
+    with pytest.raises(SceneError, match=words):
+        make_plan(scene(kinematics=kinematics, **mounting))
+
+
+def test_fits_need_dimensions():
+    own = {
+        "ball_diameter": 9.525e-3,
+        "pitch_diameter": 46e-3,
+        "ball_count": 12,
+        "conformity_inner": 0.522,
+        "conformity_outer": 0.522,
+    }
+    one = scene("single", None, bearing={"preset": None, "row_distance": None, **own}, shaft_interference=1e-6)
+    with pytest.raises(SceneError, match="mounting.shaft_interference` = 1e-06: needs the bearing's `bore`"):
+        make_plan(one)
+
+
+def test_a_set_that_lost_its_preload_says_what_took_it():
+    """A hot housing takes the offset of two rows back to back; what nothing holds is told with the reason."""
+    with pytest.raises(ConvergenceError, match=r"preload of 300 N is gone.*mounting.outer_temperature = 30 K"):
+        run(scene(outer_temperature=30.0))
+
+
+@pytest.mark.parametrize(
+    ("bodies", "words"),
+    [
+        ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "give kinematics.radial_expansion instead"),
+        (
+            {"bodies": {"kind": "condensed"}, "contact": {"discretisation": "nodal"}},
+            "changes the shapes that surface points lie on",
+        ),
+    ],
+)
+def test_bodies_of_fixed_shape_refuse_temperatures(bodies, words):
+    tables = {**scene("single", None, inner_temperature=3.0).to_dict(), "load": {"axial": 100.0}, **bodies}
+    with pytest.raises(SceneError, match=words):
+        make_plan(scene_from_dict(tables))
+
+
+def test_temperatures_may_have_a_unit():
+    assert scene(inner_temperature="12.5 K").mounting.inner_temperature == 12.5
+    with pytest.raises(SceneError, match="inner_temperature"):
+        scene(inner_temperature="12.5 m")
