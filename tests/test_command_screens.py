@@ -56,6 +56,7 @@ COMMANDS = {
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),
     "study rig": ("study", "rig", EXAMPLES / "test_rig.toml", *RIG, "--no-pictures", "--out", "RIG"),
     "identify": ("identify", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--out", "OUT"),
+    "study limits": ("study", "limits", EXAMPLES / "set_tbt.toml"),
     "study map": ("study", "map", *MAP, "--processes", "0", "--no-pictures", "--out", "OUT"),
     "study article": ("study", "article", *SMALL, "--no-pictures", "--out", "OUT"),
     "view": ("view", MINIMAL, "--out", "OUT"),

@@ -23,6 +23,7 @@ from typing import Any
 import attrs
 
 from raceway.framework.registry import Registry
+from raceway.scene.structure import table_of_list
 from raceway.scene.file import STUDY_TABLES
 from raceway.scene.schema import keys
 from raceway.scene.tables import TABLES
@@ -49,7 +50,7 @@ Every mistake is reported at once, each with its path, the value, the rule and t
 
 A number of a key that has a unit may be text with another unit of the same dimension: `axial = "1 kN"`,
 `ball_diameter = "9.525 mm"`, `speed_rpm = "200 Hz"`, `radial = ["100 N", 0.0]`. It becomes a number in the key's unit while the
-scene is read. Known are m, N, Pa, g, s, Hz and rad with the prefixes n, u (µ), m, c, k, M and G, and in, min, deg, r, rev and rpm;
+scene is read. Known are m, N, Pa, g, s, Hz and rad with the prefixes n, u (µ), m, c, k, M and G, and in, min, deg, r, rev, rpm and K;
 products, quotients and powers are written as `N s/m`, `kg m2` or `N/mm^3`. In Python, quantities of pint are taken, too.
 
 `raceway check SCENE` validates, `raceway schema` prints the same declarations as a JSON schema for editors, `--set
@@ -75,6 +76,7 @@ _ORDER = (
     ("mesh", "mesher"),
     ("contact", "contact_law"),
     ("kinematics", None),
+    ("mounting", None),
     ("integrator", "integrator"),
     ("identifier", "identifier"),
 )
@@ -86,6 +88,8 @@ _NOTES = {
     "bodies": "What deforms; `formulation` and `hourglass` belong to `elastic` bodies ([how they move](elastic_dynamics.md)).",
     "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh, elastic bodies need one; meshing by itself needs no other table than "
     "[bearing] and this one.",
+    "mounting": "How rings are fitted and how warm they run, as given numbers: what that does to the grooves is added to the preload "
+    "([sets](sets.md)).",
     "rig": "Read by `raceway study rig` and `raceway identify` ([the rig](rig.md)); a run takes no notice of it.",
     "contact": "`discretisation` is `resultant` for rigid bodies, `nodal` for elastic ones; condensed bodies take both.",
 }
@@ -117,6 +121,9 @@ def _tables(cls: type, path: str) -> list[str]:
     for field in keys(cls):
         if attrs.has(field.type):
             inner += [f"### [{path}.{field.name}]\n\n{field.metadata.get('help', '')}\n", *_tables(field.type, path)]
+            continue
+        if (listed := table_of_list(field.type)) is not None:
+            inner += [f"### [[{path}.{field.name}]]\n\n{field.metadata.get('help', '')}\n", *_tables(listed, path)]
             continue
         cells = f"`{field.name}`", field.metadata.get("unit", ""), _default(field.default), field.metadata.get("rule", "")
         rows.append("| " + " | ".join((*cells, field.metadata.get("help", ""))) + " |")

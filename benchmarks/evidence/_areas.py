@@ -12,7 +12,7 @@ AREAS = {
         bodies/__init__ bodies/basis bodies/contact_error bodies/equilibrium bodies/grooves bodies/model
         bodies/modules bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
         core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/ring core/ring/increment core/ring/root
-        core/ring/system data/bearings bodies/pressure pipeline/settle scene/inner_ring""",
+        core/ring/system data/bearings bodies/pressure pipeline/settle scene/growth scene/inner_ring""",
     "motion": """
         core/excitations core/schemes/advance core/ring/changing_speed core/ring/energy core/ring/friction core/schemes core/ring/surrogate core/ring/orbit
         core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__
@@ -33,9 +33,10 @@ AREAS = {
     "plan": "framework/probe pipeline/allowance planning",
     "scene": """
         framework/options planning/implausible scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
-        scene/tables scene/units scene/unused""",
+        scene/sets scene/tables scene/units scene/unused""",
     "article": "studies/article data/article",
     "compare": "studies/compare",
+    "limits": "studies/limits",
     "map": "studies/map data/map",
     "measured": "studies/measured storage/number_table",
     "precision": "studies/precision studies/many/measured_run",
@@ -55,7 +56,7 @@ AREAS = {
         framework/shown framework/sources front pipeline/facts pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
         storage/files storage/tables storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         data/article_elastic studies/article/command studies/article/elastic studies/article/screen studies/compare/command studies/compare/front studies/compare/labelled studies/compare/screen studies/map/command
-        studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
+        studies/limits/command studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
         studies/precision/labelled studies/precision/screen studies/rig/command studies/rig/screen
         studies/ross/command studies/ross/front studies/ross/points studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
         studies/sweep/store_command studies/verify/command studies/verify/screen studies/view/command studies/view/front studies/view/view studies/view/mesh_command
@@ -105,6 +106,7 @@ MEASURES = {
     "rig": "measured rig shaft examples/test_rig.toml",
     "ross": "ross shaft examples/ross_rotor.py",
     "running": "rigid motion",
+    "sets": "rigid scene limits examples/set_tbt.toml",
     "several_motions": "rigid motion periodic",
     "signals": "sweep raceway/commands/interrupt.py raceway/commands/console.py raceway/__main__.py",
     "speed": "rigid motion kernels",

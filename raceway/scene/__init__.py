@@ -1,6 +1,6 @@
 """The scene: what the user said.
 
-tables      its tables as frozen attrs classes, SI
+tables      its tables as frozen attrs classes, SI;  sets: rows of balls by their names and one by one
 given       a scene as the user gave it: file, text, dict or Scene, with changes
 file        TOML to scene, with ``--set`` changes
 structure   plain tables to attrs objects, strictly, every mistake with its path
@@ -10,5 +10,5 @@ catalogue   bearing presets
 requires    plug-ins that a scene needs
 rig         a test rig around the bearing
 unused      keys without effect, and those that a change makes so
-inner_ring  mass, inertia and growth of the inner ring from its dimensions
+inner_ring  mass, inertia and growth of the inner ring from its dimensions;  growth: of the grooves, by speed, fits, temperatures
 """
