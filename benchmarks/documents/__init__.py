@@ -23,9 +23,9 @@ from typing import Any
 import attrs
 
 from raceway.framework.registry import Registry
-from raceway.scene.structure import table_of_list
 from raceway.scene.file import STUDY_TABLES
 from raceway.scene.schema import keys
+from raceway.scene.structure import table_of_list
 from raceway.scene.tables import TABLES
 
 ROOT = Path(__file__).resolve().parents[2]

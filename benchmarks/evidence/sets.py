@@ -92,7 +92,9 @@ def _tandem() -> list[Row]:
     single = settle(_built(_scene("single", load=load))).displacement[0]
     for count, (word, printed) in _TANDEM.items():
         ratio = settle(_built(_scene(word, load=load))).displacement[0] / single
-        out.append(near(f"deflection of {count} rows in tandem over that of one, {_PRELOAD:g} N", ratio, printed, _CLOSE, COMMAND))
+        out.append(
+            near(f"deflection of {count} rows in tandem over that of one, {_PRELOAD:g} N", ratio, printed, _CLOSE, COMMAND)
+        )
     return out
 
 
@@ -192,7 +194,10 @@ _BAD: list[tuple[Tables, str]] = [
     ({"bearing": {"arrangement": "DB", "preload": 100.0}, "mounting": {"outer_temperature": 900.0}}, "open the bearing"),
     ({"bearing": {"arrangement": "DB", "preload": 100.0}, "mounting": {"outer_temperature": 60.0}}, "is gone"),
     ({"bearing": {"arrangement": "DB", "row": [{}]}}, "is 2 rows"),
-    ({"bearing": {"arrangement": "DB", "row": [{}, {"contact_angle_deg": 15}]}, "contact": {"friction": 0.1}}, "one kind only"),
+    (
+        {"bearing": {"arrangement": "DB", "row": [{}, {"contact_angle_deg": 15}]}, "contact": {"friction": 0.1}},
+        "one kind only",
+    ),
 ]
 
 
@@ -204,4 +209,10 @@ def _bad_input() -> Row:
         except RacewayError as error:
             told += words in str(error) and "Traceback" not in str(error)
     limit = f"{len(_BAD)} of {len(_BAD)}"
-    return Row("bad sets that are refused with one message that says why", f"{told} of {len(_BAD)}", limit, told == len(_BAD), COMMAND)
+    return Row(
+        "bad sets that are refused with one message that says why",
+        f"{told} of {len(_BAD)}",
+        limit,
+        told == len(_BAD),
+        COMMAND,
+    )

@@ -17,7 +17,8 @@ from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.closed_form import axial_approach
 from raceway.planning.plan import Plan
-from raceway.scene.inner_ring import radial_growth, ring_inertia
+from raceway.scene.growth import speed_growth
+from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.tables import Scene
 from raceway.storage.tables import Tables
 
@@ -151,8 +152,7 @@ def changing_speed(scene: Scene) -> ChangingSpeed | None:
     """What follows the speed of an excitation that changes it; None where the spin speed is steady."""
     if not scene.spin_changes:
         return None
-    growth = radial_growth(scene) - scene.kinematics.radial_expansion
-    return ChangingSpeed(scene.excitation.phase, scene.spin_speed, growth, gyroscopic(scene))
+    return ChangingSpeed(scene.excitation.phase, scene.spin_speed, speed_growth(scene), gyroscopic(scene))
 
 
 def gyroscopic(scene: Scene) -> np.ndarray:

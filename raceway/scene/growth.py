@@ -96,7 +96,17 @@ def inner_fit(scene: Scene, bearing: Bearing) -> float:
     ----------
     Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 3 (interference fitting and clearance).
     """
-    interference = running_interference(scene, bearing)
+    return _by_interference(scene, bearing, running_interference(scene, bearing))
+
+
+def speed_growth(scene: Scene) -> float:
+    """The part of the inner raceway's radial growth that goes with the square of the speed [m]: ring, and what its fit loses."""
+    b = scene.bearing.of_rows[0]
+    standing = _by_interference(scene, b, scene.mounting.shaft_interference)
+    return radial_growth(scene) - scene.kinematics.radial_expansion + (inner_fit(scene, b) - standing)
+
+
+def _by_interference(scene: Scene, bearing: Bearing, interference: float) -> float:
     if interference <= 0.0 or bearing.bore is None:
         return 0.0
     d, race, hole = bearing.bore, bearing.pitch_diameter - bearing.ball_diameter, scene.mounting.shaft_bore

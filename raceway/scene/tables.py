@@ -190,6 +190,9 @@ class Bearing:
             raise ValueError(
                 f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
             )
+        places = [place for _, place in self.rows]
+        if len(set(places)) < len(places):
+            raise ValueError(f"`row` puts two rows at the same place: {', '.join(f'{place:g}' for place in places)} m")
         for k, row in enumerate(self.row):
             try:
                 self._of_row(row)

@@ -246,6 +246,7 @@ def test_the_command_prints_limits():
         ({"row": [{}, {"preset": "nothing"}, {}]}, r"bearing.row\[1\].preset` = 'nothing': no such preset"),
         ({"row": [{}, {"ball_count": 99}, {}]}, r"`row\[1\]`: `ball_count` = 99 .* do not fit"),
         ({"row": [{}, {"preload": 10.0}, {}]}, r"`row\[1\].preload` .* set preload_of = 'row'"),
+        ({"row": [{}, {"position": DISTANCE}, {}]}, "two rows at the same place"),
         ({"row": "TBT"}, "must be a list of tables, not a string"),
         ({"second_preload": 10.0, "preload_of": "row"}, "set preload_of = 'set'"),
         ({"preload": 0.0, "second_preload": 10.0}, "needs a `preload`"),

@@ -134,6 +134,19 @@ def test_speed_loosens_a_fit():
     assert running_interference(one, b) == pytest.approx(20e-6 - lost, rel=1e-3)
 
 
+def test_a_changing_speed_takes_its_part_of_a_fit():
+    """Constants of a moment of a run-up are those of a steady run at its speed."""
+    excitation = {"kind": "run_up", "first_speed_rpm": 5000.0, "speed_rpm": 30000.0, "duration_s": 0.5, "unbalance": 1e-4}
+    tables = scene(kinematics={"ring_growth": True}, shaft_interference=20e-6).to_dict()
+    tables |= {"excitation": excitation, "identifier": {"kind": "order_tracking"}, "rotor": {"mass": 2.0}}
+    moving = scene_from_dict(tables)
+    model = build_model(moving, make_plan(moving))
+    steady = scene(kinematics={"ring_growth": True, "spin_speed_rpm": 12000.0}, shaft_interference=20e-6)
+    found = model.system.spin.constants(model.system, 12000.0 * np.pi / 30.0)
+    expected = build_model(steady, make_plan(steady)).system
+    np.testing.assert_allclose(found.scalars[:5], expected.scalars[:5], rtol=1e-12)
+
+
 def test_growth_of_a_ball():
     """A sphere under its centrifugal force, by Ritz's method: displacements in powers of r and z up to the third."""
     b = scene().bearing

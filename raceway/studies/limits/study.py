@@ -166,7 +166,7 @@ def _one_way(moved: _Moved, sense: float, pressure: float) -> AxialLimits:
     first = moved.at(start)
     keep = first if moved.sprung.any() else None
     sides = np.array([side for side, _ in model.scene.bearing.rows])
-    unloading = (sides != sense) & ~moved.sprung
+    unloading = sides != sense
 
     def lifted(now: _State) -> np.ndarray:
         return np.asarray((now.rows <= 0.0) & unloading)
