@@ -21,7 +21,7 @@ MESHES = {"b7206_article_mesh"}
 #: Scenes that take tens of seconds: planned here; a smaller one of their kind runs in tests/test_elastic_scene.py.
 LONG = {"b7206_elastic"}
 #: Scenes without an excitation.
-STATIC = {"b7206_elastic_coarse"}
+STATIC = {"b7206_elastic_coarse", "set_tbt"}
 RUNNING = [path for path in sorted(FOLDER.glob("*.toml")) if path.stem not in MESHES | LONG]
 
 

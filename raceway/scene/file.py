@@ -376,7 +376,7 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
 
 
 def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
-    """The [bearing] table whose rows have the numbers of their presets."""
+    """The [bearing] table whose rows have the numbers of their presets; without a bearing of its own it is the first row's."""
     rows = table.get("row")
     if not isinstance(rows, list | tuple):
         return table
@@ -392,6 +392,14 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
             else:
                 row = {**{key: value for key, value in values.items() if key in GEOMETRY}, **row}
         found.append(row)
+    if (
+        rows
+        and "preset" not in table
+        and "ball_diameter" not in table
+        and isinstance(found[0], dict)
+        and "preset" in found[0]
+    ):
+        table = {**table, "preset": found[0]["preset"]}
     return {**table, "row": found}
 
 

@@ -130,6 +130,25 @@ def test_a_row_that_repeats_its_bearing_changes_no_digit():
         assert found.stiffness.tolist() == plain.stiffness.tolist()
 
 
+def test_two_bearings_on_a_shaft():
+    """Far apart and different: each row as a bearing by itself, the shaft's tilt held; the first row's preset is the set's."""
+    rows = [
+        {"direction": "+", "position": -0.1, "preset": "B7206C"},
+        {"direction": "-", "position": 0.1, "preset": "7206A"},
+    ]
+    one = scene_from_dict({"bearing": {"row": rows, "preload": 250.0}, "kinematics": {"ball_inertia": False}})
+    assert one.bearing.preset == "B7206C"
+    model = build_model(one, make_plan(one))
+    now = settle(model)
+    alone = [settled_alone(preset).stiffness for preset in ("B7206C", "7206A")]
+    np.testing.assert_allclose(np.diag(now.stiffness)[:3], sum(np.diag(k)[:3] for k in alone), rtol=SAME)
+
+
+def settled_alone(preset):
+    """A single row under 250 N."""
+    return built("single", None, {"preset": preset}, load={"axial": 250.0})[1]
+
+
 def test_peak_pressures_and_edges_are_those_of_each_row():
     """A row with other balls has its own ellipses: pressures of a set are those of its rows as single bearings."""
     model, now = built("DB", 300.0, {"row": [{}, {"ball_diameter": 8e-3}]})
