@@ -247,7 +247,7 @@ def lost_preload(model: Model) -> str:
         for key, value in model.scene.mounting.changes.items()
     )
     return (
-        f"The preload of {bearing.preload:g} N is gone: both rows are loose, as {shrunk if not warm else f'the grooves have grown apart ({warm})'} "
+        f"The preload of {max(bearing.preload, *(row.preload or 0.0 for row in bearing.row), 0.0):g} N is gone: both rows are loose, as {shrunk if not warm else f'the grooves have grown apart ({warm})'} "
         "since they were mounted. Raise bearing.preload, shrink it less, or take preload_kind = 'spring'."
     )
 

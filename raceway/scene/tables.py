@@ -14,7 +14,6 @@ import attrs
 
 from raceway.errors import MeshError
 from raceway.framework.options import (
-    Rule,
     at_least,
     between,
     finite,
@@ -25,29 +24,15 @@ from raceway.framework.options import (
     optional,
     positive,
     word_or,
-    worded,
 )
 from raceway.framework.shown import Fact, Shown
-from raceway.scene.sets import GEOMETRY, Row, arrangement, places_of, signs_of
+from raceway.scene.sets import GEOMETRY, Row, arrangement, check_set, places_of, signs_of, travel
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     import os
 
     from raceway.scene.given import Given
-
-
-def _travel() -> Rule:
-    """Rule: a distance that a spring can be pressed by."""
-
-    def check(_instance: object, _attribute: object, value: float) -> None:
-        if not 0.0 < value < 1e3:
-            raise ValueError(
-                "must be greater than 0: a spring without travel is no spring; leave the key out for any travel, or take "
-                "preload_kind = 'rigid'"
-            )
-
-    return worded(check, "greater than 0", {"exclusiveMinimum": 0})
 
 
 @attrs.frozen
@@ -128,7 +113,7 @@ class Bearing:
         None,
         unit="m",
         help="by which those rings can slide against the spring from where they were mounted, either way; default: any",
-        rule=optional(_travel()),
+        rule=optional(travel()),
     )
     row_distance: float | None = option(
         None,
@@ -161,7 +146,7 @@ class Bearing:
                 "no groove is deeper than its ball's centre"
             )
         self._check_clearance()
-        self._check_set()
+        check_set(self)
         self._check_profiles()
 
     def _check_profiles(self) -> None:
@@ -173,56 +158,6 @@ class Bearing:
                     ring_shape(self, inner)
                 except MeshError as why:
                     raise ValueError(str(why)) from None
-
-    def _check_set(self) -> None:
-        signs = signs_of(self.arrangement)
-        if self.row and self.arrangement != "single" and len(self.row) != len(signs):
-            raise ValueError(
-                f"`row` has {len(self.row)} tables, but arrangement = '{self.arrangement}' is {len(signs)} rows"
-            )
-        without = [k for k, row in enumerate(self.row) if self.arrangement == "single" and row.direction is None]
-        if without:
-            raise ValueError(
-                f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`"
-            )
-        placed = bool(self.row) and all(row.position is not None for row in self.row)
-        if len(self.signs) > 1 and not placed and self.row_distance is None and self.width is None:
-            raise ValueError(
-                f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
-            )
-        places = [place for _, place in self.rows]
-        if len(set(places)) < len(places):
-            raise ValueError(f"`row` puts two rows at the same place: {', '.join(f'{place:g}' for place in places)} m")
-        for k, row in enumerate(self.row):
-            try:
-                self._of_row(row)
-            except ValueError as why:
-                raise ValueError(f"`row[{k}]`: {why}") from None
-        self._check_preload()
-
-    def _check_preload(self) -> None:
-        ground = next((k for k, row in enumerate(self.row) if row.preload is not None), None)
-        if ground is not None and self.preload_of != "row":
-            raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")
-        if self.second_preload is not None and self.preload_of == "row":
-            raise ValueError(
-                "`second_preload` is a force between rows: set preload_of = 'set', or give each row its `preload`"
-            )
-        if not self.preloaded:
-            if self.second_preload is not None:
-                raise ValueError(
-                    f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction"
-                )
-            return
-        if len(set(self.signs)) < 2:
-            word = self.signs if self.row else self.arrangement
-            rows = f"the {len(self.signs)} rows of '{word}' face" if len(self.signs) > 1 else "a single row faces"
-            raise ValueError(
-                f"`preload` = {self.preload:g} N needs rows that brace each other, such as arrangement = 'DB', 'DF' or 'TBT': "
-                f"{rows} one way only. Give the force of a spring on such a bearing as load.axial"
-            )
-        if self.preload_of == "row" and self.preload_kind == "spring":
-            raise ValueError("`preload_of` = 'row' is an offset that was ground: with preload_kind = 'spring' use 'set'")
 
     @property
     def preloaded(self) -> bool:
@@ -264,7 +199,7 @@ class Bearing:
         """Balls of all rows."""
         return sum(one.ball_count for one in self.of_rows)
 
-    def _of_row(self, row: Row | None) -> Bearing:
+    def of_row(self, row: Row | None) -> Bearing:
         """The bearing of one row of a set."""
         given = {key: getattr(row, key) for key in GEOMETRY} if row is not None else {}
         given = {key: value for key, value in given.items() if value is not None}
@@ -309,8 +244,8 @@ class Bearing:
 def _of_rows(bearing: Bearing) -> tuple[Bearing, ...]:
     """The bearing of each row by itself; the same one for rows that have no table."""
     if not bearing.row:
-        return (bearing._of_row(None),) * len(signs_of(bearing.arrangement))
-    return tuple(bearing._of_row(row) for row in bearing.row)
+        return (bearing.of_row(None),) * len(signs_of(bearing.arrangement))
+    return tuple(bearing.of_row(row) for row in bearing.row)
 
 
 _AROUND = (
