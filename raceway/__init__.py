@@ -15,7 +15,7 @@ framework      kinds of plug-ins: contracts, hooks, options, registry
 core           numerics: arrays in, arrays out
 storage        files and caches on disk
 errors         exceptions, one class by who must act
-data           bearings, reference cases, meshes, templates of plug-ins
+data           bearings and what makers print of them, materials, reference cases, meshes, templates of plug-ins
 
 Imports run one way, from the top of this list to its bottom; contact_laws, integrators, plugins and scene do not know each other.
 Plug-ins, built in or foreign, are found by the registry alone.
@@ -63,11 +63,15 @@ _MODULES = {
     "raceway.studies.measured.front": "identify",
     "raceway.studies.ross.front": "export_ross",
     "raceway.studies.view.front": "view",
+    "raceway.studies.infer.front": "infer",
+    "raceway.studies.catalogue.front": "catalogue",
+    "raceway.studies.infer.inferred": "Inferred",
     "raceway.studies.compare.comparison": "Comparison",
     "raceway.studies.precision.result": "Precision",
     "raceway.studies.measured.identified": "Identified",
     "raceway.studies.ross.table": "RossTable",
     "raceway.studies.view.view": "View",
+    "raceway.scene.catalogue": "Preset",
     "raceway.scene.tables": "Scene",
     "raceway.scene.file": "load_scene scene_from_dict",
     "raceway.planning.plan": "make_plan",

@@ -44,6 +44,8 @@ _LATER = {
     "study": ("raceway.studies.command", "Whole studies that end in a page, and others' studies."),
     "plot": ("raceway.studies.sweep.store_command", "Draw a sweep: curves, maps, surfaces."),
     "export": ("raceway.studies.ross.command", "Write a sweep's coefficients for a rotor program."),
+    "infer": ("raceway.studies.infer.command", "Balls and grooves of a bearing from what its maker prints."),
+    "catalogue": ("raceway.studies.catalogue.command", "List, search and draw the bearings of the catalogue."),
     "identify": ("raceway.studies.measured.command", "K and C of a bearing from measured signals."),
     "view": ("raceway.studies.view.command", "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page."),
     "mesh": ("raceway.studies.view.mesh_command", "Mesh the bodies of a scene: counts, quality, files."),

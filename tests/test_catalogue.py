@@ -10,9 +10,10 @@ import pytest
 
 from raceway.errors import SceneError
 from raceway.pipeline.run import run
-from raceway.scene.catalogue import catalogue, preset
+from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
 from raceway.scene.file import scene_from_dict
 from raceway.scene.tables import Bearing
+from raceway.studies.infer.printed import printed_by
 
 POUND = 4.4482216152605
 #: What no document states of each preset: makers print neither conformities nor, for most bearings, balls.
@@ -31,7 +32,8 @@ NEEDED |= {"rings.young", "rings.poisson", "balls.young", "balls.poisson"}
 
 
 def test_the_presets_that_the_documentation_promises_are_there():
-    assert set(INFERRED) == set(catalogue())
+    assert set(INFERRED) == set(single_presets())
+    assert set(INFERRED) < set(catalogue())
 
 
 @pytest.mark.parametrize("name", sorted(INFERRED))
@@ -93,3 +95,105 @@ def test_a_typo_offers_the_nearest_preset():
         scene_from_dict({"title": "t", "bearing": {"preset": "DGB7-MASTE"}})
     assert "DGB7-MASTA" in str(caught.value)
     assert caught.value.mistakes[0].path == "bearing.preset"
+
+
+# --- series
+
+
+def test_the_series_hold_all_designations_of_the_printed_table():
+    names = [one.names[0] for one in printed_by("nsk")]
+    assert len(names) == 249
+    assert set(names) <= set(catalogue())
+    # A preset with a file of its own goes first: 7206A keeps its numbers.
+    assert catalogue()["7206A"].table["rings"]["young"] == 212e9
+
+
+def test_a_series_states_source_and_scatter_of_every_number():
+    for fact in catalogue()["7014C"].facts:
+        assert len(fact.source) > 20
+        assert fact.inferred is (fact.key not in ("bore", "outer_diameter", "width", "contact_angle_deg"))
+        assert (fact.scatter is not None) is (fact.inferred and "." not in fact.key)
+
+
+def test_designations_that_only_differ_in_the_angle_have_the_same_balls():
+    same = [{**preset(name), "preset": "", "contact_angle_deg": 0} for name in ("7014C", "7014A5", "7014A")]
+    assert same[0] == same[1] == same[2]
+    assert [preset(name)["contact_angle_deg"] for name in ("7014C", "7014A5", "7014A")] == [15, 25, 30]
+
+
+def test_an_unknown_designation_names_the_nearest_five():
+    with pytest.raises(SceneError) as caught:
+        preset("7014B")
+    offered = str(caught.value).partition("nearest: ")[2].partition(" (")[0].split(", ")
+    assert len(offered) == 5 and offered[:3] == ["7014C", "7014A", "7014A5"]
+
+
+def test_the_catalogue_is_searched_by_pattern_or_by_a_part_of_the_name():
+    assert [one.name for one in found_by("7014*")] == ["7014C", "7014A5", "7014A"]
+    assert len(found_by("70*c")) == 32
+    assert {one.name for one in found_by("harris")} == {"ACB21-HARRIS-MINDEL"}
+    assert found_by("7014b") == []
+
+
+def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
+    static = {"bearing": {"preset": "7014C"}, "load": {"axial": 1000.0}}
+    found = run(scene_from_dict(static))
+    assert found.geometry["words"] == "geometry inferred: stiffness known to about 4 %"
+    assert set(found.geometry["inferred"]) == {
+        "ball_count", "ball_diameter", "pitch_diameter", "conformity_inner", "conformity_outer",
+    }  # fmt: skip
+    assert found.to_dict()["geometry"] == found.geometry
+    own = {
+        "ball_count": 20,
+        "ball_diameter": 0.0119,
+        "pitch_diameter": 0.09,
+        "conformity_inner": 0.52,
+        "conformity_outer": 0.53,
+    }
+    assert run(scene_from_dict({**static, "bearing": {"preset": "7014C", **own}})).geometry is None
+    assert run(scene_from_dict({**static, "bearing": {"preset": "DGB7-MASTA"}})).geometry is None
+    assert run(scene_from_dict({**static, "bearing": {"preset": "B7206C"}})).geometry["stiffness_error"] == 0.036
+
+
+# --- materials
+
+
+def test_a_material_by_name_gives_its_numbers_and_own_keys_override_them():
+    bearing = scene_from_dict({"bearing": {"preset": "7014C", "balls": {"material": "Si3N4", "density": 3200.0}}}).bearing
+    assert (bearing.balls.young, bearing.balls.poisson, bearing.balls.density) == (310e9, 0.27, 3200.0)
+    assert bearing.rings.young == 208e9, "the preset's steel stays"
+    plain = scene_from_dict({"bearing": {**preset("7014C"), "preset": None, "rings": {"material": "440C"}}}).bearing
+    assert plain.rings.young == 200e9
+
+
+def test_a_material_changes_the_mass_too():
+    """Centrifugal force at 20 000 r/min goes with the density: difference of the races' loads, one speed, one geometry."""
+
+    def force(material):
+        scene = {"bearing": {"preset": "7014C", "balls": {"material": material}}, "load": {"axial": 2000.0}}
+        balls = run(scene_from_dict({**scene, "kinematics": {"spin_speed_rpm": 20000.0}})).to_dict()["equilibrium"]["balls"]
+        one = balls[0]
+        out, into = (one[f"load_{r}_n"] * np.cos(np.radians(one[f"contact_angle_{r}_deg"])) for r in ("outer", "inner"))
+        return out - into
+
+    assert force("Si3N4") / force("100Cr6") == pytest.approx(3240 / 7830, rel=1e-6)
+
+
+def test_hybrid_balls_are_stiffer_as_hertz_says():
+    """At one load k of Q = K delta^1.5 goes with E*^(2/3): axial stiffness of a lightly loaded bearing, angles nearly the same."""
+
+    def k(material):
+        scene = {"bearing": {"preset": "7014A5", "balls": {"material": material}}, "load": {"axial": 100.0}}
+        return run(scene_from_dict(scene)).stiffness[0, 0]
+
+    steel, mixed = 2 * (1 - 0.3**2) / 208e9, (1 - 0.3**2) / 208e9 + (1 - 0.27**2) / 310e9
+    # The softer bearing opens its contact angle more, which takes some percent of the gain.
+    assert k("Si3N4") / k("100Cr6") == pytest.approx((steel / mixed) ** (2 / 3), rel=0.03)
+
+
+def test_an_unknown_material_is_one_message():
+    for where in ({"preset": "7014C"}, preset("7014C") | {"preset": None}):
+        with pytest.raises(SceneError) as caught:
+            scene_from_dict({"bearing": {**where, "balls": {"material": "Si3N5"}}})
+        assert [one.path for one in caught.value.mistakes] == ["bearing.balls.material"]
+        assert "did you mean 'Si3N4'" in str(caught.value)

@@ -59,6 +59,11 @@ COMMANDS = {
     "study limits": ("study", "limits", EXAMPLES / "set_tbt.toml"),
     "study map": ("study", "map", *MAP, "--processes", "0", "--no-pictures", "--out", "OUT"),
     "study article": ("study", "article", *SMALL, "--no-pictures", "--out", "OUT"),
+    "infer": ("infer", "gmn"),
+    "infer, one": ("infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"),
+    "catalogue": ("catalogue", "7014C"),
+    "catalogue, list": ("catalogue", "79*"),
+    "catalogue, materials": ("catalogue", "--materials"),
     "view": ("view", MINIMAL, "--out", "OUT"),
     "mesh": ("mesh", MINIMAL, *COARSE, "--out", "OUT"),
     "plugins": ("plugins",),
@@ -69,7 +74,7 @@ COMMANDS = {
     "cache": ("cache",),
 }  # fmt: skip
 #: Commands that are done before anybody waits, whatever they are given.
-QUICK = {"plan", "check", "plugins", "new-plugin", "new-scene", "schema"}
+QUICK = {"plan", "check", "plugins", "new-plugin", "new-scene", "schema", "catalogue"}
 
 
 @pytest.fixture(scope="module")

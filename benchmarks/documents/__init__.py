@@ -81,7 +81,8 @@ _ORDER = (
     ("identifier", "identifier"),
 )
 _NOTES = {
-    "bearing": "`preset` fills in a bearing of the catalogue; any other key overrides the preset's value. Without a preset "
+    "bearing": "`preset` fills in a bearing of [the catalogue](catalogue.md); any other key overrides the preset's value. `balls.material` and "
+    "`rings.material` take a material by name (`raceway catalogue --materials`). Without a preset "
     "the required keys and one of `contact_angle_deg`, `radial_clearance` have to be given.",
     "supports": "`outer_seat` and `inner_seat` are `rigid` for rigid bodies.",
     "excitation": "Without this table the scene is static and `identification` is null.",

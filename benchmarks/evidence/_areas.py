@@ -35,6 +35,8 @@ AREAS = {
         framework/options planning/implausible scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
         scene/sets scene/tables scene/units scene/unused""",
     "article": "studies/article data/article",
+    "catalogue": """
+        data/materials data/printed data/series pipeline/ball_pass scene/materials studies/catalogue studies/infer""",
     "compare": "studies/compare",
     "limits": "studies/limits",
     "map": "studies/map data/map",
@@ -67,6 +69,7 @@ AREAS = {
 MEASURES = {
     "article": "rigid motion periodic article examples/b7206.toml",
     "article_mesh": "elastic solids mesh plan revolution condensed examples/b7206_article_mesh.toml",
+    "catalogue": "catalogue rigid",
     "compare": "rigid motion periodic compare",
     "compare_bodies": "rigid condensed revolution compare",
     "condensed_bodies": "revolution",

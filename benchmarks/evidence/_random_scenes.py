@@ -18,7 +18,7 @@ from raceway.pipeline.run import run
 from raceway.planning.closed_form import highest_frequency
 from raceway.planning.plan import make_plan
 from raceway.planning.wall_time import START_S
-from raceway.scene.catalogue import catalogue
+from raceway.scene.catalogue import single_presets
 
 Tables = dict[str, Any]
 FINISHED, REFUSED, FAILED, PLANNED = "finished", "refused, exit code 2", "failed, exit code 1", "planned only"
@@ -57,7 +57,7 @@ class Chance:
 
 def bearing(chance: Chance) -> Tables:
     if chance.happens(0.5):
-        found: Tables = {"preset": chance.one(*sorted(catalogue()))}
+        found: Tables = {"preset": chance.one(*sorted(single_presets()))}
     else:
         ball, count = chance.decades(1e-3, 0.1), chance.whole(1, 24)
         least = ball / math.sin(math.pi / count) if count > 1 else 2.0 * ball

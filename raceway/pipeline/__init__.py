@@ -6,6 +6,7 @@ starting       initial state of a motion: on its orbit, under a growing force, a
 simulate       from model and equilibrium to recorded motion
 allowance      processor time that a run may take beyond its plan
 motion         the table ``motion`` of a result
+ball_pass      frequencies of cage, ball passes and ball spin
 pressure       peak pressure and semi-axes of contacts
 plausibility   warnings: balls without load, ellipses over the groove's edge
 error          relative errors of Z

@@ -71,6 +71,8 @@ def _computed(result: Result) -> list[Fact]:
         ("bearing", str(bearing.get("preset") or "own geometry"), kind),
         ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
     ]
+    if result.geometry is not None:
+        rows.insert(1, ("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
     if count:
         rows.append((f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0]))
     return rows

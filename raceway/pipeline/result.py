@@ -18,11 +18,13 @@ from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
 from raceway.framework.shown import Fact, Shown
+from raceway.pipeline.ball_pass import ball_pass_table
 from raceway.pipeline.facts import facts
 from raceway.pipeline.motion import motion_table
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.reports.labelled import labelled
 from raceway.plugins.reports.plot import plot
+from raceway.scene.catalogue import geometry_of
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
@@ -120,6 +122,18 @@ class Result(Shown):
         return None if across is None or found is None else across * abs(found.dynamic_stiffness) / found.speed
 
     @property
+    def ball_pass(self) -> Tables:
+        """``speed_rpm``, and for each row FTF, BPFO, BPFI and BSF over the shaft's speed and in Hz, at the loaded contact angle."""
+        return ball_pass_table(self.model, self.equilibrium)
+
+    @property
+    def geometry(self) -> Tables | None:
+        """What is inferred of the preset's geometry, and how well that knows the stiffness; None where a source states it."""
+        scene = self.model.scene
+        said = scene.source if scene.given is None else scene.given.merged()
+        return geometry_of(scene.source["bearing"], said.get("bearing", {}))
+
+    @property
     def orbit(self) -> tuple[float, float] | None:
         """Major and minor semi-axis of the 1x orbit [m]; None in a static scene.  ``to_xarray().motion`` is the path itself."""
         found = self.identification
@@ -169,7 +183,9 @@ class Result(Shown):
                 "title": self.title,
                 "scene": self.model.scene.to_dict(),
                 "plan": self.model.plan.to_dict(),
+                "geometry": self.geometry,
                 "equilibrium": equilibrium_table(self.model, self.equilibrium),
+                "ball_pass": self.ball_pass,
                 "identification": self._identification(),
                 "model": self.bodies,
                 "motion": self._motion(),

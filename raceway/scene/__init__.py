@@ -7,6 +7,7 @@ structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit
 schema      JSON schema of a scene file
 catalogue   bearing presets
+materials   materials of rings and balls by name
 requires    plug-ins that a scene needs
 rig         a test rig around the bearing
 unused      keys without effect, and those that a change makes so

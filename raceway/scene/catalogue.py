@@ -1,37 +1,68 @@
-"""Bearing presets, one TOML file each in ``raceway/data/bearings``, with the source of every number.
+"""Bearing presets, with the source of every number.
 
-A file holds ``title`` and one table for each key of the scene's [bearing] table (``rings.young`` is
-[rings.young]) with ``value``, ``source`` and, where no document states the number, ``inferred = true``.
+One TOML file a preset, in ``raceway/data/bearings``, holds ``title`` and one table for each key of the scene's [bearing] table
+(``rings.young`` is [rings.young]) with ``value``, ``source`` and, where no document states the number, ``inferred = true``.
+
+One TOML file a series, in ``raceway/data/series``, holds the same for many bearings: [columns.KEY] with ``source``, ``inferred`` and the name of the
+column of its relative scatter, [constants.KEY] for what all have, and in [bearings] a row of numbers a designation.  Series are
+written by ``python -m benchmarks.presets`` from what makers print.
 """
 
 from __future__ import annotations
 
+import difflib
 import tomllib
+from collections.abc import Iterator
+from fnmatch import fnmatch
 from functools import cache
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 
 import attrs
 
 from raceway.errors import SceneError
-from raceway.framework.options import nearest
-from raceway.storage.tables import Tables
+from raceway.storage.tables import ReadTables, Tables
+
+#: Relative uncertainty of the stiffness of presets with a file of their own and inferred balls: their conformity meets the eight
+#: axial stiffnesses that NSK prints for pairs of 7206 within 3.6 %.
+_INFERRED = 0.036
+#: Names that the message of an unknown preset offers.
+_OFFERED = 5
 
 
 @attrs.frozen
 class Fact:
-    """One number of a preset: key of the [bearing] table, value, where it comes from."""
+    """One number of a preset: key of the [bearing] table, value, where it comes from; relative scatter of what is inferred."""
 
     key: str
     value: object
     source: str
     inferred: bool
+    scatter: float | None = None
 
 
 @attrs.frozen
 class Preset:
+    """A bearing of the catalogue.
+
+    Attributes
+    ----------
+    stiffness_error : relative uncertainty of its stiffness that comes from inferred geometry; None: of numbers that a source states
+    printed : how well the inferred geometry meets what the maker prints, relative errors by name
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.catalogue("7014C")[0]
+    >>> [(fact.key, fact.scatter) for fact in found.facts if fact.key == "pitch_diameter"], found.stiffness_error
+    ([('pitch_diameter', 0.01)], 0.036)
+    """
+
     name: str
     title: str
     facts: tuple[Fact, ...]
+    stiffness_error: float | None = None
+    printed: dict[str, float] = attrs.field(factory=dict)
 
     @property
     def table(self) -> Tables:
@@ -48,24 +79,69 @@ class Preset:
 
 @cache
 def catalogue() -> dict[str, Preset]:
-    """All presets by name."""
-    found = {}
-    for file in sorted(files("raceway").joinpath("data/bearings").iterdir(), key=lambda f: f.name):
-        if file.name.endswith(".toml"):
-            content = tomllib.loads(file.read_text(encoding="utf-8"))
-            name = file.name.removesuffix(".toml")
-            found[name] = Preset(name, content.pop("title"), tuple(_facts(content, "")))
+    """All presets by name: those with a file of their own, then the series."""
+    found = dict(single_presets())
+    for file in _tomls(files("raceway").joinpath("data/series")):
+        for one in _series(tomllib.loads(file.read_text(encoding="utf-8"))):
+            found.setdefault(one.name, one)
     return found
 
 
-def _facts(tables: Tables, prefix: str) -> list[Fact]:
+@cache
+def single_presets() -> dict[str, Preset]:
+    """Presets with a file of their own; they go before those of a series."""
+    return {one.name: one for one in map(_single, _tomls(files("raceway").joinpath("data/bearings")))}
+
+
+def _preset(name: object) -> Preset | None:
+    """One preset; a series is read only where it has to be."""
+    if not isinstance(name, str):
+        return None
+    return single_presets().get(name) or catalogue().get(name)
+
+
+def _tomls(folder: Traversable) -> list[Traversable]:
+    return sorted((file for file in folder.iterdir() if file.name.endswith(".toml")), key=lambda f: f.name)
+
+
+def _single(file: Traversable) -> Preset:
+    content = tomllib.loads(file.read_text(encoding="utf-8"))
+    title, facts = content.pop("title"), tuple(_facts(content, ""))
+    inferred = any(fact.inferred and fact.key == "ball_count" for fact in facts)
+    return Preset(file.name.removesuffix(".toml"), title, facts, _INFERRED if inferred else None)
+
+
+def _facts(tables: ReadTables, prefix: str) -> list[Fact]:
     facts: list[Fact] = []
     for key, table in tables.items():
         if "value" in table:
-            facts.append(Fact(prefix + key, table["value"], table["source"], bool(table.get("inferred", False))))
+            inferred = bool(table.get("inferred", False))
+            facts.append(Fact(prefix + key, table["value"], table["source"], inferred, table.get("scatter")))
         else:
             facts += _facts(table, f"{prefix}{key}.")
     return facts
+
+
+def _series(content: ReadTables) -> Iterator[Preset]:
+    columns, same = content["columns"], _facts(content["constants"], "")
+    for name, numbers in content["bearings"].items():
+        row = dict(zip(content["order"], numbers, strict=True))
+        own = [
+            Fact(key, row[key], one["source"], bool(one.get("inferred", False)), row.get(one.get("scatter")))
+            for key, one in columns.items()
+        ]
+        title = (
+            f"{name}: {content['title']}, {1e3 * row['bore']:g} x {1e3 * row['outer_diameter']:g} x {1e3 * row['width']:g} mm, "
+            f"{row['contact_angle_deg']:g} deg"
+        )
+        yield Preset(name, title, (*own, *same), content["stiffness_error"], {key: row[key] for key in content["printed"]})
+
+
+def found_by(pattern: str) -> list[Preset]:
+    """Presets whose name matches a pattern of the shell (70*C), or holds the text, in any case."""
+    word = pattern.lower()
+    whole = [one for one in catalogue().values() if fnmatch(one.name.lower(), word)]
+    return whole or [one for one in catalogue().values() if word in one.name.lower()]
 
 
 def preset(name: object) -> Tables:
@@ -74,9 +150,38 @@ def preset(name: object) -> Tables:
     Raises
     ------
     SceneError
-        Unknown name, with the nearest one.
+        Unknown name, with the nearest five.
     """
-    known = catalogue()
-    if not isinstance(name, str) or name not in known:
-        raise SceneError.at("bearing.preset", name, f"no such preset{nearest(str(name), known)}; known: {', '.join(known)}")
-    return {**known[name].table, "preset": name}
+    one = _preset(name)
+    if one is None:
+        raise SceneError.at("bearing.preset", name, no_preset(str(name)))
+    return {**one.table, "preset": name}
+
+
+def no_preset(name: str) -> str:
+    """What is said of an unknown designation."""
+    by_lower = {one.lower(): one for one in catalogue()}
+    close = difflib.get_close_matches(name.lower(), list(by_lower), n=_OFFERED, cutoff=0.0)
+    return f"no such preset; the nearest: {', '.join(by_lower[one] for one in close)} (`raceway catalogue` lists all)"
+
+
+def geometry_of(bearing: ReadTables, given: ReadTables) -> Tables | None:
+    """What a result says of a preset's uncertainty; None without a preset, or where its source states the numbers.
+
+    Parameters
+    ----------
+    bearing : the [bearing] table with the preset's numbers
+    given : the table as the user wrote it, whose own numbers are no inferred ones
+    """
+    one = _preset(bearing.get("preset"))
+    if one is None or one.stiffness_error is None:
+        return None
+    facts = [fact for fact in one.facts if fact.inferred and "." not in fact.key and fact.key not in given]
+    if not facts:
+        return None
+    return {
+        "preset": one.name,
+        "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
+        "stiffness_error": one.stiffness_error,
+        "words": f"geometry inferred: stiffness known to about {100.0 * one.stiffness_error:.0f} %",
+    }

@@ -18,6 +18,7 @@ from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import preset
 from raceway.scene.given import Given
+from raceway.scene.materials import with_material
 from raceway.scene.requires import check_requires
 from raceway.scene.rig import Rig
 from raceway.scene.sets import GEOMETRY
@@ -358,7 +359,7 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     table = _with_rows(table, mistakes)
     name = table.get("preset")
     if name is None:
-        return table
+        return _with_materials(table, {}, mistakes)
     try:
         values = preset(name)
     except SceneError as error:
@@ -369,10 +370,20 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
         merged["contact_angle_deg"] = 0.0
     if "contact_angle_deg" in table and "radial_clearance" not in table:
         merged.pop("radial_clearance", None)
+    return _with_materials(merged, values, mistakes)
+
+
+def _with_materials(table: Tables, preset: Tables, mistakes: list[Mistake]) -> Tables:
+    """The table [bearing] with the numbers of named materials, and those of the preset below what the user says."""
+    made = dict(table)
     for part in ("rings", "balls"):
         if isinstance(table.get(part), dict):
-            merged[part] = {**values.get(part, {}), **table[part]}
-    return merged
+            try:
+                made[part] = with_material(table[part], f"bearing.{part}", preset.get(part, {}))
+            except SceneError as error:
+                mistakes += error.mistakes
+                made[part] = {**preset.get(part, {}), **table[part], "material": None}
+    return made
 
 
 def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:

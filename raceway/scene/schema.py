@@ -15,6 +15,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import catalogue
 from raceway.scene.file import PLUGIN_TABLES as PLUGIN_TABLES
 from raceway.scene.file import STUDY_TABLES
+from raceway.scene.materials import materials
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import TABLES
 from raceway.scene.units import PATTERN
@@ -61,6 +62,8 @@ def _bearing(cls: type) -> Tables:
     table = _table(cls)
     table["anyOf"] = [{"required": ["preset"]}, {"required": table.pop("required")}]
     table["properties"]["preset"]["enum"] = list(catalogue())
+    for part in ("rings", "balls"):
+        table["properties"][part]["properties"]["material"]["enum"] = list(materials())
     return table
 
 

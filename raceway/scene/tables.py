@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 @attrs.frozen
 class Material:
+    material: str | None = option(None, help="name in the table of materials; other keys override its numbers")
     young: float = option(212e9, unit="Pa", help="Young's modulus", rule=positive())
     poisson: float = option(0.29, help="Poisson's ratio", rule=inside(-1.0, 0.5))
     density: float = option(7810.0, unit="kg/m3", help="density", rule=positive())

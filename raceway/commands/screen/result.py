@@ -9,6 +9,7 @@ from rich.console import Group, RenderableType
 from raceway.commands.screen.result_answer import answer_rows
 from raceway.commands.screen.result_model import bodies_rows
 from raceway.commands.screen.result_parts import (
+    ball_pass_rows,
     cost_rows,
     equilibrium_rows,
     error_rows,
@@ -32,7 +33,13 @@ def run_screen(result: ReadTables, files: Sequence[str], explain: bool = False) 
     result : content of result.json;  files : what was written
     explain : notes as they stand in result.json, and all that is left out, instead of a few words
     """
-    rows = [*answer_rows(result), *equilibrium_rows(result), *stiffness_rows(result, explain), *error_rows(result, explain)]
+    rows = [
+        *answer_rows(result),
+        *equilibrium_rows(result),
+        *ball_pass_rows(result["ball_pass"]),
+        *stiffness_rows(result, explain),
+        *error_rows(result, explain),
+    ]
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
     rows += [*cost_rows(result["cost"]), *stability_rows(result["stability"])]
@@ -67,6 +74,8 @@ def _bearing(result: ReadTables) -> str:
     words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}"]
     if b.get("arrangement", "single") != "single" or b.get("row"):
         words.append(_set(b))
+    if result.get("geometry"):
+        words.append(result["geometry"]["words"])
     words += [
         f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}",
         f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",

@@ -48,6 +48,23 @@ def _small(metres: float) -> str:
     return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
 
 
+def ball_pass_rows(found: ReadTables) -> list[Row]:
+    """Frequencies of cage, balls and ball passes over the shaft's, of each row that differs."""
+    words = ("contact_angle_deg", "ftf", "bsf", "bpfo", "bpfi")
+    rows: list[Row] = []
+    told = {tuple(f"{one[word]:.4g}" for word in words): (k, one) for k, one in reversed([*enumerate(found["rows"], 1)])}
+    for (angle, cage, spin, outer, inner), (k, one) in sorted(told.items(), key=lambda item: item[1][0]):
+        row = f" of row {k}" if len(told) > 1 else ""
+        rows.append((f"Ball pass{row} at {angle} deg, times the shaft's speed", "", ""))
+        rows.append(("cage FTF, ball BSF", f"{cage}, {spin}", _hertz(one, found["speed_rpm"], "ftf", "bsf")))
+        rows.append(("passes BPFO, BPFI", f"{outer}, {inner}", _hertz(one, found["speed_rpm"], "bpfo", "bpfi")))
+    return rows
+
+
+def _hertz(one: ReadTables, speed: float, *names: str) -> str:
+    return ", ".join(f"{one[name + '_hz']:.5g}" for name in names) + " Hz" if speed else ""
+
+
 def stiffness_rows(result: ReadTables, explain: bool) -> list[Row]:
     """Parts of Z and the force that they belong to."""
     found = result["identification"]

@@ -1,0 +1,183 @@
+"""From what a maker prints of one size to its balls and grooves.
+
+All printed contact angles of a size are met together.  Both practices of rating are tried unless the maker is named; the likelier one
+is the answer, and what remains uncertain is told as scatter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import attrs
+import numpy as np
+
+from raceway.errors import SceneError
+from raceway.studies.infer.ball_sizes import size_words
+from raceway.studies.infer.inferred import Check, Inferred, Number
+from raceway.studies.infer.practices import CONFORMITY, LIMITS, Candidate, by_grooves, by_tables, stiffnesses
+from raceway.studies.infer.printed import Printed
+
+#: Practices of rating by maker, in small letters.
+MAKERS = {"nsk": "tables", "gmn": "grooves"}
+#: 90 % of the printed axial stiffnesses of pairs lie within this of those of the inferred bearings, by practice (report catalogue).
+STIFFNESS_90 = {"tables": 0.036, "grooves": 0.062}
+#: Scatter of the pitch diameter: of 103 bearings whose maker prints it, 101 have the mean of bore and outer diameter.
+_PITCH = 0.01
+#: Scatter of the conformity where no stiffness is printed: of the series 70, fitted one by one, (f - 0.5) scatters by 5 %.
+_CONFORMITY = 0.002
+#: Share of known bearings like it below which an answer by grooves is called doubtful.
+_ALIKE = 1e-3
+#: Conformities over which printed stiffnesses are matched.
+_TRIED = np.linspace(0.505, 0.56, 56)
+
+
+def infer_printed(one: Printed, maker: str | None = None, conformity: float | None = None) -> Inferred:
+    """Balls and grooves of one size.
+
+    Parameters
+    ----------
+    maker : "NSK" or "GMN", whose practice of rating is known; None: the practice that explains the numbers better
+    conformity : of both grooves; None: from printed stiffnesses, else 0.522
+
+    Raises
+    ------
+    SceneError
+        Ratings that contradict each other, or that no whole number of usual balls explains; an unknown maker.
+    """
+    _refuse_contradiction(one)
+    found = _candidates(one, maker)
+    if not found or not found[0].explains:
+        raise SceneError.at(one.title, None, _unexplained(one, found))
+    best = found[0]
+    odds = np.exp([min(x.weight - best.weight, 0.0) for x in found])
+    odds /= odds.sum()
+    share = float(sum(p for x, p in zip(found, odds, strict=True) if x.ball_count == best.ball_count))
+    other = next(((x, float(p)) for x, p in zip(found, odds, strict=True) if x.ball_count != best.ball_count), None)
+    inner, outer = _grooves(one, best, conformity)
+    made = Inferred(
+        printed=one,
+        practice=best.practice,
+        ball_count=Number(best.ball_count, 1.0 - share, _why_count(best, share)),
+        ball_diameter=Number(best.ball_diameter, max(map(abs, best.dynamic_errors)) / 1.8, _why_diameter(best)),
+        pitch_diameter=Number(one.mean_diameter, _PITCH, "the mean of bore and outer diameter"),
+        conformity_inner=inner,
+        conformity_outer=outer,
+        share=share,
+        other=None
+        if other is None
+        else {"ball_count": other[0].ball_count, "ball_diameter": other[0].ball_diameter, "share": other[1]},
+        checks=(),
+        stiffness_error=STIFFNESS_90[best.practice],
+    )
+    return attrs.evolve(made, checks=_checks(one, best, inner.value, outer.value))
+
+
+def _candidates(one: Printed, maker: str | None) -> list[Candidate]:
+    if maker is not None and maker.lower() not in MAKERS:
+        known = ", ".join(name.upper() for name in MAKERS)
+        raise SceneError.at("maker", maker, f"must be one of {known}, whose practice of rating is known, or left out")
+    practice = None if maker is None else MAKERS[maker.lower()]
+    found = [] if practice == "grooves" else by_tables(one)
+    # A known bearing is inferred from the others.  Ratings at several angles are one bearing by the tables, or none of both practices.
+    if practice == "grooves" or (practice is None and len(one.ratings) == 1):
+        found += by_grooves(one, without=one.names[0] if one.names else "")
+    if practice != "grooves" and not any(x.explains for x in found):
+        found += by_tables(one, metric=True)
+    return sorted(found, key=lambda x: (not x.explains, -x.weight))
+
+
+def _refuse_contradiction(one: Printed) -> None:
+    """Ratings fall as the contact angle grows: C with cos(a)^0.7, C0 with cos(a), but for a few percent."""
+    angles = [rating.contact_angle_deg for rating in one.ratings]
+    if len(set(angles)) < len(angles):
+        raise SceneError.at(
+            one.title, angles, "each contact angle can have one pair of ratings: these dimensions are listed twice"
+        )
+    first = min(one.ratings, key=lambda x: x.contact_angle_deg)
+    for rating in one.ratings:
+        lean = math.cos(math.radians(rating.contact_angle_deg)) / math.cos(math.radians(first.contact_angle_deg))
+        for word, here, there, power in (
+            ("dynamic", rating.dynamic, first.dynamic, 0.7),
+            ("static", rating.static, first.static, 1.0),
+        ):
+            off = here / there / lean**power - 1.0
+            if abs(off) > 0.06:
+                rule = (
+                    f"contradicts {there:g} N at {first.contact_angle_deg:g} deg: the same balls have {there * lean**power:.4g} N, "
+                    "but for some percent. Are both of one size and one maker?"
+                )
+                raise SceneError.at(f"{one.title}: {word} rating at {rating.contact_angle_deg:g} deg", here, rule)
+
+
+def _unexplained(one: Printed, found: list[Candidate]) -> str:
+    say = "no whole number of balls of a usual size explains these ratings"
+    tables = [x for x in found if x.practice == "tables"]
+    if not tables:
+        return f"{say}: are dimensions and ratings of one bearing, in mm and N?"
+    near = max(tables, key=lambda x: x.weight)
+    c, c0 = (max(errors, key=abs) for errors in (near.dynamic_errors, near.static_errors))
+    return (
+        f"{say}: the nearest, {near.ball_count} balls of {1e3 * near.ball_diameter:.4g} mm, has C {100.0 * c:+.1f} % and C0 "
+        f"{100.0 * c0:+.1f} % off by ISO 281 and ISO 76, which their makers meet within {100.0 * LIMITS[0]:g} and {100.0 * LIMITS[1]:g} %"
+    )
+
+
+def _why_count(best: Candidate, share: float) -> str:
+    how = {
+        "tables": "meets C and C0 by the tables of ISO 281 and ISO 76",
+        "grooves": "meets C and C0 with a groove and a filling as other bearings of the maker have",
+    }
+    doubt = "" if best.alike is None or best.alike >= _ALIKE else "; hardly any is like this one, so it is doubtful"
+    return f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}"
+
+
+def _why_diameter(best: Candidate) -> str:
+    return f"usual size, {size_words(best.ball_diameter)}; C alone leaves the scatter"
+
+
+def _grooves(one: Printed, best: Candidate, given: float | None) -> tuple[Number, Number]:
+    if given is not None:
+        both = Number(given, _CONFORMITY, "given")
+        return both, both
+    if best.practice == "grooves":
+        why = "gives C0 as Hertz contact at 4200 MPa"
+        outer = why if best.conformity_outer == best.conformity_inner else "usual beside a wide inner groove"
+        scatter = 0.002
+        return Number(best.conformity_inner, scatter, why), Number(best.conformity_outer, scatter, outer)
+    fitted = _fitted_conformity(one, best)
+    if fitted is None:
+        both = Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
+    else:
+        both = Number(fitted[0], fitted[1], f"meets {len(one.pairs)} printed stiffnesses of pairs")
+    return both, both
+
+
+def _fitted_conformity(one: Printed, best: Candidate) -> tuple[float, float] | None:
+    """Median of the conformities that give each printed stiffness, and their relative scatter."""
+    if not one.pairs:
+        return None
+    curves = stiffnesses(one, best.ball_count, best.ball_diameter, _TRIED, _TRIED)
+    wanted = np.array([pair.stiffness for pair in one.pairs])
+    # Stiffness falls as grooves widen.
+    each = [float(np.interp(k, curve[::-1], _TRIED[::-1])) for k, curve in zip(wanted, curves.T, strict=True)]
+    middle = float(np.median(each))
+    if not _TRIED[0] < middle < _TRIED[-1]:
+        usual = stiffnesses(one, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)
+        rule = (
+            f"contradicts the ratings: these balls have {1e-6 * usual[0]:.3g} N/µm under {one.pairs[0].preload:g} N in grooves of "
+            f"{CONFORMITY:g} D, and no groove that is ground gives this. Is it the axial stiffness of a pair?"
+        )
+        raise SceneError.at(f"{one.title}: stiffness of a pair", f"{1e-6 * wanted[0]:.3g} N/µm", rule)
+    return round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, 1e-4)
+
+
+def _checks(one: Printed, best: Candidate, inner: float, outer: float) -> tuple[Check, ...]:
+    found = []
+    for rating, c, c0 in zip(one.ratings, best.dynamic_errors, best.static_errors, strict=True):
+        for word, printed, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
+            found.append(Check(rating.contact_angle_deg, f"{word} rating", printed, printed * (1.0 + off)))
+    computed: Iterable[float] = stiffnesses(one, best.ball_count, best.ball_diameter, inner, outer) if one.pairs else []
+    for pair, k in zip(one.pairs, computed, strict=True):
+        found.append(Check(pair.contact_angle_deg, "pair stiffness", pair.stiffness, float(k)))
+    return tuple(found)

@@ -1,0 +1,249 @@
+"""What makers print of a bearing, and tables of it as CSV: one line a designation, lines of a size belong together."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+import attrs
+import numpy as np
+
+from raceway.errors import Mistake, SceneError
+from raceway.framework.options import nearest
+from raceway.storage.user_files import size_of
+
+#: Bytes of the largest table.
+_LARGEST = 2**24
+#: Columns that a table needs, and what it may have beside them, with the size of the unit.
+_NEEDED = {
+    "name": 0.0,
+    "bore_mm": 1e-3,
+    "outer_diameter_mm": 1e-3,
+    "width_mm": 1e-3,
+    "contact_angle_deg": 1.0,
+    "dynamic_rating_n": 1.0,
+    "static_rating_n": 1.0,
+}
+_OPTIONAL = {"ball_count": 1.0, "ball_diameter_mm": 1e-3, "pitch_diameter_mm": 1e-3}
+_PAIR = {"preload": "preload_{}_n", "stiffness": "stiffness_{}_n_per_um"}
+#: Static over dynamic rating of ball bearings, generously: outside, one of the two is no rating.
+_RATIO = 0.15, 3.0
+
+
+@attrs.frozen
+class Rating:
+    """Basic load ratings [N] at a contact angle [deg]."""
+
+    contact_angle_deg: float
+    dynamic: float
+    static: float
+
+
+@attrs.frozen
+class PairStiffness:
+    """Axial stiffness [N/m] of a pair back to back or face to face under a preload [N]."""
+
+    contact_angle_deg: float
+    preload: float
+    stiffness: float
+
+
+@attrs.frozen
+class Internals:
+    """Balls as a maker prints them: count, diameter and pitch diameter [m]."""
+
+    ball_count: int
+    ball_diameter: float
+    pitch_diameter: float
+
+
+@attrs.frozen
+class Printed:
+    """All that is printed of one size: lengths [m], ratings at each contact angle, stiffnesses of pairs.
+
+    Raises
+    ------
+    SceneError
+        Numbers that no bearing has, each with the rule.
+    """
+
+    bore: float
+    outer_diameter: float
+    ratings: tuple[Rating, ...]
+    width: float | None = None
+    pairs: tuple[PairStiffness, ...] = ()
+    names: tuple[str, ...] = ()
+    internals: Internals | None = None
+
+    def __attrs_post_init__(self) -> None:
+        where, found = self.title, []
+        numbers = {"bore": self.bore, "outer diameter": self.outer_diameter, "width": self.width or 1.0}
+        for one in self.ratings:
+            at = f"{one.contact_angle_deg:g} deg"
+            numbers |= {
+                "contact angle": one.contact_angle_deg,
+                f"dynamic rating, {at}": one.dynamic,
+                f"static rating, {at}": one.static,
+            }
+        for pair in self.pairs:
+            numbers |= {
+                "angle of a pair": pair.contact_angle_deg,
+                "preload of a pair": pair.preload,
+                "stiffness of a pair": pair.stiffness,
+            }
+            found += _not_positive(where, numbers)
+        found += _not_positive(where, numbers)
+        if found:
+            raise SceneError(list(dict.fromkeys(found)))
+        if not self.bore < self.outer_diameter < 10.0:
+            rule = 'must exceed the bore and be below 10 m: write a unit, "110 mm"'
+            found.append(Mistake(f"{where}: outer diameter", self.outer_diameter, rule))
+        if not self.ratings:
+            found.append(Mistake(where, None, "needs the load ratings at one contact angle or more"))
+        for one in self.ratings:
+            if not 0.0 < one.contact_angle_deg <= 45.0:
+                found.append(Mistake(f"{where}: contact angle", one.contact_angle_deg, "must be above 0 and at most 45 deg"))
+            if not _RATIO[0] < one.static / one.dynamic < _RATIO[1]:
+                rule = f"contradicts the dynamic rating {one.dynamic:g} N: C0 is {_RATIO[0]:g} to {_RATIO[1]:g} of C in ball bearings"
+                found.append(Mistake(f"{where}: static rating", one.static, rule))
+        if found:
+            raise SceneError(found)
+
+    @property
+    def title(self) -> str:
+        """Designations, or the dimensions where there are none."""
+        return ", ".join(self.names) or f"{1e3 * self.bore:g} x {1e3 * self.outer_diameter:g} mm"
+
+    @property
+    def mean_diameter(self) -> float:
+        """(bore + outer diameter) / 2 [m]."""
+        return 0.5 * (self.bore + self.outer_diameter)
+
+    @property
+    def section(self) -> float:
+        """Outer diameter less bore [m]."""
+        return self.outer_diameter - self.bore
+
+    def column(self, key: str) -> np.ndarray:
+        """``angle`` [rad], ``dynamic`` or ``static`` [N] of the ratings, (n,)."""
+        if key == "angle":
+            return np.radians([one.contact_angle_deg for one in self.ratings])
+        return np.array([getattr(one, key) for one in self.ratings])
+
+    def scaled(self, others: Iterable[Printed]) -> Printed:
+        """This size with the ratings, pairs and names of others of the same dimensions."""
+        every = (self, *others)
+        return attrs.evolve(
+            self,
+            ratings=tuple(x for one in every for x in one.ratings),
+            pairs=tuple(x for one in every for x in one.pairs),
+            names=tuple(x for one in every for x in one.names),
+        )
+
+
+def _not_positive(where: str, numbers: dict[str, float]) -> list[Mistake]:
+    rule = "must be a finite number above 0"
+    return [Mistake(f"{where}: {name}", x, rule) for name, x in numbers.items() if not (math.isfinite(x) and x > 0.0)]
+
+
+@cache
+def printed_by(maker: str) -> tuple[Printed, ...]:
+    """One entry a designation of a table that comes with the package: "nsk" or "gmn"."""
+    text = files("raceway").joinpath(f"data/printed/{maker}.csv").read_text(encoding="utf-8")
+    return parse_table(text, f"{maker}.csv").lines
+
+
+@attrs.frozen
+class Table:
+    """The lines of a table, and what is wrong with those that are no bearing."""
+
+    lines: tuple[Printed, ...]
+    faults: tuple[Mistake, ...]
+
+
+def read_table(path: Path) -> Table:
+    """The lines of a CSV file.
+
+    Raises
+    ------
+    SceneError
+        A file that cannot be read, columns that are missing or unknown, no line that is a bearing.
+    """
+    try:
+        size_of(path, _LARGEST)
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise SceneError.at(str(path), None, "no such file") from None
+    except (OSError, ValueError) as why:
+        reason = (
+            "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else getattr(why, "strerror", None) or str(why)
+        )
+        raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+    return parse_table(text, str(path))
+
+
+def parse_table(text: str, name: str) -> Table:
+    """One ``Printed`` a line of a CSV text; lines that start with # are remarks.
+
+    Raises
+    ------
+    SceneError
+        As ``read_table``.
+    """
+    lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
+    rows = list(csv.reader(line for _, line in lines))
+    head = [word.strip() for word in rows[0]] if rows else []
+    pairs = [{key: word.format(k) for key, word in _PAIR.items()} for k in range(1, 10)]
+    known = [*_NEEDED, *_OPTIONAL, *(word for pair in pairs for word in pair.values())]
+    faults = [Mistake(name, word, f"unknown column{nearest(word, known)}") for word in head if word not in known]
+    faults += [Mistake(name, None, f"column `{word}` is missing") for word in _NEEDED if word not in head]
+    if faults or len(rows) < 2:
+        raise SceneError(faults or [Mistake(name, None, "has no line below its head")])
+    found = []
+    for (number, _), cells in zip(lines[1:], rows[1:], strict=True):
+        try:
+            found.append(_line(dict(zip(head, cells, strict=True)), pairs))
+        except SceneError as error:
+            faults += [Mistake(f"{name}, line {number}: {m.path}", m.value, m.message) for m in error.mistakes]
+        except ValueError as why:
+            faults.append(Mistake(f"{name}, line {number}", None, f"is no line of this table: {why}"))
+    if not found:
+        raise SceneError(faults)
+    return Table(tuple(found), tuple(faults))
+
+
+def _line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
+    def number(key: str) -> float:
+        return float(cells[key]) * {**_NEEDED, **_OPTIONAL}.get(key, 1.0)
+
+    angle = number("contact_angle_deg")
+    internals = None
+    if all(cells.get(key) for key in _OPTIONAL):
+        internals = Internals(int(cells["ball_count"]), number("ball_diameter_mm"), number("pitch_diameter_mm"))
+    return Printed(
+        bore=number("bore_mm"),
+        outer_diameter=number("outer_diameter_mm"),
+        width=number("width_mm") if cells["width_mm"] else None,
+        ratings=(Rating(angle, number("dynamic_rating_n"), number("static_rating_n")),),
+        pairs=tuple(
+            PairStiffness(angle, number(pair["preload"]), 1e6 * number(pair["stiffness"]))
+            for pair in pairs
+            if cells.get(pair["preload"]) and cells.get(pair["stiffness"])
+        ),
+        names=(cells["name"],) if cells["name"] else (),
+        internals=internals,
+    )
+
+
+def sizes_of(lines: Iterable[Printed]) -> list[Printed]:
+    """Lines that differ in the contact angle alone, together: the same designation but for its suffix, or the same dimensions
+    where they say no internals of their own."""
+    groups: dict[object, list[Printed]] = {}
+    for one in lines:
+        key = one.names if one.internals is not None else (one.bore, one.outer_diameter, one.width)
+        groups.setdefault(key, []).append(one)
+    return [group[0].scaled(group[1:]) for group in groups.values()]

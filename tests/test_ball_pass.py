@@ -1,0 +1,53 @@
+"""Kinematic frequencies against printed ones, and their sums."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from raceway.pipeline.ball_pass import ball_pass
+from raceway.pipeline.run import run
+from raceway.scene.file import scene_from_dict
+
+
+def test_a_bearing_of_a_public_data_set_has_the_printed_frequencies():
+    """9 balls of 7.9375 mm on 38.50 mm, 0 deg; printed to four digits."""
+    found = ball_pass(9, 7.9375e-3, 38.5e-3, 0.0)
+    assert found["ftf"] == pytest.approx(0.3969, abs=5e-5)
+    assert found["bpfo"] == pytest.approx(3.572, abs=5e-4)
+    assert found["bpfi"] == pytest.approx(5.428, abs=5e-4)
+    assert found["bsf"] == pytest.approx(2.32, abs=5e-3)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.7])
+def test_ball_passes_are_those_of_the_cage_against_both_rings(angle):
+    found = ball_pass(12, 9.525e-3, 46e-3, angle)
+    assert found["bpfo"] + found["bpfi"] == pytest.approx(12.0, rel=1e-14)
+    assert found["bpfo"] == pytest.approx(12 * found["ftf"], rel=1e-14)
+    # A ball rolls on the outer race without slip: its spin times its radius at the contact is the cage's speed there.
+    g = 9.525e-3 * np.cos(angle) / 46e-3
+    assert found["bsf"] * 9.525e-3 == pytest.approx(46e-3 * (1 + g) * found["ftf"], rel=1e-14)
+
+
+def test_a_result_has_them_at_the_loaded_angle_and_in_hertz():
+    tables = {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": 1200.0},
+        "kinematics": {"spin_speed_rpm": 6000.0, "ball_inertia": False},
+    }
+    result = run(scene_from_dict(tables))
+    (row,) = result.ball_pass["rows"]
+    assert row["contact_angle_deg"] == pytest.approx(19.26, abs=0.02)  # shared expectation of the loaded angle, 1200 N
+    assert row["bpfo"] == pytest.approx(ball_pass(12, 9.525e-3, 46e-3, np.radians(row["contact_angle_deg"]))["bpfo"])
+    assert row["bpfo_hz"] == pytest.approx(100.0 * row["bpfo"], rel=1e-12)
+    assert result.to_dict()["ball_pass"] == result.ball_pass
+    still = run(scene_from_dict({**tables, "kinematics": {}})).ball_pass
+    assert still["speed_rpm"] == 0.0 and still["rows"][0]["bpfo_hz"] is None
+
+
+def test_each_row_of_a_pair_has_its_own():
+    pair = {"preset": "7014C", "arrangement": "DB", "preload": 300.0}
+    # Half the axial load that lifts the second row off: the first row's angle opens, the second's closes.
+    rows = run(scene_from_dict({"bearing": pair, "load": {"axial": 400.0}})).ball_pass["rows"]
+    assert len(rows) == 2
+    assert rows[0]["contact_angle_deg"] > rows[1]["contact_angle_deg"] > 15.0

@@ -1,0 +1,294 @@
+"""Balls and grooves from printed numbers: known bearings, standards, what is refused."""
+
+from __future__ import annotations
+
+import json
+
+import attrs
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.hertz import contact_modulus
+from raceway.errors import SceneError
+from raceway.studies.infer.grooves import pair_stiffness
+from raceway.studies.infer.infer import STIFFNESS_90, infer_printed
+from raceway.studies.infer.practices import CONFORMITY, LIMITS
+from raceway.studies.infer.printed import Printed, Rating, parse_table, printed_by, sizes_of
+from raceway.studies.infer.ratings import dynamic_rating, static_factor, static_rating, static_rating_of_grooves
+from raceway.studies.infer.tables import infer_table
+from validation.command_line import invoke
+
+#: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
+Z, D, PITCH, ANGLE = 12, 9.525e-3, 46e-3, np.radians(15.0)
+HEAD = "name,bore_mm,outer_diameter_mm,width_mm,contact_angle_deg,dynamic_rating_n,static_rating_n"
+
+
+@pytest.fixture(scope="module")
+def series():
+    """The printed sizes of the series 70, 72, 79, inferred with one conformity."""
+    return {one.names[0]: infer_printed(one, conformity=CONFORMITY) for one in sizes_of(printed_by("nsk"))}
+
+
+# --- standards
+
+
+def test_the_ratings_of_7206c_are_the_printed_ones():
+    """Makers print 23.0 and 14.7 kN, rounded to half a percent."""
+    assert dynamic_rating(Z, D, PITCH, ANGLE) == pytest.approx(23.0e3, rel=4e-3)
+    assert static_rating(Z, D, PITCH, ANGLE) == pytest.approx(14.7e3, rel=4e-3)
+
+
+def test_the_table_of_f0_is_the_load_at_4200_mpa():
+    """ISO 76's table is rounded to 0.1: 0.7 % of 14."""
+    for g in (0.12, 0.2, 0.3, 0.4):
+        exact = static_rating_of_grooves(1, 1e-3, 1e-3 / g, 0.0, 0.52, 0.53)
+        assert exact == pytest.approx(static_factor(g), rel=7e-3)
+
+
+def test_below_a_tenth_f0_goes_on_with_the_inner_race():
+    assert static_factor(0.0999999) == pytest.approx(static_factor(0.1), rel=1e-5)
+    # One maker prints 16.7 for 7922C, of 26 balls of 11.906 mm on 130 mm.
+    assert static_factor(11.90625 * np.cos(ANGLE) / 130.0) == pytest.approx(16.7, abs=0.05)
+
+
+def test_wider_grooves_carry_less():
+    ratings = [float(dynamic_rating(Z, D, PITCH, ANGLE, f, f)) for f in (0.515, 0.52, 0.53)]
+    assert ratings[0] > ratings[1] > ratings[2]
+    # f_c goes with (2 f / (2 f - 1))^0.41 where both grooves are alike (ISO/TR 1281-1).
+    assert ratings[2] / ratings[1] == pytest.approx((1.06 / 0.06 / (1.04 / 0.04)) ** 0.41, rel=1e-9)
+
+
+# --- stiffness of pairs
+
+
+def test_the_closed_form_of_a_pair_is_what_a_run_gives():
+    """One is interpolated Hertz and bisection, the other the compiled equilibrium: 1e-6 apart."""
+    tables = {"bearing": {"preset": "7206C-NSK", "arrangement": "DB", "preload": 400.0}}
+    b = rw.Scene.from_dict(tables).bearing
+    expected = pair_stiffness(
+        b.ball_count, b.ball_diameter, b.pitch_diameter, b.contact_angle, b.conformity_inner, b.conformity_outer, 400.0,
+        b.rings.young, b.rings.poisson,
+    )  # fmt: skip
+    assert rw.run(tables).stiffness[0, 0] == pytest.approx(float(expected), rel=1e-6)
+
+
+def test_the_load_factor_is_that_of_the_core():
+    from raceway.studies.infer.grooves import groove, load_factor
+
+    modulus = contact_modulus(208e9, 0.3, 208e9, 0.3)
+    shape = BallBearing(D, PITCH, Z, ANGLE, 0.522, 0.53)
+    g = shape.gamma
+    for race, (f, exact) in enumerate(zip((0.522, 0.53), shape.ellipses(modulus), strict=True)):
+        assert load_factor(*groove(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
+
+
+# --- the answers
+
+
+def test_printed_ratings_are_met(series):
+    """Issue's limits; one of 249 dynamic ratings misses its limit by 0.013 % (a printed step of 500 N is 1.4 % there)."""
+    errors = [(one.worst("dynamic rating"), one.worst("static rating")) for one in series.values()]
+    assert sum(len(one.printed.ratings) for one in series.values()) == 249
+    assert sum(c > LIMITS[0] for c, _ in errors) <= 2
+    assert max(c for c, _ in errors) < 0.00614
+    assert max(c0 for _, c0 in errors) < LIMITS[1]
+
+
+def test_printed_stiffnesses_of_pairs_are_met_with_one_conformity(series):
+    errors = [abs(x.error) for one in series.values() for x in one.checks if x.quantity == "pair stiffness"]
+    assert len(errors) == 384
+    assert np.median(errors) <= 0.01
+    assert np.quantile(errors, 0.9) <= STIFFNESS_90["tables"] <= 0.04
+
+
+def test_one_printed_angle_gives_the_same_balls(series):
+    balls = {name: found for found in series.values() for name in found.printed.names}
+    for one in printed_by("nsk")[::3]:
+        alone, whole = infer_printed(one, "NSK"), balls[one.names[0]]
+        assert alone.ball_count.value == whole.ball_count.value, one.names
+        assert alone.ball_diameter.value == whole.ball_diameter.value, one.names
+
+
+def test_the_practice_need_not_be_said(series):
+    """Measured: of all 249 single lines one is taken for the other practice with another ball count, and says that it is in doubt."""
+    balls = {name: found.ball_count.value for found in series.values() for name in found.printed.names}
+    wrong = [x for x in map(infer_printed, printed_by("nsk")[::3]) if x.ball_count.value != balls[x.printed.names[0]]]
+    assert len(wrong) <= 1
+    assert all(x.share < 0.6 for x in wrong)
+
+
+def test_bearings_with_printed_balls_are_inferred_from_the_others():
+    """Each is left out of the known ones: Z in 95 %, D and d_m within 1 % (the issue's limits)."""
+    found = infer_table("gmn")["summary"]
+    assert found["internals_printed"] == 103
+    assert found["ball_count_right"] >= 0.95
+    assert found["ball_diameter_within_1_percent"] >= 0.95
+    assert found["pitch_diameter_within_1_percent"] >= 0.95
+    assert found["pair_stiffness_error_90"] <= STIFFNESS_90["grooves"]
+
+
+def test_balls_of_whole_millimetres_are_found_where_no_inch_size_fits():
+    """16 balls of 11 mm on 80 mm, 25 deg: ratings by the standards, rounded to three digits as makers print."""
+    c, c0 = (
+        float(f"{float(x):.3g}") for x in (f(16, 11e-3, 80e-3, np.radians(25.0)) for f in (dynamic_rating, static_rating))
+    )
+    found = rw.infer("60 mm", "100 mm", {25: (c, c0)}, maker="NSK")
+    assert (found.ball_count.value, found.ball_diameter.value) == (16, pytest.approx(11e-3))
+    assert "11 mm" in found.ball_diameter.reason
+
+
+def test_a_conformity_is_fitted_to_printed_stiffnesses():
+    table = {"bearing": {"preset": "7014C", "conformity_inner": 0.53, "conformity_outer": 0.53, "arrangement": "DB"}}
+    pairs = []
+    for preload in (145.0, 740.0):
+        table["bearing"]["preload"] = preload
+        pairs.append((15.0, preload, rw.run(table).stiffness[0, 0]))
+    found = rw.infer("70 mm", "110 mm", {15: ("47 kN", "43 kN")}, pairs=pairs, maker="NSK")
+    # The fit interpolates on a grid of 0.0005 and rounds to four digits.
+    assert found.conformity_inner.value == pytest.approx(0.53, abs=1e-4)
+    assert found.conformity_inner.scatter < 1e-3
+
+
+def test_the_bearing_of_an_answer_runs():
+    found = rw.infer("30 mm", "62 mm", {15: (23.0e3, 14.7e3), 25: (22.1e3, 14.1e3)}, width="16 mm")
+    assert [found.ball_count.value, found.ball_diameter.value, found.pitch_diameter.value] == [
+        12,
+        pytest.approx(9.525e-3),
+        46e-3,
+    ]
+    table = found.bearing(25)
+    ours = rw.run({"bearing": table, "load": {"axial": 400.0}}).stiffness
+    preset = rw.run({"bearing": {"preset": "7206A5"}, "load": {"axial": 400.0}}).stiffness
+    assert np.allclose(ours, preset, rtol=1e-12, atol=1e-3)
+    json.dumps(found.to_dict())
+    assert found.other is None or found.other["share"] < 0.01
+
+
+# --- what is refused
+
+GOOD = Printed(0.07, 0.11, (Rating(15.0, 47e3, 43e3), Rating(25.0, 44.5e3, 41e3)))
+REFUSED = {
+    "no integer": ({"ratings": (Rating(15.0, 47e3, 30e3),)}, "no whole number of balls"),
+    "angles contradict": (
+        {"ratings": (Rating(15.0, 47e3, 43e3), Rating(25.0, 55e3, 41e3))},
+        "contradicts 47000 N at 15 deg",
+    ),
+    "twice": ({"ratings": (Rating(15.0, 47e3, 43e3),) * 2}, "listed twice"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_ratings_of_no_bearing_are_one_message(case):
+    changes, words = REFUSED[case]
+    with pytest.raises(SceneError) as caught:
+        infer_printed(attrs.evolve(GOOD, **changes), "NSK")
+    assert len(caught.value.mistakes) == 1 and words in str(caught.value)
+
+
+NO_INPUT = {
+    "dimension": (("70", "110 mm", {15: ("47 kN", "43 kN")}), "write a unit"),
+    "unit": (("70 mm", "110 mm", {15: ("47 m", "43 kN")}), "N or kN"),
+    "text": (("wide", "110 mm", {15: ("47 kN", "43 kN")}), "bore"),
+    "nan": ((float("nan"), "110 mm", {15: ("47 kN", "43 kN")}), "finite"),
+    "switched": (("70 mm", "110 mm", {15: ("47 kN", "1 N")}), "contradicts the dynamic rating"),
+    "angle": (("70 mm", "110 mm", {80: ("47 kN", "43 kN")}), "45 deg"),
+    "none": (("70 mm", "110 mm", {}), "needs the load ratings"),
+}
+
+
+@pytest.mark.parametrize("case", NO_INPUT)
+def test_numbers_that_no_bearing_has_are_told(case):
+    arguments, words = NO_INPUT[case]
+    with pytest.raises(SceneError, match=words):
+        rw.infer(*arguments)
+
+
+def test_a_stiffness_that_no_groove_gives_contradicts_the_ratings():
+    with pytest.raises(SceneError, match="Is it the axial stiffness of a pair") as caught:
+        rw.infer("70 mm", "110 mm", {15: ("47 kN", "43 kN")}, pairs=[(15, "145 N", "20 N/um")], maker="NSK")
+    assert "67.2 N/µm" in str(caught.value)
+
+
+def test_an_unknown_maker_is_refused():
+    with pytest.raises(SceneError, match="one of NSK, GMN"):
+        infer_printed(GOOD, "ACME")
+
+
+TABLES = {
+    "head": ("name,bore\n7014C,70\n", "unknown column"),
+    "empty": (HEAD + "\n", "has no line"),
+    "words": (HEAD + "\n7014C,wide,110,20,15,47000,43000\n", "line 2"),
+    "short": (HEAD + "\n7014C,70,110\n", "line 2"),
+    "contradiction": (HEAD + "\n7014C,70,110,20,15,18.5,0.02\n", "line 2: 7014C: static rating"),
+}
+
+
+@pytest.mark.parametrize("case", TABLES)
+def test_a_wrong_table_is_told_with_its_line(case):
+    text, words = TABLES[case]
+    with pytest.raises(SceneError, match=words):
+        parse_table(text, "mine.csv")
+
+
+# --- the commands
+
+
+def test_the_command_infers_one_bearing_and_a_table(tmp_path):
+    one = ["infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"]
+    found = json.loads(invoke(*one, "--json").stdout)
+    assert found["bearing"]["ball_count"] == 20 and found["numbers"]["ball_count"]["reason"]
+    assert "axial stiffness known to about 4 %" in invoke(*one).stdout
+    file = tmp_path / "mine.csv"
+    file.write_text(
+        f"{HEAD}\n7014C,70,110,20,15,47000,43000\n7014A5,70,110,20,25,44500,41000\nwrong,70,112,20,15,47000,23000\n"
+    )
+    with file.open("a") as more:
+        more.write("contradiction,70,114,20,15,18.5,0.02\n")
+    table = json.loads(invoke("infer", str(file), "--json").stdout)
+    assert [row.get("ball_count") for row in table["rows"]] == [None, 20, None]
+    assert "line 5: contradiction: static rating" in table["rows"][0]["refused"]
+    assert "no whole number" in table["rows"][2]["refused"]
+    assert "refused" in invoke("infer", str(file)).stdout
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["infer"],
+        ["infer", "none.csv"],
+        ["infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN"],
+        ["infer", "nsk", "--bore", "70 mm"],
+        ["catalogue", "7014B"],
+        ["catalogue", "70*", "--picture", "all.png"],
+        ["catalogue", "7014C", "--picture", "one.bmp"],
+    ],
+)
+def test_mistakes_on_the_command_line_are_one_message(words):
+    found = invoke(*words)
+    assert found.exit_code == 2
+    assert found.stderr.startswith("error: ") and "Traceback" not in found.stderr
+
+
+def test_the_catalogue_lists_shows_and_draws(tmp_path):
+    assert len(json.loads(invoke("catalogue", "79*", "--json").stdout)["bearings"]) == 72
+    picture = tmp_path / "7014C.png"
+    found = json.loads(invoke("catalogue", "7014C", "--picture", str(picture), "--json").stdout)
+    assert found["files"] == [str(picture)] and picture.read_bytes()[:4] == b"\x89PNG"
+    assert found["ball_pass"]["bpfo"] == pytest.approx(20 * 0.5 * (1 - 11.90625 / 90 * np.cos(ANGLE)))
+    assert "geometry inferred" in invoke("catalogue", "7014C").stdout
+    assert "Si3N4" in invoke("catalogue", "--materials").stdout
+
+
+def test_the_section_is_in_proportion():
+    from raceway.studies.catalogue.drawing import _outline
+
+    bearing = rw.Scene.from_dict({"bearing": {"preset": "7014C"}}).bearing
+    inner, outer = (_outline(bearing, race) for race in (True, False))
+    assert np.ptp(inner[:, 0]) == pytest.approx(0.02) and np.ptp(outer[:, 0]) == pytest.approx(0.02)
+    assert inner[:, 1].min() == pytest.approx(0.035) and outer[:, 1].max() == pytest.approx(0.055)
+    # Neither ring cuts the ball, and both grooves come close to it: they touch it at the contact angle.
+    for ring in (inner, outer):
+        gap = np.hypot(ring[2:-2, 0], ring[2:-2, 1] - 0.045) - 0.5 * bearing.ball_diameter
+        assert -1e-9 < gap.min() < 1e-5
