@@ -27,8 +27,7 @@ def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
         for row in rows
         if row["reason"]
     ]
-    elements = {row["cost"]["elements"] for row in rows} - {None}
-    lines += [f"elements of elastic bodies: {max(elements)}"] if elements else []
+    lines += [f"elements of elastic bodies: {content['elements']}"] if content["elements"] else []
     end = f"{content['runs']} runs, {content['failed']} failed; {cost['wall_s']:.0f} s, {cost['cpu_s']:.0f} s of processor time"
     end += f"; {cost['reused']} rows taken from earlier" if cost["reused"] else ""
     return Group(
@@ -62,9 +61,9 @@ def _moving(row: ReadTables) -> Tables:
     return {
         "force": row["case"].split()[0],
         "bodies": row["bodies"],
-        "K N/um": "-" if not found else f"{1e-6 * found['k']:.2f}",
+        "K N/µm": "-" if not found else f"{1e-6 * found['k']:.2f}",
         "C N s/m": "-" if not found else f"{found['c']:.0f}",
-        "|Z| N/um": "-" if not found else f"{1e-6 * found['abs_z']:.2f}",
+        "|Z| N/µm": "-" if not found else f"{1e-6 * found['abs_z']:.2f}",
         "K %": _percent(other.get("k")),
         "wC %": _percent(other.get("wc")),
         "|Z| %": _percent(other.get("abs_z")),

@@ -91,6 +91,7 @@ class ElasticArticle:
                 "reference": deviations.REFERENCE,
                 "what_differs": list(DIFFERENCES),
                 "rows": rows,
+                "elements": max((row["cost"]["elements"] or 0 for row in rows), default=0) or None,
                 "runs": len(rows),
                 "failed": self.failed,
                 "cost": {
