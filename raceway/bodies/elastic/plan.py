@@ -17,11 +17,11 @@ from raceway.storage.tables import Tables
 #: measured at 4500 and 17 000 cells with factors, at 60 000 with multigrid).
 _BYTES, _BYTES_A_CELL = 2.0e8, (7.5e4, 4.0e4)
 #: Pressures at points, by superelements: bytes of a cell; cells of the largest part that is factored (a ball of the article's
-#: mesh), bytes at the peak while it is, bytes and processor time of its factors.  Measured at 226 000, 526 000 and 1 064 000
-#: cells: 1.35, 3.49 and 6.87 GB, 27, 99 and 218 s.
-_POINT_BYTES, _PART_CELLS, _PEAK_BYTES, _FACTOR_BYTES, _FACTOR_S = 1.3e3, 60_288, 5.3e9, 2.4e9, 85.0
+#: coarser mesh), bytes at the peak while it is, bytes of a second set for time steps, processor time of its factors.  Measured with element
+#: sizes of 1.6 mm and 2 nodes to the semi-axis, of 1.0 mm, and on the article's mesh: 1.1, 3.5 and 6.6 GB, 9, 50 and 124 s; 16 GB in motion.
+_POINT_BYTES, _PART_CELLS, _PEAK_BYTES, _FACTOR_BYTES, _FACTOR_S = 3.0e3, 60_288, 5.3e9, 8.0e9, 85.0
 #: Processor seconds a cell: all that is not factored, up to the equilibrium; a solution of all bodies with its contacts.
-_POINT_S, _ALL_S = 1.1e-4, 7.0e-6
+_POINT_S, _ALL_S = 7.0e-5, 1.2e-5
 #: Share of the machine's memory that a run may take.
 _SHARE = 0.8
 #: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
