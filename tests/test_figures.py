@@ -20,6 +20,7 @@ from raceway.pipeline.run import run
 from raceway.plugins.reports import pictures
 from raceway.studies.article import figures as article
 from raceway.studies.article import panel
+from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
 from raceway.studies.map import picture as map_picture
 from raceway.studies.map.curves import curves as map_curves
@@ -151,10 +152,18 @@ def of_stresses() -> list[Figure]:
     return [contact_stress.drawn(result, below_contacts(result.model.bearing, result.model, result.equilibrium))[0]]
 
 
+def of_the_catalogue() -> list[Figure]:
+    """Large and small, light and heavy, with few and with many balls."""
+    return [
+        drawing.section(name, scene_from_dict({"bearing": {"preset": name}}).bearing)
+        for name in ("7000C", "7014A", "7930A5")
+    ]
+
+
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
-    contact_stress: of_stresses,
+    contact_stress: of_stresses, drawing: of_the_catalogue,
 }  # fmt: skip
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
-@click.command(short_help="Axial loads at which a set's rows lift off, and those that its contacts carry.")
+@click.command("limits", short_help="Axial loads at which a set's rows lift off, and those that its contacts carry.")
 @on_scene
 @click.option(
     "--pressure", type=float, default=4.2e9, show_default=True, help="Peak pressure [Pa] that limits loads: ISO 76's."
