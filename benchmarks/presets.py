@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from raceway.studies.infer.infer import STIFFNESS_90, infer_printed
@@ -83,8 +84,8 @@ def _rows(found: Inferred) -> list[tuple[str, str]]:
     return rows
 
 
-def _list(words: object) -> str:
-    return "[" + ", ".join(f'"{word}"' for word in words) + "]"  # type: ignore[attr-defined]
+def _list(words: Iterable[str]) -> str:
+    return "[" + ", ".join(f'"{word}"' for word in words) + "]"
 
 
 def every() -> dict[str, str]:

@@ -25,7 +25,7 @@ from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
 from raceway.scene.tables import TABLES, Scene
 from raceway.storage.tables import ReadTables, Tables
-from raceway.storage.user_files import size_of
+from raceway.storage.user_files import size_of, why_unreadable
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
@@ -87,8 +87,7 @@ def read_toml(path: str | Path) -> Tables:
         hint += f"; scenes there: {', '.join(scenes[:5])}" if scenes else ""
         raise SceneError.at(str(path), None, f"no such file{hint}") from None
     except (OSError, UnicodeDecodeError) as why:
-        reason = "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else why.strerror or str(why)
-        raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+        raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
     return parse_toml(text, str(path))
 
 

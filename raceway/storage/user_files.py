@@ -67,3 +67,10 @@ def memory_for(size: int) -> Iterator[None]:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+
+
+def why_unreadable(why: OSError | ValueError) -> str:
+    """What an exception of reading a text file says to people."""
+    if isinstance(why, UnicodeDecodeError):
+        return "it is not UTF-8 text"
+    return getattr(why, "strerror", None) or str(why)

@@ -26,6 +26,7 @@ _FEW_POINTS = 60
 class ElasticPoints(ElasticBodies):
     """Pressures at points."""
 
+    #: By displacement: asked for five times a result, each an evaluation of all bodies.
     _columns: dict[bytes, dict[str, np.ndarray]] = attrs.field(init=False, factory=dict)
 
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:

@@ -71,11 +71,6 @@ class CopiedStiffness:
         self._force = np.empty((len(self._own), 3, len(copies.turns)))
 
     @property
-    def bytes(self) -> int:
-        """Memory of the matrix and the displacements and forces of the copies."""
-        return sum(a.nbytes for a in (self.rows.neighbours, self.rows.data, self._moved, self._force))
-
-    @property
     def parts(self) -> int:
         """How many jobs a product is made of."""
         return -(-len(self._moved) // _ROWS)

@@ -19,6 +19,7 @@ from raceway.studies.article.figures import pictures as all_pictures
 from raceway.studies.article.report import page, verdict_rows
 
 if TYPE_CHECKING:
+    from raceway.studies.article.panel import Picture
     from raceway.studies.article.study import Article
 
 _DOTS_PER_INCH = 110
@@ -37,9 +38,14 @@ def write(study: Article, folder: Path, pictures: bool = True, command: str = "r
     files += [write_csv(rows, folder / f"{name}.csv") for name, rows in _tables(study, content).items()]
     if pictures:
         drawn = all_pictures(study)
-        files += [save_figure(one.figure(), folder / f"{one.name}.png", _DOTS_PER_INCH) for one in drawn]
+        files += save_pictures(drawn, folder)
         files.insert(0, page(study, drawn, command).write(folder / "article.html"))
     return files
+
+
+def save_pictures(drawn: Iterable[Picture], folder: Path) -> list[Path]:
+    """Each as a PNG of its name."""
+    return [save_figure(one.figure(), folder / f"{one.name}.png", _DOTS_PER_INCH) for one in drawn]
 
 
 def _tables(study: Article, content: ReadTables) -> dict[str, list[Tables]]:

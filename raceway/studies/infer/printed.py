@@ -14,7 +14,7 @@ import numpy as np
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.options import nearest
-from raceway.storage.user_files import size_of
+from raceway.storage.user_files import size_of, why_unreadable
 
 #: Bytes of the largest table.
 _LARGEST = 2**24
@@ -179,10 +179,7 @@ def read_table(path: Path) -> Table:
     except FileNotFoundError:
         raise SceneError.at(str(path), None, "no such file") from None
     except (OSError, ValueError) as why:
-        reason = (
-            "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else getattr(why, "strerror", None) or str(why)
-        )
-        raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+        raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
     return parse_table(text, str(path))
 
 

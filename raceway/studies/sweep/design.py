@@ -16,7 +16,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.scene.file import parse_value, read_toml
 from raceway.scene.given import tidy
 from raceway.storage.tables import ReadTables, Tables
-from raceway.storage.user_files import size_of
+from raceway.storage.user_files import size_of, why_unreadable
 from raceway.studies.many.axes import Axis, parse_axes, shown
 
 #: Most points of a sweep: beyond it, files of results are no longer something to open.
@@ -233,8 +233,7 @@ def _text(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as why:
-        reason = (why.strerror or str(why)) if isinstance(why, OSError) else "it is not UTF-8 text"
-        raise SceneError.at(str(path), None, f"cannot be read: {reason}") from None
+        raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
 
 
 def _listed(path: Path | str, points: object) -> Design:

@@ -20,6 +20,7 @@ LEAST_CELLS = 8000
 SOURCES = (
     "core/linear/dissection.py",
     "core/linear/fronts.py",
+    "core/linear/rigid_motions.py",
     "core/hexahedron",
     *(f"core/elastic/superelements/{name}.py" for name in ("closed", "kept", "loose", "part")),
 )

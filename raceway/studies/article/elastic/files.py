@@ -6,16 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from raceway.pipeline.result import write_json
-from raceway.plugins.reports.pictures import save_figure
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.elastic.figures import pictures as all_pictures
 from raceway.studies.article.elastic.report import page
-from raceway.studies.article.files import write_csv
+from raceway.studies.article.files import save_pictures, write_csv
 
 if TYPE_CHECKING:
     from raceway.studies.article.elastic.study import ElasticArticle
-
-_DOTS_PER_INCH = 110
 
 
 def write(study: ElasticArticle, folder: Path, pictures: bool, command: str) -> list[Path]:
@@ -31,7 +28,7 @@ def write(study: ElasticArticle, folder: Path, pictures: bool, command: str) -> 
     files.append(write_csv([flat(row) for row in content["rows"]], folder / "article-elastic.csv"))
     if pictures:
         drawn = all_pictures(content)
-        files += [save_figure(one.figure(), folder / f"{one.name}.png", _DOTS_PER_INCH) for one in drawn]
+        files += save_pictures(drawn, folder)
         stress = [
             folder / name for row in content["rows"] for name in row.get("pictures") or [] if (folder / name).is_file()
         ]
