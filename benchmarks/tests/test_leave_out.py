@@ -232,9 +232,11 @@ def test_a_rule_whose_answers_can_hardly_differ_holds_with_a_saving_only():
 
 
 def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
-    assert leave_out.RULES["integration"]().holds
+    # By its memory: times of a busy machine may differ by anything.
+    monkeypatch.setattr(leave_out, "_REPEATS", 1)
+    assert leave_out.RULES["integration"]().smaller
     monkeypatch.setattr("raceway.planning.decisions.uses_record", lambda scene: True)
-    assert not leave_out.RULES["integration"]().holds
+    assert not leave_out.RULES["integration"]().smaller
 
 
 @pytest.mark.slow
