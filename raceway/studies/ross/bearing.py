@@ -1,0 +1,181 @@
+"""A rolling bearing as an element of ROSS that computes its coefficients itself.  Importing this module imports ROSS."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from raceway.commands.inputs import slug
+from raceway.errors import RacewayError, SceneError
+from raceway.studies.ross.installed import generation, ross
+from raceway.studies.ross.node_bearing import NodeBearing, node_bearing
+from raceway.studies.ross.reading import through_points
+
+_ross = ross("raceway.ross.RollingBearing")
+#: Of the table that ROSS's plots and files show [r/min].
+_SPEEDS_RPM = np.linspace(0.0, 30_000.0, 7)
+#: ROSS's coefficient -> row and column in X, Y, Z.
+_PLACES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1), "zz": (2, 2)}
+
+
+class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
+    """A ``ross.BearingElement`` whose K and C are those of a bearing of Raceway at (frequency, speed).
+
+    Parameters
+    ----------
+    bearing : name of a preset (``"7014C"``), or a scene: Scene, path, TOML text, dict of tables
+    preload : axial load of the shaft on the inner ring [N] along ROSS's z; a negative one faces the other way.  None: the
+        scene's own loads, along z
+    n : node;  n_link : node of the housing, if it is not the ground
+    tilt : of the inner ring: "locked", "free", the shaft's stiffness against tilts [N m/rad], or "node": the ring tilts with
+        the node (alpha, beta), and K and C are (5, 5).  None: the scene's ``supports.tilt``
+    damping : added to cxx, cyy, czz [N s/m]; a dry bearing itself damps next to nothing
+    speeds : (m,) of ROSS's own table [rad/s], for its plots and files; by default 0 to 30 000 r/min
+    tag : by default the bearing's name with the node
+
+    Attributes
+    ----------
+    node_bearing : the bearing in its own axes, without ROSS
+
+    Raises
+    ------
+    SceneError
+        With every mistake of the scene.
+    ConvergenceError
+        No equilibrium under these loads at one of the ``speeds``.
+
+    Notes
+    -----
+    K and C are those of small motions about the equilibrium under the preload, whose speed unloads inner races.  The coupling of
+    axial and radial motions is part of them.  ``run_unbalance_response`` replaces them by those of the rotor's own motion.
+    What the rotor moves is the rotor model's: the inner ring's mass, and that of the scene's [rotor].
+
+    Examples
+    --------
+    >>> from raceway.ross import RollingBearing
+    >>> element = RollingBearing("B7206C", preload=1000.0, n=0)
+    >>> (1e-6 * element.K(1256.6)).round(1).tolist()  # [N/um], at 12 000 r/min
+    [[235.3, 0.0, 0.0], [0.0, 235.3, 0.0], [0.0, 0.0, 61.5]]
+    """
+
+    def __init__(
+        self,
+        bearing: Any,
+        preload: float | None = None,
+        *,
+        n: int,
+        n_link: int | None = None,
+        tilt: float | str | None = None,
+        damping: float = 0.0,
+        speeds: Sequence[float] | np.ndarray | None = None,
+        tag: str | None = None,
+        scale_factor: float = 1.0,
+        color: str = "#355d7a",
+    ) -> None:
+        if preload is not None and not (np.isfinite(preload) and preload != 0.0):
+            raise SceneError.at("preload", preload, "must be an axial load in N, negative for a bearing that faces -z")
+        if tilt == "node" and n_link is not None:
+            rule = "ROSS links translations only: leave `n_link` out, or choose 'locked', 'free' or a stiffness"
+            raise SceneError.at("tilt", tilt, rule)
+        self.side = -1 if preload is not None and preload < 0.0 else 1
+        self.node_bearing: NodeBearing = node_bearing(bearing, None if preload is None else abs(preload), tilt, damping)
+        self._held: dict[float, np.ndarray] = {}
+        self._dofs: dict[str, int] | None = None
+        axis = np.asarray(speeds if speeds is not None else _SPEEDS_RPM * pi / 30.0, dtype=float)
+        if axis.ndim != 1 or len(axis) < 2 or not np.all(np.diff(axis) > 0.0):
+            raise SceneError.at("speeds", speeds, "must be two or more ascending speeds in rad/s")
+        name = tag if tag is not None else f"{self._name()}, node {n}"
+        self.n_link = n_link
+        table = self._table(axis)
+        over = "frequency" if generation(_ross) < 3 else "speed"
+        super().__init__(
+            n=n, n_link=n_link, tag=name, scale_factor=scale_factor, color=color, **{over: axis}, **table
+        )  # fmt: skip
+        through_points(self)
+
+    def _name(self) -> str:
+        scene = self.node_bearing.scene
+        return slug(str(scene.source["bearing"].get("preset") or scene.title.partition("\n")[0]))
+
+    def _table(self, axis: np.ndarray) -> dict[str, np.ndarray]:
+        """Coefficients over the speeds, by ROSS's names."""
+        z = np.array([self.across(self.node_bearing.dynamic_stiffness(w, w)) for w in axis])
+        slow = np.maximum(axis, 1e-3)
+        stiffness = {f"k{name}": z.real[:, row, column] for name, (row, column) in _PLACES.items()}
+        damping = {f"c{name}": z.imag[:, row, column] / slow for name, (row, column) in _PLACES.items()}
+        return stiffness | damping
+
+    @property
+    def frame(self) -> np.ndarray:
+        """(n, m) our coordinates x, y, z, tilts by the element's degrees of freedom: X, Y, Z are y, z, x."""
+        side = self.side
+        turned = np.zeros((5, 5))
+        turned[[0, 1, 2, 3, 4], [2, 0, 1, 3, 4]] = side, 1.0, side, 1.0, side
+        mine = turned[: self.node_bearing.size, : self.node_bearing.size]
+        return mine if self.n_link is None else np.hstack([mine, -mine])
+
+    def across(self, matrix: np.ndarray) -> np.ndarray:
+        """A matrix (n, n) of our coordinates over the element's degrees of freedom."""
+        return np.asarray(self.frame.T @ matrix @ self.frame)
+
+    @property
+    def dof_global_index(self) -> dict[str, int] | None:
+        """Degree of freedom by name in the rotor, which sets it; with the node's tilts where they are the ring's."""
+        return self._dofs
+
+    @dof_global_index.setter
+    def dof_global_index(self, given: Mapping[str, int] | None) -> None:
+        self._dofs = None if given is None else dict(given)
+        if self._dofs is not None and self.node_bearing.tilts:
+            first = self._dofs[f"x_{self.n}"]
+            self._dofs |= {f"alpha_{self.n}": first + 3, f"beta_{self.n}": first + 4}
+
+    @property
+    def dofs(self) -> list[int]:
+        """Degrees of freedom of the rotor that the element stands on."""
+        if self._dofs is None:
+            raise RacewayError(f"{self.tag} stands in no rotor yet: hand it to ross.Rotor first")
+        return list(self._dofs.values())
+
+    @contextmanager
+    def holding(self, values: Mapping[float, np.ndarray]) -> Iterator[None]:
+        """With other Z (n, n) at some synchronous speeds [rad/s]."""
+        self._held = dict(values)
+        try:
+            yield
+        finally:
+            self._held = {}
+
+    def _dynamic(self, frequency: Any, speed: Any) -> np.ndarray:
+        frequency, speed = (None if w is None else float(getattr(w, "m_as", lambda _, w=w: w)("rad/s")) for w in (frequency, speed))
+        speed = frequency if speed is None else speed
+        held = self._held.get(speed) if frequency == speed else None
+        return self.across(self.node_bearing.dynamic_stiffness(frequency, abs(speed)) if held is None else held)
+
+    def K(self, frequency: Any, speed: Any = None) -> np.ndarray:
+        """Stiffness over the element's degrees of freedom [N/m, N, N m/rad] at a frequency and a speed of the ring [rad/s]."""
+        return np.ascontiguousarray(self._dynamic(frequency, speed).real)
+
+    def C(self, frequency: Any, speed: Any = None) -> np.ndarray:
+        """Damping over the element's degrees of freedom [N s/m] at a frequency and a speed of the ring [rad/s]."""
+        w = float(getattr(frequency, "m_as", lambda _: frequency)("rad/s"))
+        return np.ascontiguousarray(self._dynamic(frequency, speed).imag / max(abs(w), 1e-3))
+
+    def M(self, frequency: Any, speed: Any = None) -> np.ndarray:
+        """No mass: what moves is the rotor's."""
+        return np.zeros((self.frame.shape[1],) * 2)
+
+    def G(self) -> np.ndarray:
+        """No gyroscopic moment."""
+        return np.zeros((self.frame.shape[1],) * 2)
+
+    def save(self, file: Any) -> None:
+        """Write the table over ``speeds`` as a ``BearingElement``, which ROSS reads without Raceway."""
+        names = [f"{letter}{name}" for letter in "kc" for name in _PLACES]
+        axes = {name: getattr(self, name) for name in ("speed", "frequency") if getattr(self, name, None) is not None}
+        given = {name: getattr(self, name) for name in (*names, "n", "n_link", "tag", "scale_factor", "color")}
+        _ross.BearingElement(**given, **axes).save(file)

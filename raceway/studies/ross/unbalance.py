@@ -1,0 +1,158 @@
+"""Unbalance response in ROSS with the stiffness that each bearing has at the motion that the rotor makes there."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import ConvergenceError, RacewayError
+from raceway.studies.ross.bearing import RollingBearing
+from raceway.studies.shaft.balance import find_root
+
+_HALVINGS = 6
+
+
+@attrs.frozen(eq=False)
+class UnbalanceResponse:
+    """Response of a rotor to unbalance, consistent with the amplitude at its bearings.
+
+    Attributes
+    ----------
+    response : ROSS's ForcedResponseResults, with all its plots
+    speed : (m,) [rad/s]
+    stiffness, damping : tag of a bearing -> (m, n, n) over ROSS's x, y, z (alpha, beta) at each speed [N/m, N s/m]
+    force : tag -> (m, n) complex amplitudes of the shaft's load on the ring along them [N, N m]
+    runs : (m,) how often the bearings were asked
+    """
+
+    response: Any
+    speed: np.ndarray
+    stiffness: dict[str, np.ndarray]
+    damping: dict[str, np.ndarray]
+    force: dict[str, np.ndarray]
+    runs: np.ndarray
+
+
+def run_unbalance_response(
+    rotor: Any, node: Any, unbalance_magnitude: Any, unbalance_phase: Any, frequency: Any
+) -> UnbalanceResponse:
+    """ROSS's unbalance response, each ``RollingBearing`` as stiff as the rotor's own motion there finds it.
+
+    Parameters
+    ----------
+    rotor : ross.Rotor with one or more ``RollingBearing``
+    node, unbalance_magnitude, unbalance_phase : int or list, [kg m], [rad], as ROSS takes them
+    frequency : (m,) speeds [rad/s], greater than 0
+
+    Raises
+    ------
+    RacewayError
+        A rotor without such a bearing, speeds that are none.
+    ConvergenceError
+        No common motion of rotor and bearings, or a load that a bearing cannot carry; names the speed.
+
+    Notes
+    -----
+    Loads f of the shaft on the rings are sought such that the rings' motion u(f), a series of equilibria of which the 1x line
+    counts, is the rotor's: u(f) = u_0 - H f with the response u_0 and the receptance H of the rotor without these
+    bearings.  The search (Broyden) begins at small motions, at each speed anew, so that speeds do not depend on each other; of
+    several motions at one speed it finds the one nearest to these.  At the end K is the smallest symmetric
+    change of the tangent that carries this motion (``raceway.studies.ross.secant``), C that of small motions.
+    """
+    bearings = [one for one in rotor.bearing_elements if isinstance(one, RollingBearing)]
+    if not bearings:
+        raise RacewayError("the rotor stands on no raceway.ross.RollingBearing: take rotor.run_unbalance_response")
+    speeds = np.atleast_1d(np.asarray(getattr(frequency, "m_as", lambda _: frequency)("rad/s"), dtype=float))
+    if speeds.ndim != 1 or not np.all(np.isfinite(speeds)) or not np.all(speeds > 0.0):
+        raise RacewayError("`frequency`: speeds must be finite and greater than 0 rad/s")
+    found = [_Balance.at(rotor, bearings, w, (node, unbalance_magnitude, unbalance_phase)).solved() for w in speeds]
+    with ExitStack() as stack:
+        for k, one in enumerate(bearings):
+            stack.enter_context(one.holding({w: z[k] for w, (_, z, _) in zip(speeds, found, strict=True)}))
+        response = rotor.run_unbalance_response(node, unbalance_magnitude, unbalance_phase, list(speeds))
+    stiffness, damping, force = {}, {}, {}
+    for k, one in enumerate(bearings):
+        z = np.array([one.across(z[k]) for _, z, _ in found])
+        stiffness[one.tag], damping[one.tag] = z.real, z.imag / speeds[:, None, None]
+        force[one.tag] = np.array([one.frame.T @ loads[k] for loads, _, _ in found])
+    return UnbalanceResponse(response, speeds, stiffness, damping, force, np.array([runs for _, _, runs in found]))
+
+
+@attrs.frozen(eq=False)
+class _Balance:
+    """One speed [rad/s]: motion u_0 of the bearings' coordinates without their forces, receptance H."""
+
+    speed: float
+    bearings: list[RollingBearing]
+    response: np.ndarray
+    receptance: np.ndarray
+
+    @classmethod
+    def at(cls, rotor: Any, bearings: list[RollingBearing], w: float, unbalance: tuple[Any, Any, Any]) -> _Balance:
+        dynamic = rotor.K(w) + 1j * w * (rotor.C(w) + w * rotor.G()) - w**2 * rotor.M(w)
+        places = np.zeros((sum(one.node_bearing.size for one in bearings), rotor.ndof))
+        first = 0
+        for one in bearings:
+            dynamic[np.ix_(one.dofs, one.dofs)] -= one.K(w) + 1j * w * one.C(w)
+            places[first : first + one.node_bearing.size, one.dofs] = one.frame
+            first += one.node_bearing.size
+        force = np.zeros(rotor.ndof, dtype=complex)
+        for node, magnitude, phase in zip(*(np.atleast_1d(_plain(value)) for value in unbalance), strict=True):
+            turning = magnitude * w**2 * np.exp(1j * phase)
+            force[rotor.number_dof * int(node) : rotor.number_dof * int(node) + 2] += turning, -1j * turning
+        answers = np.linalg.solve(dynamic, np.column_stack([force, places.T]))
+        return cls(w, bearings, places @ answers[:, 0], places @ answers[:, 1:])
+
+    def solved(self) -> tuple[list[np.ndarray], list[np.ndarray], int]:
+        """Load and Z of each bearing, and the number of evaluations."""
+        small = [one.node_bearing.dynamic_stiffness(self.speed, self.speed) for one in self.bearings]
+        gain = np.zeros_like(self.receptance)
+        for part, z in zip(self._parts(), small, strict=True):
+            gain[part, part] = np.linalg.inv(z)
+        slope = gain + self.receptance
+        start = np.linalg.solve(slope, self.response)
+        size = self._size(gain @ start)
+        load, runs = self._search(start, slope, size)
+        loads = [load[part] for part in self._parts()]
+        z = [
+            one.node_bearing.stiffness_on(self.speed, f, one.node_bearing.motion(self.speed, f))
+            for one, f in zip(self.bearings, loads, strict=True)
+        ]
+        return loads, z, runs
+
+    def _search(self, start: np.ndarray, slope: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, int]:
+        def apart(load: np.ndarray) -> np.ndarray:
+            motion = [
+                one.node_bearing.motion(self.speed, load[part])
+                for one, part in zip(self.bearings, self._parts(), strict=True)
+            ]
+            return np.concatenate(motion) - self.response + self.receptance @ load
+
+        if not np.any(start):
+            return start, 0
+        for half in range(_HALVINGS + 1):
+            try:
+                return find_root(apart, 0.5**half * start, slope, size)
+            except ConvergenceError as why:
+                last = why
+        raise ConvergenceError(f"at {30.0 / np.pi * self.speed:.6g} r/min: {last}", last.state)
+
+    def _parts(self) -> list[slice]:
+        ends = np.cumsum([0, *(one.node_bearing.size for one in self.bearings)])
+        return [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
+
+    def _size(self, motion: np.ndarray) -> np.ndarray:
+        """Of each coordinate's motion, for the tolerance: the largest translation of the bearing, tilts by the arm."""
+        out = np.empty(len(motion))
+        for part, one in zip(self._parts(), self.bearings, strict=True):
+            arm = one.node_bearing.at_rest(self.speed)[0].system.arm
+            unit = np.array([1.0, 1.0, 1.0, arm, arm])[: one.node_bearing.size]
+            out[part] = max(float(np.abs(motion[part] * unit).max()), 1e-15) / unit
+        return out
+
+
+def _plain(value: Any) -> Any:
+    return value.to_base_units().magnitude if hasattr(value, "to_base_units") else value
