@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
+from copy import copy
 from math import pi
 from typing import Any
 
@@ -33,6 +33,8 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
     n : node;  n_link : node of the housing, if it is not the ground
     tilt : of the inner ring: "locked", "free", the shaft's stiffness against tilts [N m/rad], or "node": the ring tilts with
         the node (alpha, beta), and K and C are (5, 5).  None: the scene's ``supports.tilt``
+    axial : "force": the axial load stays (springs), and kzz is a spring beside the bearing; "displacement": the ring is the
+        node's along z, too (spacers), and its load follows from the motion.  None: the scene's ``supports.axial``
     damping : added to cxx, cyy, czz [N s/m]; a dry bearing itself damps next to nothing
     speeds : (m,) of ROSS's own table [rad/s], for its plots and files; by default 0 to 30 000 r/min
     tag : by default the bearing's name with the node
@@ -50,8 +52,7 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
 
     Notes
     -----
-    K and C are those of small motions about the equilibrium under the preload, whose speed unloads inner races.  The coupling of
-    axial and radial motions is part of them.  ``run_unbalance_response`` replaces them by those of the rotor's own motion.
+    K and C are those of small motions about the equilibrium under the preload, whose speed unloads inner races.  ``run_unbalance_response`` replaces them by those of the rotor's own motion.
     What the rotor moves is the rotor model's: the inner ring's mass, and that of the scene's [rotor].
 
     Examples
@@ -70,6 +71,7 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
         n: int,
         n_link: int | None = None,
         tilt: float | str | None = None,
+        axial: str | None = None,
         damping: float = 0.0,
         speeds: Sequence[float] | np.ndarray | None = None,
         tag: str | None = None,
@@ -82,7 +84,7 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
             rule = "ROSS links translations only: leave `n_link` out, or choose 'locked', 'free' or a stiffness"
             raise SceneError.at("tilt", tilt, rule)
         self.side = -1 if preload is not None and preload < 0.0 else 1
-        self.node_bearing: NodeBearing = node_bearing(bearing, None if preload is None else abs(preload), tilt, damping)
+        self.node_bearing: NodeBearing = node_bearing(bearing, None if preload is None else abs(preload), tilt, axial, damping)
         self._held: dict[float, np.ndarray] = {}
         self._dofs: dict[str, int] | None = None
         axis = np.asarray(speeds if speeds is not None else _SPEEDS_RPM * pi / 30.0, dtype=float)
@@ -141,14 +143,11 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
             raise RacewayError(f"{self.tag} stands in no rotor yet: hand it to ross.Rotor first")
         return list(self._dofs.values())
 
-    @contextmanager
-    def holding(self, values: Mapping[float, np.ndarray]) -> Iterator[None]:
-        """With other Z (n, n) at some synchronous speeds [rad/s]."""
-        self._held = dict(values)
-        try:
-            yield
-        finally:
-            self._held = {}
+    def holding(self, values: Mapping[float, np.ndarray]) -> RollingBearing:
+        """A copy with other Z (n, n) at some synchronous speeds [rad/s]."""
+        twin = copy(self)
+        twin._held = dict(values)
+        return twin
 
     def _dynamic(self, frequency: Any, speed: Any) -> np.ndarray:
         frequency, speed = (None if w is None else float(getattr(w, "m_as", lambda _, w=w: w)("rad/s")) for w in (frequency, speed))

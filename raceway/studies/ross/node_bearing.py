@@ -34,9 +34,15 @@ class NodeBearing:
 
     Attributes
     ----------
-    scene : static, its ring free along x
+    scene : static
     tilts : whether the node's own tilts are the ring's
     damping : added to all translations [N s/m]
+
+    Notes
+    -----
+    The node shares x, y, z with the ring, and its tilts where ``tilts`` says so.  ``supports.axial`` decides about x: under
+    "force" the axial load stays what it is (a spring), the ring finds its place on it, and kxx is a spring of the node beside
+    the bearing; under "displacement" (spacers) the ring is the node's along x, too, and its load follows from the motion.
     """
 
     scene: Scene
@@ -44,10 +50,24 @@ class NodeBearing:
     damping: float = 0.0
     _rest: dict[float, tuple[Model, Equilibrium]] = attrs.field(factory=dict, init=False, repr=False)
 
+    def __deepcopy__(self, _memo: Any) -> NodeBearing:
+        """Itself: it never changes, and ROSS copies rotors."""
+        return self
+
     @property
     def size(self) -> int:
-        """Coordinates that the node shares with the ring: x, y, z, and the tilts about y and z."""
+        """Coordinates of the node that K and C are given over: x, y, z, and the tilts about y and z."""
         return 5 if self.tilts else 3
+
+    @property
+    def moving(self) -> list[int]:
+        """Coordinates whose amplitude counts: y, z, and tilts."""
+        return list(range(1, self.size))
+
+    def _inside(self, model: Model) -> list[int]:
+        """Coordinates of the ring that find their own equilibrium: x on a constant load, tilts that the node does not share."""
+        first = [0] if self.scene.supports.axial == "force" else []
+        return first + [i for i in range(self.size, 5) if model.system.free[i] > 0.0]
 
     def at_rest(self, speed: float) -> tuple[Model, Equilibrium]:
         """Model and equilibrium of the ring that turns with a speed [rad/s]."""
@@ -67,16 +87,15 @@ class NodeBearing:
         now = system.evaluate(rest.displacement, ball=rest.ball)
         whole = rest.stiffness + system.stiffness + 1j * w * (now.damping + system.damping)
         whole[:3, :3] += 1j * w * self.damping * np.eye(3)
-        inside = [i for i in range(self.size, 5) if system.free[i] > 0.0]
-        seen = whole[: self.size, : self.size]
-        if inside:
-            seen = seen - whole[: self.size, inside] @ np.linalg.solve(
-                whole[np.ix_(inside, inside)], whole[inside, : self.size]
-            )
+        inside = self._inside(model)
+        seen = _condensed(whole, list(range(self.size)), [i for i in inside if i > 0])
+        if 0 in inside:
+            seen[0, 1:] = seen[1:, 0] = 0.0
+            seen[1:, 1:] = _condensed(whole, self.moving, inside)
         return seen
 
     def motion(self, speed: float, load: np.ndarray) -> np.ndarray:
-        """Complex amplitudes (n,) of the ring under a synchronous load (n,), without inertia: what the contacts carry.
+        """Complex amplitudes of ``moving`` under a synchronous load (n,) on them, without inertia: what the contacts carry.
 
         Raises
         ------
@@ -84,43 +103,75 @@ class NodeBearing:
             A load that the bearing cannot carry.
         """
         whole = np.zeros(5, dtype=complex)
-        whole[: self.size] = load
+        whole[self.moving] = load
         scene = attrs.evolve(self.at_rest(speed)[0].scene, excitation=harmonic_load(speed, whole))
         model = build_model(scene, make_plan(scene))
         record = simulate(model, settle(model)).record
         turning = np.exp(-1j * speed * record.time) * (2.0 / len(record.time))
-        return np.asarray(turning @ record.displacement[:, : self.size])
+        return np.asarray(turning @ record.displacement[:, self.moving])
 
     def stiffness_on(self, speed: float, load: np.ndarray, motion: np.ndarray) -> np.ndarray:
-        """Z (n, n) that carries a motion under its load: the smallest symmetric change of the stiffness of small motions."""
-        small = self.dynamic_stiffness(speed, speed)
-        unit = np.array([1.0, 1.0, 1.0, *[self.at_rest(speed)[0].system.arm] * 2])[: self.size]
-        return secant(small.real, motion, load, unit) + 1j * small.imag
+        """Z (n, n) that carries a motion of ``moving`` under its load: the smallest symmetric change of that of small motions."""
+        z = self.dynamic_stiffness(speed, speed)
+        part = np.ix_(self.moving, self.moving)
+        z[part] = secant(z[part].real, motion, load, self.units(speed)) + 1j * z[part].imag
+        return z
 
-    def force(self, speed: float, displacement: np.ndarray) -> np.ndarray:
-        """Force (n,) of the ring against a displacement (n,) from its equilibrium [N, N m]; damping is not in it.
+    def units(self, speed: float) -> np.ndarray:
+        """Length of a unit of each of ``moving``: 1 for m, for rad the arm of the tilts [m]."""
+        arm = self.at_rest(speed)[0].system.arm
+        return np.array([1.0, 1.0, arm, arm])[: len(self.moving)]
+
+    def resistance(self, speed: float, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force (n,) against a displacement (n,) of the node from its equilibrium [N, N m], and its derivative (n, n).
+
+        Damping is not in it.
 
         Raises
         ------
         ConvergenceError
-            A displacement at which the balls, or tilts that the node does not share, find no place.
+            A displacement at which the balls, or what finds its own equilibrium, find no place.
         """
         model, rest = self.at_rest(speed)
-        system, n = model.system, self.size
+        system, inside = model.system, self._inside(model)
+        shared = self.moving if 0 in inside else [0, *self.moving]
         q = rest.displacement.copy()
-        q[:n] += displacement
-        inside = [i for i in range(n, 5) if system.free[i] > 0.0]
+        q[shared] += displacement[shared]
+        size = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
         for _ in range(_MOST):
             now = system.evaluate(q, ball=rest.ball)
-            left = now.force + system.stiffness @ q - system.load
-            if not inside or np.abs(left[inside]).max() <= _TOLERANCE * system.arm * np.abs(now.contact_force).max():
-                return np.asarray(left[:n])
-            tangent = (now.stiffness + system.stiffness)[np.ix_(inside, inside)]
-            q[inside] -= np.linalg.solve(tangent, left[inside])
-        raise ConvergenceError(f"the ring finds no tilt at the displacement {np.array2string(displacement, precision=3)} m")
+            left, tangent = now.force + system.stiffness @ q - system.load, now.stiffness + system.stiffness
+            if not inside or np.abs((left / size)[inside]).max() <= _TOLERANCE * np.abs(now.contact_force).max():
+                break
+            q[inside] -= np.linalg.solve(tangent[np.ix_(inside, inside)], left[inside])
+        else:
+            where = np.array2string(displacement, precision=3)
+            raise ConvergenceError(f"the ring finds no equilibrium at the node's displacement {where} m")
+        force, slope = np.zeros(self.size), np.zeros((self.size, self.size))
+        force[shared], slope[np.ix_(shared, shared)] = left[shared], _condensed(tangent, shared, inside)
+        if 0 in inside:
+            slope[0, 0] = self.dynamic_stiffness(0.0, speed)[0, 0].real
+            force[0] = slope[0, 0] * displacement[0]
+        return force, slope
 
 
-def node_bearing(bearing: Any, preload: float | None, tilt: float | str | None, damping: float) -> NodeBearing:
+def _condensed(matrix: np.ndarray, shared: list[int], inside: list[int]) -> np.ndarray:
+    """Part of a matrix over some coordinates, others free of load."""
+    part = matrix[np.ix_(shared, shared)]
+    if not inside:
+        return np.array(part)
+    return np.asarray(
+        part - matrix[np.ix_(shared, inside)] @ np.linalg.solve(matrix[np.ix_(inside, inside)], matrix[np.ix_(inside, shared)])
+    )
+
+
+def node_bearing(
+    bearing: Any,
+    preload: float | None = None,
+    tilt: float | str | None = None,
+    axial: str | None = None,
+    damping: float = 0.0,
+) -> NodeBearing:
     """The bearing of a preset or a scene.
 
     Parameters
@@ -128,6 +179,8 @@ def node_bearing(bearing: Any, preload: float | None, tilt: float | str | None, 
     bearing : name of a preset, or Scene, path, TOML text, dict of tables
     preload : axial load [N]; None: the scene's own
     tilt : "locked", "free", "node" (the node's tilts are the ring's) or a stiffness [N m/rad]; None: the scene's supports.tilt
+    axial : "force" or "displacement"; None: the scene's supports.axial
+    damping : added to the translations [N s/m]
 
     Raises
     ------
@@ -135,17 +188,13 @@ def node_bearing(bearing: Any, preload: float | None, tilt: float | str | None, 
         With every mistake that was found.
     """
     scene = as_scene({"bearing": {"preset": bearing}} if _is_preset(bearing) else bearing)
-    tables: dict[str, Any] = {"supports": {"axial": "force"}}
-    if preload is not None:
-        tables["load"] = {"axial": preload}
-    if tilt is not None:
-        tables["supports"]["tilt"] = "free" if tilt == "node" else tilt
+    said = {"load.axial": preload, "supports.tilt": "free" if tilt == "node" else tilt, "supports.axial": axial}
+    scene = as_scene(scene, {key: value for key, value in said.items() if value is not None})
     if not damping >= 0.0 or not np.isfinite(damping):
         raise SceneError.at("damping", damping, "must be a finite damping of at least 0 N s/m")
     if scene.contact.friction > 0.0:
         rule = "takes work from every motion, which a stiffness does not tell: set it to 0 and give `damping` instead"
         raise SceneError.at("contact.friction", scene.contact.friction, rule)
-    scene = as_scene(scene, tables)
     find = default_registry().find
     scene = attrs.evolve(
         scene,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from copy import copy
 from typing import Any
 
 import attrs
@@ -10,6 +10,7 @@ import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.studies.ross.bearing import RollingBearing
+from raceway.studies.ross.node_bearing import NodeBearing
 from raceway.studies.shaft.balance import find_root
 
 _HALVINGS = 6
@@ -21,13 +22,15 @@ class UnbalanceResponse:
 
     Attributes
     ----------
-    response : ROSS's ForcedResponseResults, with all its plots
+    rotor : whose bearings have the K and C below at these speeds, and those of small motions at others
+    response : its ForcedResponseResults of ROSS, with all its plots
     speed : (m,) [rad/s]
     stiffness, damping : tag of a bearing -> (m, n, n) over ROSS's x, y, z (alpha, beta) at each speed [N/m, N s/m]
     force : tag -> (m, n) complex amplitudes of the shaft's load on the ring along them [N, N m]
     runs : (m,) how often the bearings were asked
     """
 
+    rotor: Any
     response: Any
     speed: np.ndarray
     stiffness: dict[str, np.ndarray]
@@ -50,7 +53,7 @@ def run_unbalance_response(
     Raises
     ------
     RacewayError
-        A rotor without such a bearing, speeds that are none.
+        A rotor without such a bearing, speeds that are none, an unbalance of zero.
     ConvergenceError
         No common motion of rotor and bearings, or a load that a bearing cannot carry; names the speed.
 
@@ -69,16 +72,26 @@ def run_unbalance_response(
     if speeds.ndim != 1 or not np.all(np.isfinite(speeds)) or not np.all(speeds > 0.0):
         raise RacewayError("`frequency`: speeds must be finite and greater than 0 rad/s")
     found = [_Balance.at(rotor, bearings, w, (node, unbalance_magnitude, unbalance_phase)).solved() for w in speeds]
-    with ExitStack() as stack:
-        for k, one in enumerate(bearings):
-            stack.enter_context(one.holding({w: z[k] for w, (_, z, _) in zip(speeds, found, strict=True)}))
-        response = rotor.run_unbalance_response(node, unbalance_magnitude, unbalance_phase, list(speeds))
+    held = {id(one): {w: z[k] for w, (_, z, _) in zip(speeds, found, strict=True)} for k, one in enumerate(bearings)}
+    twin = _with_bearings(
+        rotor, [one.holding(held[id(one)]) if id(one) in held else one for one in rotor.bearing_elements]
+    )
+    response = twin.run_unbalance_response(node, unbalance_magnitude, unbalance_phase, list(speeds))
     stiffness, damping, force = {}, {}, {}
     for k, one in enumerate(bearings):
         z = np.array([one.across(z[k]) for _, z, _ in found])
         stiffness[one.tag], damping[one.tag] = z.real, z.imag / speeds[:, None, None]
-        force[one.tag] = np.array([one.frame.T @ loads[k] for loads, _, _ in found])
-    return UnbalanceResponse(response, speeds, stiffness, damping, force, np.array([runs for _, _, runs in found]))
+        force[one.tag] = np.array([one.frame[one.node_bearing.moving].T @ loads[k] for loads, _, _ in found])
+    return UnbalanceResponse(twin, response, speeds, stiffness, damping, force, np.array([runs for _, _, runs in found]))
+
+
+def _with_bearings(rotor: Any, bearings: list[Any]) -> Any:
+    """A copy of a rotor on other bearings at the same places, without the answers that ROSS keeps of the rotor."""
+    twin = copy(rotor)
+    for name in [name for name in vars(twin) if name.startswith("__wire|")]:  # of the package methodtools
+        delattr(twin, name)
+    twin.bearing_elements = bearings
+    return twin
 
 
 @attrs.frozen(eq=False)
@@ -86,53 +99,47 @@ class _Balance:
     """One speed [rad/s]: motion u_0 of the bearings' coordinates without their forces, receptance H."""
 
     speed: float
-    bearings: list[RollingBearing]
+    bearings: list[NodeBearing]
     response: np.ndarray
     receptance: np.ndarray
 
     @classmethod
     def at(cls, rotor: Any, bearings: list[RollingBearing], w: float, unbalance: tuple[Any, Any, Any]) -> _Balance:
         dynamic = rotor.K(w) + 1j * w * (rotor.C(w) + w * rotor.G()) - w**2 * rotor.M(w)
-        places = np.zeros((sum(one.node_bearing.size for one in bearings), rotor.ndof))
-        first = 0
+        places = np.zeros((0, rotor.ndof))
         for one in bearings:
-            dynamic[np.ix_(one.dofs, one.dofs)] -= one.K(w) + 1j * w * one.C(w)
-            places[first : first + one.node_bearing.size, one.dofs] = one.frame
-            first += one.node_bearing.size
+            held, frame = one.node_bearing, one.frame[one.node_bearing.moving]
+            small = held.dynamic_stiffness(w, w)[np.ix_(held.moving, held.moving)]
+            dynamic[np.ix_(one.dofs, one.dofs)] -= frame.T @ small @ frame
+            mine = np.zeros((len(frame), rotor.ndof))
+            mine[:, one.dofs] = frame
+            places = np.vstack([places, mine])
         force = np.zeros(rotor.ndof, dtype=complex)
         for node, magnitude, phase in zip(*(np.atleast_1d(_plain(value)) for value in unbalance), strict=True):
             turning = magnitude * w**2 * np.exp(1j * phase)
             force[rotor.number_dof * int(node) : rotor.number_dof * int(node) + 2] += turning, -1j * turning
         answers = np.linalg.solve(dynamic, np.column_stack([force, places.T]))
-        return cls(w, bearings, places @ answers[:, 0], places @ answers[:, 1:])
+        return cls(w, [one.node_bearing for one in bearings], places @ answers[:, 0], places @ answers[:, 1:])
 
     def solved(self) -> tuple[list[np.ndarray], list[np.ndarray], int]:
         """Load and Z of each bearing, and the number of evaluations."""
-        small = [one.node_bearing.dynamic_stiffness(self.speed, self.speed) for one in self.bearings]
         gain = np.zeros_like(self.receptance)
-        for part, z in zip(self._parts(), small, strict=True):
-            gain[part, part] = np.linalg.inv(z)
+        for part, one in self._parts():
+            small = one.dynamic_stiffness(self.speed, self.speed)
+            gain[part, part] = np.linalg.inv(small[np.ix_(one.moving, one.moving)])
         slope = gain + self.receptance
         start = np.linalg.solve(slope, self.response)
-        size = self._size(gain @ start)
-        load, runs = self._search(start, slope, size)
-        loads = [load[part] for part in self._parts()]
-        z = [
-            one.node_bearing.stiffness_on(self.speed, f, one.node_bearing.motion(self.speed, f))
-            for one, f in zip(self.bearings, loads, strict=True)
-        ]
+        load, runs = self._search(start, slope, self._size(gain @ start))
+        loads = [load[part] for part, _ in self._parts()]
+        z = [one.stiffness_on(self.speed, f, one.motion(self.speed, f)) for f, one in zip(loads, self.bearings, strict=True)]
         return loads, z, runs
 
     def _search(self, start: np.ndarray, slope: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, int]:
         def apart(load: np.ndarray) -> np.ndarray:
-            motion = [
-                one.node_bearing.motion(self.speed, load[part])
-                for one, part in zip(self.bearings, self._parts(), strict=True)
-            ]
+            motion = [one.motion(self.speed, load[part]) for part, one in self._parts()]
             return np.concatenate(motion) - self.response + self.receptance @ load
 
-        if not np.any(start):
-            return start, 0
+        last = ConvergenceError()
         for half in range(_HALVINGS + 1):
             try:
                 return find_root(apart, 0.5**half * start, slope, size)
@@ -140,17 +147,16 @@ class _Balance:
                 last = why
         raise ConvergenceError(f"at {30.0 / np.pi * self.speed:.6g} r/min: {last}", last.state)
 
-    def _parts(self) -> list[slice]:
-        ends = np.cumsum([0, *(one.node_bearing.size for one in self.bearings)])
-        return [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
+    def _parts(self) -> list[tuple[slice, NodeBearing]]:
+        ends = np.cumsum([0, *(len(one.moving) for one in self.bearings)])
+        return [(slice(int(a), int(b)), one) for a, b, one in zip(ends, ends[1:], self.bearings, strict=False)]
 
     def _size(self, motion: np.ndarray) -> np.ndarray:
-        """Of each coordinate's motion, for the tolerance: the largest translation of the bearing, tilts by the arm."""
+        """Of each coordinate's motion, for the tolerance: the largest of its bearing."""
         out = np.empty(len(motion))
-        for part, one in zip(self._parts(), self.bearings, strict=True):
-            arm = one.node_bearing.at_rest(self.speed)[0].system.arm
-            unit = np.array([1.0, 1.0, 1.0, arm, arm])[: one.node_bearing.size]
-            out[part] = max(float(np.abs(motion[part] * unit).max()), 1e-15) / unit
+        for part, one in self._parts():
+            units = one.units(self.speed)
+            out[part] = np.abs(motion[part] * units).max() / units
         return out
 
 
