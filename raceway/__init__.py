@@ -1,6 +1,7 @@
 """Dynamic stiffness of ball bearings under axial load and rotor unbalance, with the error and cost of every number.
 
 cli            the command line: ``raceway``
+ross           bearings inside rotors of the program ROSS
 front          what ``import raceway`` offers for one scene: run, plan, check, evolve
 commands       what all commands share: options, progress, screens, how a command ends
 studies        many runs made into one answer, a folder a study, each with its command

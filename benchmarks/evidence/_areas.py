@@ -55,7 +55,7 @@ AREAS = {
         studies/precision/labels studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
         __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/higher_types framework/hookspecs framework/registry
-        framework/shown framework/sources front pipeline/facts pipeline/result plugins/__init__ plugins/system_libraries scene/schema storage/__init__ storage/cache_folder
+        framework/shown framework/sources front pipeline/facts pipeline/result plugins/__init__ plugins/system_libraries ross scene/schema storage/__init__ storage/cache_folder
         storage/files storage/tables storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         data/article_elastic studies/article/command studies/article/elastic studies/article/screen studies/compare/command studies/compare/front studies/compare/labelled studies/compare/screen studies/map/command
         studies/limits/command studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
@@ -107,7 +107,7 @@ MEASURES = {
     "precision": "rigid motion periodic errors precision",
     "random_scenes": "rigid motion plan scene",
     "rig": "measured rig shaft examples/test_rig.toml",
-    "ross": "ross shaft examples/ross_rotor.py",
+    "ross": "ross shaft rigid examples/ross_rotor.py benchmarks/evidence/_ross_rotor.py",
     "running": "rigid motion",
     "sets": "rigid scene limits examples/set_tbt.toml",
     "several_motions": "rigid motion periodic",

@@ -150,7 +150,8 @@ class NodeBearing:
         force, slope = np.zeros(self.size), np.zeros((self.size, self.size))
         force[shared], slope[np.ix_(shared, shared)] = left[shared], _condensed(tangent, shared, inside)
         if 0 in inside:
-            slope[0, 0] = self.dynamic_stiffness(0.0, speed)[0, 0].real
+            beside = _condensed(rest.stiffness + system.stiffness, list(range(self.size)), [i for i in inside if i > 0])
+            slope[0, 0] = beside[0, 0]
             force[0] = slope[0, 0] * displacement[0]
         return force, slope
 

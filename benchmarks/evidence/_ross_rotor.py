@@ -1,0 +1,292 @@
+"""A rotor in ROSS on bearings from Raceway.
+
+    pip install '.[sweep,ross]'
+    python examples/ross_rotor.py [--out FILE.json]
+
+1. Raceway sweeps a B7206C under 1 kN over speed, writes the coefficients, and ROSS reads them.
+2. A rigid rotor on two of them: its critical speed against w = sqrt(2 K(w) / M).
+3. The rig's rotor, a 30 mm shaft with a disc: its unbalance response against that with ROSS's closed formula for ball bearings.
+4. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: iterated to a fixed point.
+
+Where ROSS is missing, it says so and ends with exit code 2.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import sys
+import tempfile
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from scipy.optimize import brentq
+
+import raceway as rw
+
+AXIAL = 1000.0  # N
+#: Of the sweep [N]: small, so that the coefficients are those of small motions.
+FORCE = 10.0
+SPEEDS = "1000:31000:16"  # r/min
+#: The rig: 7.1 g at 90 mm.
+UNBALANCE, SPEED_RPM = 6.39e-4, 12000.0
+SPAN, SHAFT, DISC_MASS = 0.30, 0.030, 3.0  # m, m, kg
+RIGID_MASS = 60.0  # kg: puts the critical speed of the rigid rotor inside the table
+
+
+def bearing(**changes: Any) -> dict[str, Any]:
+    """The scene: one bearing, ring held against tilt, a force that turns with the shaft."""
+    scene = {
+        "title": "B7206C in a rotor",
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": AXIAL},
+        "supports": {"tilt": "locked"},
+        "excitation": {"kind": "bidirectional", "speed_rpm": SPEED_RPM, "amplitude": "constant", "force": FORCE},
+        "integrator": {"kind": "periodic"},
+    }
+    return {**scene, **changes}
+
+
+def import_ross() -> Any:
+    """ROSS, without what its packages say while they are loaded; None where it is missing."""
+    silence = os.open(os.devnull, os.O_WRONLY)
+    kept = os.dup(1), os.dup(2)
+    sys.stdout.flush()
+    try:
+        for stream in (1, 2):  # a compiled package writes past Python
+            os.dup2(silence, stream)
+        with warnings.catch_warnings(), contextlib.suppress(ImportError):
+            warnings.simplefilter("ignore")
+            import ross
+
+            return ross
+        return None
+    finally:
+        sys.stdout.flush()
+        for stream, old in zip((1, 2), kept, strict=True):
+            os.dup2(old, stream)
+
+
+def swept(generation: int) -> Any:
+    """The coefficients over speed, for one generation of ROSS."""
+    return rw.export_ross(rw.sweep(bearing(), {"excitation.speed_rpm": SPEEDS}), ross_version=generation)
+
+
+def grid_at_points() -> float:
+    """A table over speed and frequency, which ROSS 3 takes: largest relative difference of kxx at its points."""
+    axes = {"kinematics.spin_speed_rpm": "4000:24000:5", "excitation.speed_rpm": "4000:24000:6"}
+    found = rw.export_ross(rw.sweep(bearing(), axes), ross_version=3)
+    element, table = found.element(), found.coefficients
+    assert table.speed is not None and table.frequency is not None
+    read = [[element.K(frequency=f, speed=w)[0, 0] for f in table.frequency] for w in table.speed]
+    return float(np.max(np.abs(np.array(read) / table.stiffness[..., 0, 0] - 1.0)))
+
+
+def at_points(element: Any, found: Any) -> dict[str, float]:
+    """Largest relative difference of ROSS's coefficients from ours at the points of the table."""
+    table = found.coefficients
+    assert table.speed is not None
+    places = {"x": 0, "y": 1, "z": 2}
+    differences = {}
+    for ours, theirs in found.names.items():
+        matrices = np.array([(element.K if theirs[0] == "k" else element.C)(w) for w in table.speed])
+        values, wanted = matrices[:, places[theirs[1]], places[theirs[2]]], table.columns()[ours]
+        scale = np.max(np.abs(table.columns()[f"{ours[0]}yy"]))
+        differences[ours] = float(np.max(np.abs(values - wanted)) / scale)
+    return differences
+
+
+def rigid_rotor(ross: Any, found: Any) -> tuple[float, float]:
+    """Critical speed [rad/s] by ROSS and by the closed form, for a symmetric rotor that does not bend.
+
+    Notes
+    -----
+    M w^2 = 2 K(w) at the critical speed, K between the points as ROSS takes it.  The shaft is of a material a thousand times
+    stiffer than steel: its own bending lowers the speed by some 1e-5.
+    """
+    stiff = ross.Material(name="stiff", rho=7810.0, E=2.1e14, G_s=8.1e13)
+    shaft = [ross.ShaftElement(L=0.05, idl=0.0, odl=0.1, material=stiff) for _ in range(4)]
+    mass = RIGID_MASS - sum(float(part.m) for part in shaft)
+    # Inertias of a disc that keep the other rigid mode above this one.
+    disc = ross.DiskElement(n=2, m=mass, Id=0.02 * mass * 0.1**2, Ip=0.04 * mass * 0.1**2)
+    rotor = ross.Rotor(shaft, [disc], [found.element(0), found.element(4)])
+    element = found.element()
+    closed = brentq(lambda w: RIGID_MASS * w**2 - 2.0 * float(element.K(w)[0, 0]), 100.0, 3200.0, xtol=1e-9)
+    total = float(np.asarray(rotor.M(0))[0 :: rotor.number_dof, 0 :: rotor.number_dof].sum())
+    assert abs(total / RIGID_MASS - 1.0) < 1e-9, total
+
+    def above(speed: float) -> float:
+        """The lateral mode at this speed, which is the one next to the closed form, less the speed."""
+        return min(rotor.run_modal(speed, num_modes=12).wn, key=lambda w: abs(w - closed)) - speed
+
+    # ROSS's own run_critical_speed does the same for twelve modes from speed 0 on, and stops at one that has none.
+    return float(brentq(above, 0.98 * closed, 1.02 * closed, rtol=1e-8)), float(closed)
+
+
+def rig_rotor(ross: Any, make: Any) -> Any:
+    """Shaft, disc in the middle, two bearings ``make(node)``."""
+    steel = ross.Material(name="steel", rho=7810.0, E=2.1e11, G_s=8.1e10)
+    shaft = [ross.ShaftElement(L=SPAN / 6, idl=0.0, odl=SHAFT, material=steel) for _ in range(6)]
+    disc = ross.DiskElement(n=3, m=DISC_MASS, Id=4.1e-3, Ip=8.05e-3)
+    return ross.Rotor(shaft, [disc], [make(0), make(6)])
+
+
+def respond(rotor: Any, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Complex amplitudes [m] along ROSS's x and y at the disc and at the first bearing: (2, 2, n)."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = rotor.run_unbalance_response(3, UNBALANCE, 0.0, list(speeds)).forced_resp
+    dofs = rotor.number_dof
+    return np.asarray(found)[3 * dofs : 3 * dofs + 2], np.asarray(found)[:2]
+
+
+def force_on(rotor: Any, motion: np.ndarray, speed: float) -> float:
+    """Amplitude of the force on the first bearing [N], larger of both directions."""
+    element = rotor.bearing_elements[0]
+    dynamic = np.asarray(element.K(speed))[:2, :2] + 1j * speed * np.asarray(element.C(speed))[:2, :2]
+    return float(np.max(np.abs(dynamic @ motion)))
+
+
+def compared(ross: Any, found: Any, speeds: np.ndarray) -> list[dict[str, float]]:
+    """Unbalance response with our table and with ROSS's closed formula for ball bearings."""
+    element, ours = found.element(), rig_rotor(ross, found.element)
+    formula = rig_rotor(
+        ross, lambda node: ross.BallBearingElement(n=node, n_balls=12, d_balls=9.525e-3, fs=AXIAL, alpha=np.radians(15.0))
+    )
+    rows = []
+    disc, seat = respond(ours, speeds)
+    disc_f, seat_f = respond(formula, speeds)
+    for k, w in enumerate(speeds):
+        rows.append(
+            {
+                "speed_rpm": float(w * 30.0 / np.pi),
+                "k": float(element.K(w)[0, 0]),
+                "k_formula": float(formula.bearing_elements[0].K(w)[1, 1]),
+                "disc": float(np.max(np.abs(disc[:, k]))),
+                "disc_formula": float(np.max(np.abs(disc_f[:, k]))),
+                "force": force_on(ours, seat[:, k], w),
+                "force_formula": force_on(formula, seat_f[:, k], w),
+            }
+        )
+    return rows
+
+
+def fixed_point(ross: Any, axial: float, most: int = 60, tolerance: float = 1e-9) -> list[dict[str, float]]:
+    """Force on the bearing -> its stiffness -> response of the rotor -> force on the bearing, until nothing changes.
+
+    Notes
+    -----
+    The bearing is asked quasi-statically: then the force that is given is the one that its contacts carry, which is what the
+    rotor's bearing force is.
+    """
+    speed, force, rows = SPEED_RPM * np.pi / 30.0, FORCE, list[dict[str, float]]()
+    for _ in range(most):
+        excitation = {**bearing()["excitation"], "force": force}
+        scene = bearing(load={"axial": axial}, excitation=excitation, integrator={"kind": "quasi_static"})
+        found = rw.run(scene).identification
+        assert found is not None
+        k, c = found.equivalent_stiffness, found.equivalent_damping
+        rotor = rig_rotor(ross, lambda node, k=k, c=c: ross.BearingElement(n=node, kxx=k, cxx=c, kzz=1e8))
+        disc, seat = respond(rotor, np.array([speed]))
+        new = force_on(rotor, seat[:, 0], speed)
+        rows.append(
+            {"force": force, "k": k, "new_force": new, "change": abs(new - force) / new, "disc": float(abs(disc[0, 0]))}
+        )
+        if rows[-1]["change"] < tolerance:
+            break
+        force = new
+    return rows
+
+
+def study(ross: Any, folder: Path) -> dict[str, Any]:
+    """All numbers."""
+    generation = 3 if int(ross.__version__.partition(".")[0]) >= 3 else 2
+    table = swept(generation)
+    by_itself = ross.BearingElement.load(table.write(folder / "bearing.toml"))
+    critical, closed = rigid_rotor(ross, table)
+    return {
+        "ross": ross.__version__,
+        "notes": list(table.notes),
+        "at_points": at_points(table.element(), table),
+        "at_points_by_itself": at_points(by_itself, table),
+        "grid_at_points": grid_at_points() if generation == 3 else None,
+        "critical": critical,
+        "critical_closed": closed,
+        "response": compared(ross, table, table.coefficients.speed[1:8]),
+        "fixed_point": {str(axial): fixed_point(ross, axial) for axial in (1000.0, 400.0)},
+    }
+
+
+def tables(found: dict[str, Any]) -> list[Table]:
+    """What is shown."""
+    first = Table(
+        "speed r/min",
+        "K N/µm",
+        "K by formula",
+        "disc µm",
+        "by formula",
+        "bearing force N",
+        "by formula",
+        title="Unbalance response",
+    )
+    for row in found["response"]:
+        first.add_row(
+            f"{row['speed_rpm']:.0f}", f"{1e-6 * row['k']:.2f}", f"{1e-6 * row['k_formula']:.2f}", f"{1e6 * row['disc']:.2f}",
+            f"{1e6 * row['disc_formula']:.2f}", f"{row['force']:.1f}", f"{row['force_formula']:.1f}",
+        )  # fmt: skip
+    shown = [first]
+    for axial, rows in found["fixed_point"].items():
+        title = f"Stiffness and bearing force at {SPEED_RPM:.0f} r/min, axial {float(axial):.0f} N"
+        table = Table("iteration", "force given N", "K N/µm", "force of the rotor N", "change", title=title)
+        for k, row in enumerate(rows):
+            table.add_row(
+                str(k + 1),
+                f"{row['force']:.4f}",
+                f"{1e-6 * row['k']:.4f}",
+                f"{row['new_force']:.4f}",
+                f"{row['change']:.1e}",
+            )
+        shown.append(table)
+    return shown
+
+
+def main(words: list[str]) -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--out", type=Path, help="write all numbers as JSON")
+    given = parser.parse_args(words)
+    ross = import_ross()
+    if ross is None:
+        Console(stderr=True).print(
+            "ROSS is not installed: pip install '.[ross]' (in an environment of its own, see CONTRIBUTING.md)",
+            markup=False,
+        )
+        return 2
+    with tempfile.TemporaryDirectory() as folder:
+        found = study(ross, Path(folder))
+    screen = Console(highlight=False)
+    screen.print(f"ROSS {found['ross']}; coefficients at the points of the table:")
+    for name in ("at_points", "at_points_by_itself"):
+        worst = max(found[name].items(), key=lambda item: item[1])
+        told = "read by ROSS and made to pass through its points" if name == "at_points" else "read by ROSS alone"
+        screen.print(f"  {told}: within {worst[1]:.1e} ({worst[0]})")
+    if found["grid_at_points"] is not None:
+        screen.print(f"  a table over speed and frequency: within {found['grid_at_points']:.1e}")
+    error = found["critical"] / found["critical_closed"] - 1.0
+    screen.print(
+        f"rigid rotor: critical speed {found['critical']:.3f} rad/s, closed form {found['critical_closed']:.3f} ({error:+.1e})"
+    )
+    for table in tables(found):
+        screen.print(table)
+    if given.out is not None:
+        given.out.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
