@@ -12,6 +12,7 @@ from raceway.errors import SceneError
 from raceway.pipeline.run import run
 from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
 from raceway.scene.file import scene_from_dict
+from raceway.scene.growth import grooves
 from raceway.scene.tables import Bearing
 from raceway.studies.infer.printed import printed_by
 
@@ -155,6 +156,25 @@ def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
     assert run(scene_from_dict({**static, "bearing": {"preset": "B7206C"}})).geometry["stiffness_error"] == 0.036
 
 
+def test_presets_of_rows_are_spoken_of_too():
+    base = {"load": {"axial": 500.0}}
+    rows = [{"preset": "7014C"}, {"preset": "7014A5"}]
+    found = run(scene_from_dict({**base, "bearing": {"arrangement": "DB", "row": rows, "row_distance": 0.02}})).geometry
+    assert [(one["row"], one["preset"]) for one in found["rows"]] == [(0, "7014C"), (1, "7014A5")]
+    assert found["stiffness_error"] == max(one["stiffness_error"] for one in found["rows"])
+    assert "preset" not in found and found["words"].startswith("geometry inferred")
+    # One row has a preset of its own, the other is the table's; numbers that a row gives are no inferred ones.
+    mixed = {
+        "preset": "B7206C",
+        "arrangement": "DB",
+        "row_distance": 0.02,
+        "row": [{"preset": "7206A5", "ball_count": 12}, {}],
+    }
+    found = run(scene_from_dict({**base, "bearing": mixed})).geometry
+    assert found["preset"] == "B7206C" and [one["preset"] for one in found["rows"]] == ["7206A5"]
+    assert "ball_count" not in found["rows"][0]["inferred"] and "ball_count" in found["inferred"]
+
+
 # --- materials
 
 
@@ -164,6 +184,19 @@ def test_a_material_by_name_gives_its_numbers_and_own_keys_override_them():
     assert bearing.rings.young == 208e9, "the preset's steel stays"
     plain = scene_from_dict({"bearing": {**preset("7014C"), "preset": None, "rings": {"material": "440C"}}}).bearing
     assert plain.rings.young == 200e9
+
+
+def test_a_material_sets_the_thermal_expansion_unless_the_scene_does():
+    def grown(**balls):
+        tables = {"preset": "7014C", "balls": balls}
+        scene = scene_from_dict({"bearing": tables, "mounting": {"ball_temperature": 40.0}})
+        return scene.bearing.balls.thermal_expansion, grooves(scene).inner
+
+    (steel, by_steel), (nitride, by_nitride) = grown(material="100Cr6"), grown(material="Si3N4")
+    assert (steel, nitride) == (12.5e-6, 3.2e-6)
+    # Warm balls leave less room: by a T D / 2.
+    assert by_steel / by_nitride == pytest.approx(steel / nitride, rel=1e-12)
+    assert grown(material="Si3N4", thermal_expansion=2.9e-6)[0] == 2.9e-6
 
 
 def test_a_material_changes_the_mass_too():

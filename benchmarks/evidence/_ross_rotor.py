@@ -1,12 +1,13 @@
-"""A rotor in ROSS on bearings from Raceway.
+"""Rotors in ROSS on coefficients and bearings from Raceway, for the report ``ross``: run by an interpreter that has ROSS.
 
-    pip install '.[sweep,ross]'
-    python examples/ross_rotor.py [--out FILE.json]
+    python -m benchmarks.evidence._ross_rotor --out FILE.json
 
 1. Raceway sweeps a B7206C under 1 kN over speed, writes the coefficients, and ROSS reads them.
 2. A rigid rotor on two of them: its critical speed against w = sqrt(2 K(w) / M).
-3. The rig's rotor, a 30 mm shaft with a disc: its unbalance response against that with ROSS's closed formula for ball bearings.
-4. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: iterated to a fixed point.
+3. A 30 mm shaft with a disc: its unbalance response against that with ROSS's closed formula for ball bearings.
+4. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: iterated step by step, and by
+   ``raceway.ross``; its time response against both.
+5. The test rig's rotor by our own beam.
 
 Where ROSS is missing, it says so and ends with exit code 2.
 """
@@ -15,8 +16,8 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import json
-import os
 import sys
 import tempfile
 import warnings
@@ -24,11 +25,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
-from rich.table import Table
 from scipy.optimize import brentq
 
 import raceway as rw
+from raceway.studies.ross.installed import ross
 
 AXIAL = 1000.0  # N
 #: Of the sweep [N]: small, so that the coefficients are those of small motions.
@@ -51,26 +51,6 @@ def bearing(**changes: Any) -> dict[str, Any]:
         "integrator": {"kind": "periodic"},
     }
     return {**scene, **changes}
-
-
-def import_ross() -> Any:
-    """ROSS, without what its packages say while they are loaded; None where it is missing."""
-    silence = os.open(os.devnull, os.O_WRONLY)
-    kept = os.dup(1), os.dup(2)
-    sys.stdout.flush()
-    try:
-        for stream in (1, 2):  # a compiled package writes past Python
-            os.dup2(silence, stream)
-        with warnings.catch_warnings(), contextlib.suppress(ImportError):
-            warnings.simplefilter("ignore")
-            import ross
-
-            return ross
-        return None
-    finally:
-        sys.stdout.flush()
-        for stream, old in zip((1, 2), kept, strict=True):
-            os.dup2(old, stream)
 
 
 def swept(generation: int) -> Any:
@@ -204,6 +184,57 @@ def fixed_point(ross: Any, axial: float, most: int = 60, tolerance: float = 1e-9
     return rows
 
 
+def rolling(ross: Any, axial: float, damping: float = 0.0) -> Any:
+    """The rig's rotor on two ``RollingBearing``, with a damper at the disc [N s/m]."""
+    from raceway.ross import RollingBearing
+
+    rotor = rig_rotor(ross, lambda node: RollingBearing("B7206C", axial if node == 0 else -axial, n=node))
+    if damping == 0.0:
+        return rotor
+    damper = ross.BearingElement(n=3, kxx=0.0, cxx=damping, tag="damper")
+    return ross.Rotor(rotor.shaft_elements, rotor.disk_elements, [*rotor.bearing_elements, damper])
+
+
+def inside(ross: Any, axial: float) -> dict[str, float]:
+    """K [N/m] and force [N] that ``raceway.ross`` finds at the rotor's own amplitude."""
+    from raceway.ross import run_unbalance_response
+
+    found = run_unbalance_response(rolling(ross, axial), 3, UNBALANCE, 0.0, [SPEED_RPM * np.pi / 30.0])
+    tag = next(iter(found.stiffness))
+    return {
+        "k": float(found.stiffness[tag][0, 0, 0]),
+        "force": float(abs(found.force[tag][0, 0])),
+        "runs": int(found.runs[0]),
+    }
+
+
+def in_time(ross: Any, axial: float = 400.0, steps: int = 128, turns: int = 40) -> dict[str, float]:
+    """1x amplitude at the first bearing [m] of the last turn in time, and of the harmonic balance."""
+    from raceway.ross import run_time_response, run_unbalance_response
+
+    rotor, w = rolling(ross, axial, 600.0), SPEED_RPM * np.pi / 30.0
+    response = run_unbalance_response(rotor, 3, UNBALANCE, 0.0, [w]).response.forced_resp
+    linear = rotor.run_unbalance_response(3, UNBALANCE, 0.0, [w]).forced_resp
+    t = np.arange(turns * steps + 1) / steps * 2.0 * np.pi / w
+    forces, first = np.zeros((len(t), rotor.ndof)), 3 * rotor.number_dof
+    forces[:, first], forces[:, first + 1] = UNBALANCE * w**2 * np.cos(w * t), UNBALANCE * w**2 * np.sin(w * t)
+    with contextlib.redirect_stdout(io.StringIO()):
+        moved = run_time_response(rotor, w, forces, t).yout
+    found = 2.0 / steps * np.exp(-1j * w * t[-steps:]) @ moved[-steps:, 0]
+    return {
+        name: float(abs(value))
+        for name, value in (("time", found), ("harmonic", np.asarray(response)[0, 0]), ("linear", np.asarray(linear)[0, 0]))
+    }
+
+
+def beam() -> dict[str, float]:
+    """Our beam against ROSS's on the test rig's rotor: largest relative differences."""
+    from validation.rotor_in_ross import compared
+
+    found = compared()
+    return {"frequencies": found.difference(found.frequencies), "responses": found.difference(found.responses)}
+
+
 def study(ross: Any, folder: Path) -> dict[str, Any]:
     """All numbers."""
     generation = 3 if int(ross.__version__.partition(".")[0]) >= 3 else 2
@@ -220,71 +251,28 @@ def study(ross: Any, folder: Path) -> dict[str, Any]:
         "critical_closed": closed,
         "response": compared(ross, table, table.coefficients.speed[1:8]),
         "fixed_point": {str(axial): fixed_point(ross, axial) for axial in (1000.0, 400.0)},
+        "inside": {str(axial): inside(ross, axial) for axial in (1000.0, 400.0)},
+        "in_time": in_time(ross),
+        "beam": beam(),
     }
-
-
-def tables(found: dict[str, Any]) -> list[Table]:
-    """What is shown."""
-    first = Table(
-        "speed r/min",
-        "K N/µm",
-        "K by formula",
-        "disc µm",
-        "by formula",
-        "bearing force N",
-        "by formula",
-        title="Unbalance response",
-    )
-    for row in found["response"]:
-        first.add_row(
-            f"{row['speed_rpm']:.0f}", f"{1e-6 * row['k']:.2f}", f"{1e-6 * row['k_formula']:.2f}", f"{1e6 * row['disc']:.2f}",
-            f"{1e6 * row['disc_formula']:.2f}", f"{row['force']:.1f}", f"{row['force_formula']:.1f}",
-        )  # fmt: skip
-    shown = [first]
-    for axial, rows in found["fixed_point"].items():
-        title = f"Stiffness and bearing force at {SPEED_RPM:.0f} r/min, axial {float(axial):.0f} N"
-        table = Table("iteration", "force given N", "K N/µm", "force of the rotor N", "change", title=title)
-        for k, row in enumerate(rows):
-            table.add_row(
-                str(k + 1),
-                f"{row['force']:.4f}",
-                f"{1e-6 * row['k']:.4f}",
-                f"{row['new_force']:.4f}",
-                f"{row['change']:.1e}",
-            )
-        shown.append(table)
-    return shown
 
 
 def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--out", type=Path, help="write all numbers as JSON")
     given = parser.parse_args(words)
-    ross = import_ross()
-    if ross is None:
-        Console(stderr=True).print(
-            "ROSS is not installed: pip install '.[ross]' (in an environment of its own, see CONTRIBUTING.md)",
-            markup=False,
-        )
+    try:
+        program = ross("this study")
+    except rw.RacewayError as why:
+        sys.stderr.write(f"{why}\n")
         return 2
     with tempfile.TemporaryDirectory() as folder:
-        found = study(ross, Path(folder))
-    screen = Console(highlight=False)
-    screen.print(f"ROSS {found['ross']}; coefficients at the points of the table:")
-    for name in ("at_points", "at_points_by_itself"):
-        worst = max(found[name].items(), key=lambda item: item[1])
-        told = "read by ROSS and made to pass through its points" if name == "at_points" else "read by ROSS alone"
-        screen.print(f"  {told}: within {worst[1]:.1e} ({worst[0]})")
-    if found["grid_at_points"] is not None:
-        screen.print(f"  a table over speed and frequency: within {found['grid_at_points']:.1e}")
-    error = found["critical"] / found["critical_closed"] - 1.0
-    screen.print(
-        f"rigid rotor: critical speed {found['critical']:.3f} rad/s, closed form {found['critical_closed']:.3f} ({error:+.1e})"
-    )
-    for table in tables(found):
-        screen.print(table)
-    if given.out is not None:
-        given.out.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+        found = study(program, Path(folder))
+    text = json.dumps(found, indent=1) + "\n"
+    if given.out is None:
+        sys.stdout.write(text)
+    else:
+        given.out.write_text(text, encoding="utf-8")
     return 0
 
 

@@ -21,7 +21,11 @@ from benchmarks.evidence import Row, below, near
 
 TITLE = "Rotor models: coefficients in ROSS"
 ROOT = Path(__file__).resolve().parents[2]
-COMMAND = "python examples/ross_rotor.py"
+STUDY = "benchmarks.evidence._ross_rotor"
+COMMAND = f"python -m {STUDY}"
+EXAMPLE = "examples/ross_rotor.py"
+#: K of the former example, which iterated step by step [N/µm], and how near the new one has to come.
+FORMER, DIGITS = {"1000.0": 230.2772, "400.0": 107.4227}, 1e-6
 _TIMEOUT_S = 1800.0
 
 
@@ -38,18 +42,22 @@ def rows() -> list[Row]:
     if not found:
         note = "extra ross absent: install it in an environment of its own and name its interpreter in RACEWAY_ROSS_PYTHON"
         return [Row("rotor models in ROSS", "not run", "run", False, COMMAND, note)]
-    return [row for path in found for row in _rows(path)]
+    lines = len((ROOT / EXAMPLE).read_text(encoding="utf-8").splitlines())
+    return [
+        below("lines of the example, which puts two bearings under a rotor", lines, 25, f"python {EXAMPLE}"),
+        *(row for path in found for row in _rows(path)),
+    ]
 
 
 def _study(interpreter: str) -> dict[str, Any]:
-    """What the example writes, run as a user runs it."""
+    """What the study writes."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "numbers.json"
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        command = [interpreter, str(ROOT / "examples" / "ross_rotor.py"), "--out", str(out)]
+        command = [interpreter, "-m", STUDY, "--out", str(out)]
         done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=_TIMEOUT_S)
         if done.returncode:
-            raise RuntimeError(f"the example ends with {done.returncode}: {done.stderr[-2000:]}")
+            raise RuntimeError(f"the study ends with {done.returncode}: {done.stderr[-2000:]}")
         return json.loads(out.read_text(encoding="utf-8"))
 
 
@@ -92,6 +100,21 @@ def _rows(interpreter: str) -> list[Row]:
                 f"K {1e-6 * first['k']:.2f} N/µm for small motions, {1e-6 * last['k']:.2f} at {last['force']:.1f} N",
             )
         )  # fmt: skip
+    for axial, one in found["inside"].items():
+        words = f"{name}: K by raceway.ross at the rotor's own amplitude, {float(axial):g} N axial [N/µm]"
+        note = f"{one['force']:.1f} N on the bearing, {one['runs']} evaluations"
+        exact = near(words, 1e-6 * one["k"], FORMER[axial], DIGITS, COMMAND, note)
+        out.append(attrs.evolve(exact, value=f"{1e-6 * one['k']:.6f}"))
+    moved = found["in_time"]
+    words = f"{name}: amplitude at the bearing after 40 turns in time against the unbalance response, 400 N axial, relative difference"
+    told = f"{1e6 * moved['time']:.3f} against {1e6 * moved['harmonic']:.3f} µm; {1e6 * moved['linear']:.3f} with K of small motions"
+    out.append(below(words, abs(moved["time"] / moved["harmonic"] - 1.0), 1e-2, COMMAND, f"{told}; 128 steps a turn"))
+    for key, words in (
+        ("frequencies", "first three frequencies of forward whirl"),
+        ("responses", "unbalance response at bearing and sensor"),
+    ):
+        text = f"{name}: {words} of study rig's rotor by our beam, largest relative difference"
+        out.append(below(text, found["beam"][key], 1e-3, COMMAND, "validation/rotor_in_ross.py"))
     row = found["response"][-1]
     out.append(
         Row(

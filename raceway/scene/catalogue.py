@@ -166,14 +166,38 @@ def no_preset(name: str) -> str:
 
 
 def geometry_of(bearing: ReadTables, given: ReadTables) -> Tables | None:
-    """What a result says of a preset's uncertainty; None without a preset, or where its source states the numbers.
+    """What a result says of the uncertainty of presets; None without one, or where their sources state the numbers.
 
     Parameters
     ----------
-    bearing : the [bearing] table with the preset's numbers
+    bearing : the [bearing] table with the presets' numbers, in its rows, too
     given : the table as the user wrote it, whose own numbers are no inferred ones
+
+    Notes
+    -----
+    ``preset`` and ``inferred`` are those of [bearing]; rows of other presets are in ``rows``, by their numbers from 0.  Of
+    several presets ``stiffness_error`` is the largest.
     """
-    one = _preset(bearing.get("preset"))
+    rows = given.get("row")
+    rows = rows if isinstance(rows, list | tuple) else []
+    own = {k: _inferred(row.get("preset"), row) for k, row in enumerate(rows) if isinstance(row, dict) and "preset" in row}
+    found = {k: one for k, one in own.items() if one is not None}
+    # Where all rows bring presets, nothing of the table's own is left to speak of.
+    whole = _inferred(bearing.get("preset"), given) if not rows or len(own) < len(rows) else None
+    if whole is None and not found:
+        return None
+    error = max(one["stiffness_error"] for one in [*([] if whole is None else [whole]), *found.values()])
+    return {
+        **(whole or {}),
+        **({"rows": [{"row": k, **one} for k, one in found.items()]} if found else {}),
+        "stiffness_error": error,
+        "words": f"geometry inferred: stiffness known to about {100.0 * error:.0f} %",
+    }
+
+
+def _inferred(name: object, given: ReadTables) -> Tables | None:
+    """preset, inferred and stiffness_error of one preset, less the keys that the user gives."""
+    one = _preset(name)
     if one is None or one.stiffness_error is None:
         return None
     facts = [fact for fact in one.facts if fact.inferred and "." not in fact.key and fact.key not in given]
@@ -183,5 +207,4 @@ def geometry_of(bearing: ReadTables, given: ReadTables) -> Tables | None:
         "preset": one.name,
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
         "stiffness_error": one.stiffness_error,
-        "words": f"geometry inferred: stiffness known to about {100.0 * one.stiffness_error:.0f} %",
     }

@@ -84,7 +84,9 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
             rule = "ROSS links translations only: leave `n_link` out, or choose 'locked', 'free' or a stiffness"
             raise SceneError.at("tilt", tilt, rule)
         self.side = -1 if preload is not None and preload < 0.0 else 1
-        self.node_bearing: NodeBearing = node_bearing(bearing, None if preload is None else abs(preload), tilt, axial, damping)
+        self.node_bearing: NodeBearing = node_bearing(
+            bearing, None if preload is None else abs(preload), tilt, axial, damping
+        )
         self._held: dict[float, np.ndarray] = {}
         self._dofs: dict[str, int] | None = None
         axis = np.asarray(speeds if speeds is not None else _SPEEDS_RPM * pi / 30.0, dtype=float)
@@ -150,7 +152,9 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
         return twin
 
     def _dynamic(self, frequency: Any, speed: Any) -> np.ndarray:
-        frequency, speed = (None if w is None else float(getattr(w, "m_as", lambda _, w=w: w)("rad/s")) for w in (frequency, speed))
+        frequency, speed = (
+            None if w is None else float(getattr(w, "m_as", lambda _, w=w: w)("rad/s")) for w in (frequency, speed)
+        )
         speed = frequency if speed is None else speed
         held = self._held.get(speed) if frequency == speed else None
         return self.across(self.node_bearing.dynamic_stiffness(frequency, abs(speed)) if held is None else held)

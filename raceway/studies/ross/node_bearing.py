@@ -85,7 +85,8 @@ class NodeBearing:
         model, rest = self.at_rest(speed)
         system = model.system
         now = system.evaluate(rest.displacement, ball=rest.ball)
-        whole = rest.stiffness + system.stiffness + 1j * w * (now.damping + system.damping)
+        viscous = 0.5 * (system.damping + system.damping.T)  # the ring's gyroscopic moments are the rotor model's, as its mass
+        whole = rest.stiffness + system.stiffness + 1j * w * (now.damping + viscous)
         whole[:3, :3] += 1j * w * self.damping * np.eye(3)
         inside = self._inside(model)
         seen = _condensed(whole, list(range(self.size)), [i for i in inside if i > 0])
@@ -149,6 +150,9 @@ class NodeBearing:
             raise ConvergenceError(f"the ring finds no equilibrium at the node's displacement {where} m")
         force, slope = np.zeros(self.size), np.zeros((self.size, self.size))
         force[shared], slope[np.ix_(shared, shared)] = left[shared], _condensed(tangent, shared, inside)
+        if inside:  # what the iteration left
+            undone = np.linalg.solve(tangent[np.ix_(inside, inside)], left[inside])
+            force[shared] -= tangent[np.ix_(shared, inside)] @ undone
         if 0 in inside:
             beside = _condensed(rest.stiffness + system.stiffness, list(range(self.size)), [i for i in inside if i > 0])
             slope[0, 0] = beside[0, 0]
@@ -162,7 +166,8 @@ def _condensed(matrix: np.ndarray, shared: list[int], inside: list[int]) -> np.n
     if not inside:
         return np.array(part)
     return np.asarray(
-        part - matrix[np.ix_(shared, inside)] @ np.linalg.solve(matrix[np.ix_(inside, inside)], matrix[np.ix_(inside, shared)])
+        part
+        - matrix[np.ix_(shared, inside)] @ np.linalg.solve(matrix[np.ix_(inside, inside)], matrix[np.ix_(inside, shared)])
     )
 
 

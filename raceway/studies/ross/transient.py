@@ -56,7 +56,9 @@ def run_time_response(rotor: Any, speed: float, F: np.ndarray, t: np.ndarray, **
         raise RacewayError(f"`{unknown[0]}` is no option here, beside nonlinear bearings: {', '.join(_OPTIONS)} are")
     forces, times = np.asarray(F, dtype=float), np.asarray(t, dtype=float)
     if forces.shape != (len(times), rotor.ndof):
-        raise RacewayError(f"`F` has the shape {forces.shape}; one row a time and one column a degree of freedom make {(len(times), rotor.ndof)}")
+        raise RacewayError(
+            f"`F` has the shape {forces.shape}; one row a time and one column a degree of freedom make {(len(times), rotor.ndof)}"
+        )
     newmark = {name: options.get(name, value) for name, value in _OPTIONS.items()}
     added = _Added(rotor, bearings, float(speed), forces, newmark["gamma"], newmark["beta"])
     return rotor.run_time_response(float(speed), forces, times, method="newmark", add_to_RHS=added, **options)
@@ -102,9 +104,7 @@ class _Added:
                 force, tangent = one.node_bearing.resistance(self.speed, q[part])
                 extra[part] -= force
                 slope[part, part] = self.small[part, part] - tangent
-            change = np.linalg.solve(
-                np.eye(len(q)) - self.receptance @ slope, linear + self.receptance @ extra - q
-            )
+            change = np.linalg.solve(np.eye(len(q)) - self.receptance @ slope, linear + self.receptance @ extra - q)
             q = q + change
             if np.abs(change).max() <= _TOLERANCE * np.abs(q).max() + _SMALL:
                 return extra + slope @ change

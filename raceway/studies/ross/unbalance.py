@@ -73,9 +73,7 @@ def run_unbalance_response(
         raise RacewayError("`frequency`: speeds must be finite and greater than 0 rad/s")
     found = [_Balance.at(rotor, bearings, w, (node, unbalance_magnitude, unbalance_phase)).solved() for w in speeds]
     held = {id(one): {w: z[k] for w, (_, z, _) in zip(speeds, found, strict=True)} for k, one in enumerate(bearings)}
-    twin = _with_bearings(
-        rotor, [one.holding(held[id(one)]) if id(one) in held else one for one in rotor.bearing_elements]
-    )
+    twin = _with_bearings(rotor, [one.holding(held[id(one)]) if id(one) in held else one for one in rotor.bearing_elements])
     response = twin.run_unbalance_response(node, unbalance_magnitude, unbalance_phase, list(speeds))
     stiffness, damping, force = {}, {}, {}
     for k, one in enumerate(bearings):

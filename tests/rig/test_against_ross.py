@@ -1,0 +1,29 @@
+"""Our beam against ROSS on the test rig's rotor: natural frequencies and the response to unbalance."""
+
+from __future__ import annotations
+
+import pytest
+
+from raceway.errors import RacewayError
+from raceway.studies.ross.installed import ross
+from validation.rotor_in_ross import compared
+
+
+@pytest.fixture(scope="module")
+def found():
+    try:
+        ross("the comparison")
+    except RacewayError as why:
+        pytest.skip(str(why))
+    return compared()
+
+
+def test_natural_frequencies_are_those_of_ross(found):
+    # Same theory (Timoshenko, Cowper's shear coefficient, rotary inertia, gyroscopic moments), another program.
+    assert found.frequencies.shape == (3, 2)
+    assert found.difference(found.frequencies) <= 1e-3
+
+
+def test_response_to_unbalance_is_that_of_ross(found):
+    assert found.responses.shape == (6, 2)
+    assert found.difference(found.responses) <= 1e-3

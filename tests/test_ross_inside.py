@@ -1,0 +1,206 @@
+"""Rolling bearings inside ROSS: what of them needs no ROSS, and what is said where it is missing; with ROSS the rest, too."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import types
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.errors import RacewayError, SceneError
+from raceway.studies.ross.installed import ross
+from raceway.studies.ross.node_bearing import node_bearing
+from raceway.studies.ross.secant import secant
+from validation.command_line import EXAMPLES
+
+SPEED = 12000.0 * np.pi / 30.0
+UNITS = np.ones(2)
+
+
+def scene(axial, force):
+    turning = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": force}
+    return {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": axial},
+        "excitation": turning,
+        "integrator": {"kind": "quasi_static"},
+    }
+
+
+# --- the secant
+
+
+def test_a_circle_changes_both_stiffnesses_alike_and_a_line_only_its_own():
+    tangent, u = np.diag([3.0, 3.0]), np.array([1.0, -1.0j])
+    np.testing.assert_allclose(secant(tangent, u, 2.0 * u, UNITS), 2.0 * np.eye(2), atol=1e-14)
+    line = np.array([1.0 + 2.0j, 0.0])
+    np.testing.assert_allclose(secant(tangent, line, 2.0 * line, UNITS), np.diag([2.0, 3.0]), atol=1e-14)
+
+
+def test_a_secant_carries_the_motion_and_is_symmetric():
+    random = np.random.default_rng(3)
+    true = random.normal(size=(4, 4))
+    true, tangent = true + true.T, np.diag([1.0, 2.0, 3.0, 4.0])
+    u, units = random.normal(size=4) + 1j * random.normal(size=4), np.array([1.0, 1.0, 0.02, 0.02])
+    found = secant(tangent, u, true @ u, units)
+    np.testing.assert_allclose(found @ u, true @ u, rtol=1e-10)
+    np.testing.assert_allclose(found, found.T, rtol=1e-10)
+
+
+# --- the bearing at a node
+
+
+@pytest.mark.parametrize("axial, force", [(1000.0, 904.9), (400.0, 933.7)])
+def test_a_turning_load_meets_the_stiffness_of_a_run(axial, force):
+    one, load = node_bearing("B7206C", axial), force * np.array([1.0, -1.0j])
+    z = one.stiffness_on(SPEED, load, one.motion(SPEED, load))
+    wanted = rw.run(scene(axial, force)).equivalent_stiffness
+    # Both are the 1x line of the same equilibria.
+    np.testing.assert_allclose(z[1:, 1:], wanted * np.eye(2), atol=1e-9 * wanted)
+
+
+@pytest.mark.parametrize("tilt", ["locked", "free", "node", 5e3])
+@pytest.mark.parametrize("axial", ["force", "displacement"])
+def test_the_force_has_the_stiffness_of_small_motions_as_derivative(tilt, axial):
+    one = node_bearing({"bearing": {"preset": "B7206C"}, "load": {"radial": [150.0, 80.0]}}, 1000.0, tilt, axial)
+    wanted = one.dynamic_stiffness(SPEED, SPEED).real
+    assert wanted.shape == ((5, 5) if tilt == "node" else (3, 3))
+    step = np.array([1e-8, 1e-8, 1e-8, 1e-6, 1e-6])[: one.size]
+    found = np.column_stack(
+        [
+            (one.resistance(SPEED, h * row)[0] - one.resistance(SPEED, -h * row)[0]) / (2.0 * h)
+            for h, row in zip(step, np.eye(one.size), strict=True)
+        ]
+    )
+    scale = np.sqrt(np.outer(np.diag(wanted), np.diag(wanted)))
+    # Forces of 1e3 N to 1e-11 over 2e-8 m of 3e7 N/m, and the curvature of the force over 1e-8 m.
+    np.testing.assert_allclose(found / scale, wanted / scale, atol=1e-5)
+    np.testing.assert_allclose(one.resistance(SPEED, 0.0 * step)[1] / scale, wanted / scale, atol=1e-8)
+
+
+def test_spacers_are_stiffer_than_springs():
+    held, sprung = (node_bearing("B7206C", 400.0, axial=axial) for axial in ("displacement", "force"))
+    q = np.array([0.0, 5e-6, 0.0])
+    assert held.resistance(SPEED, q)[0][1] > 1.05 * sprung.resistance(SPEED, q)[0][1]
+
+
+def test_contact_damping_is_in_c():
+    one = node_bearing({"bearing": {"preset": "B7206C"}, "contact": {"damping": 100.0}}, 1000.0, damping=7.0)
+    tables = {**scene(1000.0, 1.0), "contact": {"damping": 100.0}, "identifier": {"kind": "tangent"}}
+    wanted = rw.run(tables).equivalent_damping + 7.0
+    assert one.dynamic_stiffness(SPEED, SPEED)[1, 1].imag / SPEED == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"bearing": "B7206G"}, "the nearest"),
+        ({"bearing": {"bearing": {"preset": "B7206C"}, "contact": {"friction": 0.1}}}, "takes work from every motion"),
+        ({"bearing": "B7206C", "preload": 100.0, "damping": -1.0}, "must be a finite damping"),
+        ({"bearing": "B7206C", "preload": 100.0, "tilt": "loose"}, "supports.tilt"),
+    ],
+)
+def test_bad_input_is_refused(given, words):
+    with pytest.raises(SceneError, match=words):
+        node_bearing(**given)
+
+
+# --- without ROSS, and with one that is too old
+
+
+def test_what_is_missing_is_said(monkeypatch):
+    monkeypatch.setitem(sys.modules, "ross", None)  # an import of it fails
+    monkeypatch.delitem(sys.modules, "raceway.studies.ross.bearing", raising=False)
+    import raceway.ross
+
+    with pytest.raises(RacewayError, match=r"RollingBearing needs ROSS: pip install '.\[ross\]'"):
+        _ = raceway.ross.RollingBearing
+
+
+def test_an_old_ross_is_refused(monkeypatch):
+    monkeypatch.setitem(sys.modules, "ross", types.SimpleNamespace(__version__="1.6.1"))
+    with pytest.raises(RacewayError, match=r"needs ROSS 2.0 or later, and 1.6.1 is installed here"):
+        ross("raceway.ross.RollingBearing")
+    with pytest.raises(RacewayError, match=r"needs ROSS 3.0 or later"):
+        ross("this", least=3)
+
+
+def test_the_example_is_short_and_says_what_is_missing(tmp_path):
+    example = EXAMPLES / "ross_rotor.py"
+    assert len(example.read_text(encoding="utf-8").splitlines()) <= 25
+    (tmp_path / "ross.py").write_text("raise ImportError('not here')\n", encoding="utf-8")
+    code = f"import sys, runpy; sys.path.insert(0, {str(tmp_path)!r}); runpy.run_path({str(example)!r})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 1 and "needs ROSS" in done.stderr and "Traceback" not in done.stderr
+
+
+# --- with ROSS
+
+
+@pytest.fixture(scope="module")
+def program():
+    try:
+        return ross("this test")
+    except RacewayError as why:
+        pytest.skip(str(why))
+
+
+def rotor(program, axial, **options):
+    from raceway.ross import RollingBearing
+
+    steel = program.Material(name="steel", rho=7810.0, E=2.1e11, G_s=8.1e10)
+    shaft = [program.ShaftElement(L=0.05, idl=0.0, odl=0.03, material=steel) for _ in range(6)]
+    disc = program.DiskElement(n=3, m=3.0, Id=4.1e-3, Ip=8.05e-3)
+    ends = [RollingBearing("B7206C", sign * axial, n=node, **options) for sign, node in ((1.0, 0), (-1.0, 6))]
+    return program.Rotor(shaft, [disc], ends)
+
+
+@pytest.mark.parametrize("tilt", ["locked", "node"])
+def test_the_response_of_ross_carries_the_loads_of_the_bearings(program, tilt):
+    from raceway.ross import run_unbalance_response
+
+    machine = rotor(program, 400.0, tilt=tilt)
+    before = np.asarray(machine.run_unbalance_response(3, 6.39e-4, 0.0, [SPEED]).forced_resp)
+    found = run_unbalance_response(machine, 3, 6.39e-4, 0.0, [SPEED])
+    after = np.asarray(machine.run_unbalance_response(3, 6.39e-4, 0.0, [SPEED]).forced_resp)
+    np.testing.assert_array_equal(before, after)  # the rotor itself keeps K of small motions
+    for one in machine.bearing_elements:
+        moved = np.asarray(found.response.forced_resp)[one.dofs, 0]
+        held = found.rotor.bearing_elements[0 if one.n == 0 else 1]
+        force = (held.K(SPEED) + 1j * SPEED * held.C(SPEED)) @ moved
+        # The balance is solved to 1e-7.
+        size = np.abs(found.force[one.tag][0]).max()
+        np.testing.assert_allclose(force, found.force[one.tag][0], atol=1e-5 * size)
+        own = one.node_bearing.motion(SPEED, (one.frame @ found.force[one.tag][0])[one.node_bearing.moving])
+        np.testing.assert_allclose(own, (one.frame @ moved)[one.node_bearing.moving], atol=1e-5 * np.abs(own).max())
+
+
+def test_what_no_bearing_can_be_is_refused(program):
+    from raceway.ross import RollingBearing, run_time_response, run_unbalance_response
+
+    for words, options in (
+        ("must be an axial load", {"preload": 0.0}),
+        ("ROSS links translations only", {"tilt": "node", "n_link": 7}),
+    ):
+        with pytest.raises(SceneError, match=words):
+            RollingBearing("B7206C", **{"preload": 400.0, "n": 0, **options})
+    machine = rotor(program, 400.0)
+    with pytest.raises(RacewayError, match="greater than 0"):
+        run_unbalance_response(machine, 3, 6.39e-4, 0.0, [0.0])
+    t = np.linspace(0.0, 1e-3, 5)
+    for words, speed, options in (("of one speed", t, {}), ("newmark_type", SPEED, {"newmark_type": "robust"})):
+        with pytest.raises(RacewayError, match=words):
+            run_time_response(machine, speed, np.zeros((5, machine.ndof)), t, **options)
+
+
+def test_a_table_is_saved_for_a_ross_without_raceway(program, tmp_path):
+    from raceway.ross import RollingBearing
+
+    one = RollingBearing("B7206C", 1000.0, n=0)
+    one.save(tmp_path / "bearing.toml")
+    read = program.BearingElement.load(tmp_path / "bearing.toml")
+    axis = one.speed if getattr(one, "speed", None) is not None else one.frequency
+    np.testing.assert_allclose(read.K(axis[2]), one.K(axis[2]), rtol=1e-6, atol=1.0)
