@@ -16,13 +16,14 @@ from raceway.studies.ross.node_bearing import NodeBearing, node_bearing
 from raceway.studies.ross.reading import through_points
 
 _ross = ross("raceway.ross.RollingBearing")
+_Element: Any = _ross.BearingElement
 #: Of the table that ROSS's plots and files show [r/min].
 _SPEEDS_RPM = np.linspace(0.0, 30_000.0, 7)
 #: ROSS's coefficient -> row and column in X, Y, Z.
 _PLACES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1), "zz": (2, 2)}
 
 
-class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
+class RollingBearing(_Element):
     """A ``ross.BearingElement`` whose K and C are those of a bearing of Raceway at (frequency, speed).
 
     Parameters
@@ -181,4 +182,4 @@ class RollingBearing(_ross.BearingElement):  # type: ignore[misc]
         names = [f"{letter}{name}" for letter in "kc" for name in _PLACES]
         axes = {name: getattr(self, name) for name in ("speed", "frequency") if getattr(self, name, None) is not None}
         given = {name: getattr(self, name) for name in (*names, "n", "n_link", "tag", "scale_factor", "color")}
-        _ross.BearingElement(**given, **axes).save(file)
+        _Element(**given, **axes).save(file)

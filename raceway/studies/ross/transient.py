@@ -11,7 +11,7 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.studies.ross.bearing import RollingBearing
 
 #: Options of ROSS's Newmark method that are handed on, with its own defaults.
-_OPTIONS = {"gamma": 0.5, "beta": 0.25, "tol": None, "progress_interval": None}
+_OPTIONS: dict[str, Any] = {"gamma": 0.5, "beta": 0.25, "tol": None, "progress_interval": None}
 _MOST, _TOLERANCE, _SMALL = 40, 1e-10, 1e-15
 
 
