@@ -15,7 +15,8 @@ PLACES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1)}
 def test_no_two_entries_are_swapped():
     stiffness = 1e8 * np.array([[1.0, 2.0], [3.0, 4.0]]) + np.zeros((5, 1, 1))
     damping = np.array([[10.0, 20.0], [30.0, 40.0]]) + SPEED[:, None, None]
-    table = Coefficients(SPEED, None, stiffness, damping, np.full(5, 7e7), "tangent", "made up", ())
+    still = np.zeros((5, 5, 5))
+    table = Coefficients(SPEED, None, stiffness, damping, np.full(5, 7e7), "tangent", "made up", (), still, still, "locked")
     for generation in (2, 3):
         content = ross_file(table, generation, "made_up", 1, ()).content
         for name, (row, column) in PLACES.items():

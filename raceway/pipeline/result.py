@@ -84,6 +84,11 @@ class Result(Shown):
         return self.equilibrium.stiffness
 
     @property
+    def damping(self) -> np.ndarray:
+        """(5, 5) damping of the contacts at the equilibrium [N s/m, N s/rad, N m s/m, N m s/rad]; 0 where they are dry."""
+        return self.equilibrium.damping
+
+    @property
     def ball_loads(self) -> np.ndarray:
         """(Z,) static load of each ball on the inner race [N]; of a pair, row after row."""
         return self.equilibrium.contact_force[: self.model.system.ball_count]
@@ -285,6 +290,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
     return {
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),
+        "damping": equilibrium.damping.tolist(),
         "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
         "free_contact_angle_deg": math.degrees(model.scene.bearing.contact_angle),
         "balls": [{**rows[k], **{key: float(column[k]) for key, column in columns.items()}} for k in range(z)],

@@ -40,7 +40,7 @@ def settle(
     inner, outer = model.bearing.contact_angles(model, q, now.ball, now.contact_force)
     model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(q, stiffness, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    return Equilibrium(q, stiffness, now.damping, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
 
 
 def _refuse_no_load(model: Model) -> None:

@@ -10,4 +10,6 @@ node_bearing   a bearing as a rotor's node meets it: Z, motion under a load, for
 secant         stiffness that one motion meets;  harmonic_load: the excitation for it;  harmonic_load_kernel: compiled
 bearing        ``raceway.ross.RollingBearing``;  unbalance, transient: responses with its own amplitude
 front          ``raceway.export_ross``;  command: ``raceway export``;  points: its rows;  screen: what it prints
+
+Files for other programs are made from the same coefficients in ``studies/rotor_files``.
 """

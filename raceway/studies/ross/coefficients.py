@@ -12,12 +12,14 @@ Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken o
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.commands.screen.damping import dry_damping_words
 from raceway.errors import Mistake, RacewayError, SceneError
+from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
 from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent, tilt_note
 from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
@@ -41,6 +43,8 @@ class Coefficients:
     axial : (...,) kxx [N/m]
     source : "rotating", "directions" or "tangent";  definition : what the numbers are, in words
     notes : what the reader of the table has to know, a sentence each
+    tangent, tangent_damping : (..., 5, 5) of the contacts at the equilibrium, over x, y, z, tilt_y, tilt_z; no motion is condensed
+    tilt : how the tilt was held, ``supports.tilt``
     """
 
     speed: np.ndarray | None
@@ -51,6 +55,9 @@ class Coefficients:
     source: str
     definition: str
     notes: tuple[str, ...]
+    tangent: np.ndarray
+    tangent_damping: np.ndarray
+    tilt: str | float
 
     def columns(self) -> dict[str, np.ndarray]:
         """``kyy`` ... ``czz`` and ``kxx``, each of the table's shape."""
@@ -58,14 +65,27 @@ class Coefficients:
         found |= {f"c{name}": self.damping[..., i, j] for name, (i, j) in ENTRIES.items()}
         return {**found, "kxx": self.axial}
 
+    def to_dict(self) -> Tables:
+        """Axes [rad/s] and columns as plain tables."""
+        return {
+            "source": self.source,
+            "definition": self.definition,
+            "speed": None if self.speed is None else self.speed.tolist(),
+            "frequency": None if self.frequency is None else self.frequency.tolist(),
+            "coefficients": {name: values.tolist() for name, values in self.columns().items()},
+        }
 
-def coefficients(selection: Selection, source: str | None = None, unresolved: float = 0.0) -> Coefficients:
+
+def coefficients(
+    selection: Selection, source: str | None = None, unresolved: float = 0.0, least: int = LEAST_POINTS
+) -> Coefficients:
     """The coefficients of a selection.
 
     Parameters
     ----------
     source : "rotating", "directions" or "tangent"; by default what the sweep's excitation gives
     unresolved : cyy and czz [N s/m] where the sweep's own is smaller than its error, which may have either sign
+    least : points that an axis needs; cubics through them take ``LEAST_POINTS``, where straight lines take 2
 
     Raises
     ------
@@ -84,7 +104,7 @@ def coefficients(selection: Selection, source: str | None = None, unresolved: fl
     else:
         only_axes(selection, (SPEED, SPIN), purpose)
     _refuse_gaps(selection)
-    _refuse_few(selection)
+    _refuse_few(selection, least)
     if source == "tangent":
         stiffness, damping, resolved, definition, notes = tangent(selection)
     else:
@@ -94,10 +114,23 @@ def coefficients(selection: Selection, source: str | None = None, unresolved: fl
     known = resolved[..., 0, 0] & resolved[..., 1, 1]
     damping, told = _without_noise(damping, resolved, unresolved)
     notes += [*told, *tilt_note(selection), *_dry(source, stiffness, damping, known, unresolved)]
-    axial = reduced(selection)[..., 0, 0] if "stiffness" in selection.dataset else np.zeros(stiffness.shape[:-2])
-    axial = axial[..., 0] if axial.ndim > stiffness.ndim - 2 else axial
-    speed, frequency, stiffness, damping, axial = _table(selection, stiffness, damping, axial)
-    return Coefficients(speed, frequency, stiffness, damping, axial, source, definition, tuple(notes))
+    still, damper = _still(selection, "stiffness"), _still(selection, "damping")
+    axial = _undirected(selection, reduced(selection)[..., 0, 0]) if "stiffness" in selection.dataset else still[..., 0, 0]
+    speed, frequency, stiffness, damping, axial, still, damper = _table(selection, stiffness, damping, axial, still, damper)
+    tilt = selection.value("supports.tilt", "locked")
+    return Coefficients(speed, frequency, stiffness, damping, axial, source, definition, tuple(notes), still, damper, tilt)
+
+
+def _still(selection: Selection, name: str) -> np.ndarray:
+    """(..., 5, 5) of the equilibria; 0 in a sweep that does not hold it."""
+    if name in selection.dataset:
+        return _undirected(selection, np.array(selection.dataset[name].values, dtype=float))
+    return np.zeros((*(len(values) for key, values in selection.axes.items() if key != DIRECTION), 5, 5))
+
+
+def _undirected(selection: Selection, array: np.ndarray) -> np.ndarray:
+    """Without the last axis where it is the direction of the force, of which an equilibrium knows nothing."""
+    return np.take(array, 0, axis=len(selection.axes) - 1) if DIRECTION in selection.axes else array
 
 
 def _without_noise(damping: np.ndarray, resolved: np.ndarray, instead: float) -> tuple[np.ndarray, list[str]]:
@@ -158,13 +191,13 @@ def _refuse_gaps(selection: Selection) -> None:
         raise RacewayError("the points of this sweep fill no grid over speed, and a table needs one: sweep with --grid")
 
 
-def _refuse_few(selection: Selection) -> None:
+def _refuse_few(selection: Selection, least: int) -> None:
     speeds = [key for key in (SPEED, SPIN) if key in selection.axes]
     if not speeds:
         given = selection.value(SPEED)
         held = f"`{SPEED}` has the one value {shown(given)}" if given is not None else "the scene has no speed"
         raise SceneError.at(SPEED, None, f"does not vary here ({held}): sweep it, for instance --grid {SPEED}=1000:15000:15")
-    few = [key for key in speeds if len(selection.axes[key]) < LEAST_POINTS]
+    few = [key for key in speeds if len(selection.axes[key]) < least]
     if few:
         raise SceneError(
             [
@@ -172,25 +205,23 @@ def _refuse_few(selection: Selection) -> None:
                     key,
                     None,
                     f"has {len(selection.axes[key])} points ({listed(selection.axes[key])}); rotor programs put cubics through "
-                    f"them, which takes at least {LEAST_POINTS} on an axis: sweep with --grid {key}=START:STOP:{LEAST_POINTS} or more",
+                    f"them, which takes at least {least} on an axis: sweep with --grid {key}=START:STOP:{least} or more",
                 )
                 for key in few
             ]
         )
 
 
-def _table(
-    selection: Selection, stiffness: np.ndarray, damping: np.ndarray, axial: np.ndarray
-) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray, np.ndarray, np.ndarray]:
-    """Axes [rad/s]; both of them in the order (speed, frequency)."""
+def _table(selection: Selection, *arrays: np.ndarray) -> tuple[Any, ...]:
+    """Axes [rad/s], None where there is none, and the arrays; both axes in the order (speed, frequency)."""
     spins, speeds = (np.array(selection.axes.get(key, []), dtype=float) * _RADIANS for key in (SPIN, SPEED))
     if len(spins) and len(speeds):
         keys = [key for key in selection.axes if key in (SPIN, SPEED)]
         if keys != [SPIN, SPEED]:
-            stiffness, damping, axial = (np.swapaxes(array, 0, 1) for array in (stiffness, damping, axial))
-        return spins, speeds, stiffness, damping, axial
+            arrays = tuple(np.swapaxes(array, 0, 1) for array in arrays)
+        return spins, speeds, *arrays
     if len(spins):
-        return spins, None, stiffness, damping, axial
+        return spins, None, *arrays
     if selection.value(SPIN) is not None:
-        return None, speeds, stiffness, damping, axial
-    return speeds, None, stiffness, damping, axial
+        return None, speeds, *arrays
+    return speeds, None, *arrays

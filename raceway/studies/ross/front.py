@@ -76,7 +76,7 @@ def export_ross(
     if path is not None:
         check_name(Path(path))
     labelled = data_of(data)
-    found = select(labelled, _chosen(at, labelled))
+    found = select(labelled, chosen(at, labelled))
     table = coefficients(found, source, damping)
     name = slug(tag if tag is not None else name_of(found))
     made = RossTable(table, ross_file(table, _generation(ross_version), name, node, head(found)))
@@ -85,7 +85,7 @@ def export_ross(
     return made
 
 
-def _chosen(at: Mapping[str, Any] | Iterable[str], data: Dataset) -> Tables:
+def chosen(at: Mapping[str, Any] | Iterable[str], data: Dataset) -> Tables:
     """Key -> value, numbers in the units of the keys."""
     if not isinstance(at, Mapping):
         return parse_at(at)

@@ -1,4 +1,4 @@
-"""Coefficients for ROSS on the screen: no number broken, no column that says nothing."""
+"""Coefficients for rotor programs on the screen: no number broken, no column that says nothing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def export_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
     """The points, what is the same at all of them, what was written, what their reader has to know."""
     rows, constant = point_rows(content)
     parts: list[RenderableType] = [
-        Words(f"{content['tag']}, coefficients for ROSS {content['ross']}", "bold"),
+        Words(f"{content['tag']}, coefficients for {', '.join(content['programs'])}", "bold"),
         *(rows_table(part) for part in _fitting(rows)),
         *map(Words, constant),
     ]

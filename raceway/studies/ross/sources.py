@@ -149,15 +149,24 @@ def _across(data: Dataset, given: list[float], h: dict[Hashable, np.ndarray]) ->
 
 
 def tangent(selection: Selection) -> Found:
-    """The radial part of the equilibrium's tangent, motions that the scene leaves free condensed out."""
+    """The radial part of the equilibrium's tangent, motions that the scene leaves free condensed out.
+
+    Notes
+    -----
+    With x = T r of the motions kept, r, and those that follow them without force, K becomes T' K T and, to first order in the
+    frequency, C becomes T' C T.
+    """
     if "stiffness" not in selection.dataset:
         raise RacewayError("the sweep holds no tangent of the equilibrium: choose --from rotating")
     matrix = reduced(selection)
     coupling = np.abs(matrix[..., 0, 1:])
+    follow = _following_tilts(selection)
+    kept = follow[..., 1:]
+    notes = []
     radial = matrix[..., 1:, 1:]
-    notes = ["the tangent of an equilibrium has no damping"]
     if selection.value("supports.axial") == "force":
         radial = radial - matrix[..., 1:, :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
+        kept = kept - follow[..., :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
         notes.append("kyy ... kzz at constant axial force (supports.axial), kxx with the radial motions held")
     else:
         notes.append("kyy ... kzz and kxx with each other's motions held (supports.axial)")
@@ -165,8 +174,26 @@ def tangent(selection: Selection) -> Found:
     if size > 1e-6:
         notes.append(f"left out: the coupling of axial and radial motions, {size:.1e} of the geometric mean of kxx and kyy")
     notes.append("small motions about the equilibrium under the constant loads: the unbalance does not change them")
-    none = np.zeros_like(radial)
-    return radial, none, none.astype(bool), f"tangent of the equilibrium, {_tilt_words(selection)}", notes
+    damping = np.zeros_like(radial)
+    if "damping" in selection.dataset:
+        damping = np.swapaxes(kept, -1, -2) @ np.array(selection.dataset["damping"].values, dtype=float) @ kept
+    damped = bool(damping.any())
+    notes.insert(
+        0, "damping of the contacts at the equilibrium" if damped else "the tangent of an equilibrium has no damping"
+    )
+    resolved = np.broadcast_to(damped, radial.shape)
+    return radial, damping, resolved, f"tangent of the equilibrium, {_tilt_words(selection)}", notes
+
+
+def _following_tilts(selection: Selection) -> np.ndarray:
+    """(..., 5, 3) motion of all coordinates with x, y, z, the tilts as supported."""
+    matrix = np.array(selection.dataset["stiffness"].values, dtype=float)
+    out = np.zeros((*matrix.shape[:-2], 5, 3))
+    out[..., :3, :] = np.eye(3)
+    tilt = selection.value("supports.tilt", "locked")
+    if tilt != "locked":
+        out[..., 3:, :] = -np.linalg.solve(_tilts(matrix, tilt), matrix[..., 3:, :3])
+    return out
 
 
 def reduced(selection: Selection, tilt: float | str | None = None) -> np.ndarray:
@@ -175,8 +202,12 @@ def reduced(selection: Selection, tilt: float | str | None = None) -> np.ndarray
     tilt = selection.value("supports.tilt", "locked") if tilt is None else tilt
     if tilt == "locked":
         return matrix[..., :3, :3]
-    tilts = matrix[..., 3:, 3:] + (0.0 if tilt == "free" else float(tilt)) * np.eye(2)
-    return matrix[..., :3, :3] - matrix[..., :3, 3:] @ np.linalg.solve(tilts, matrix[..., 3:, :3])
+    return matrix[..., :3, :3] - matrix[..., :3, 3:] @ np.linalg.solve(_tilts(matrix, tilt), matrix[..., 3:, :3])
+
+
+def _tilts(matrix: np.ndarray, tilt: float | str) -> np.ndarray:
+    """(..., 2, 2) stiffness against tilts, the shaft's with it."""
+    return matrix[..., 3:, 3:] + (0.0 if tilt == "free" else float(tilt)) * np.eye(2)
 
 
 def tilt_note(selection: Selection) -> list[str]:

@@ -57,6 +57,11 @@ class RossTable(Shown):
         return self.file.notes
 
     @property
+    def program(self) -> str:
+        """Whom the file is for."""
+        return f"ROSS {self.file.generation}"
+
+    @property
     def tag(self) -> str:
         """The element's name in ROSS."""
         return self.file.tag
@@ -94,15 +99,10 @@ class RossTable(Shown):
 
     def to_dict(self) -> Tables:
         """The numbers by our names, and the notes, as plain tables."""
-        found = self.coefficients
         return {
             "ross": self.file.generation,
             "tag": self.tag,
-            "source": found.source,
-            "definition": found.definition,
-            "speed": None if found.speed is None else found.speed.tolist(),
-            "frequency": None if found.frequency is None else found.frequency.tolist(),
-            "coefficients": {name: values.tolist() for name, values in found.columns().items()},
+            **self.coefficients.to_dict(),
             "notes": list(self.notes),
         }
 

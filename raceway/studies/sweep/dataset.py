@@ -205,6 +205,7 @@ def _lines(store: Rows) -> Iterator[list[object]]:
     places: dict[str, list[tuple[str, ...]]] = {
         "displacement": [(name,) for name in DOF],
         "stiffness": [(a, b) for a in DOF for b in DOF],
+        "damping": [(a, b) for a in DOF for b in DOF],
     }
     yield [
         *keys,

@@ -42,6 +42,7 @@ NUMBERS: dict[str, tuple[str, str]] = {
 ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "displacement": (("dof",), "m, rad", "equilibrium under the constant loads"),
     "stiffness": (("dof", "dof2"), "N/m, N/rad, N m/m, N m/rad", "tangent of the contacts at the equilibrium"),
+    "damping": (("dof", "dof2"), "N s/m, N s/rad, N m s/m, N m s/rad", "damping of the contacts at the equilibrium"),
 }
 
 
@@ -68,7 +69,7 @@ def values_of(result: Result) -> Tables:
     values |= _loads(result)
     values |= {f"error_{name}": size for name, size in result.error.items() if name != "how"}
     values = {name: float(value) for name, value in values.items() if value is not None and math.isfinite(value)}
-    return values | {"displacement": still.displacement.tolist(), "stiffness": still.stiffness.tolist()}
+    return values | {name: getattr(still, name).tolist() for name in ARRAYS}
 
 
 def _loads(result: Result) -> Tables:

@@ -1,0 +1,284 @@
+"""Coefficients for Nastran and Ansys, and as tables: read by the fields of their formats, compared with the sweep's numbers."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.errors import RacewayError, SceneError
+from tests.stores import SPEEDS, damping, made, scene, stiffness
+from validation.command_line import invoke
+
+SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
+HERTZ = SPEEDS / 60.0
+RADIANS = np.pi / 30.0
+#: 10 significant digits of a field of 16 characters.
+DIGITS = 5.1e-10
+#: A symmetric matrix whose entries all differ.
+FULL = np.array(
+    [
+        [6.1e7, 2.1e6, 3.1e5, 1.1e5, 4.1e5],
+        [2.1e6, 2.1e8, 1.1e7, 3.2e5, 1.2e6],
+        [3.1e5, 1.1e7, 3.1e8, -1.3e6, 2.2e5],
+        [1.1e5, 3.2e5, -1.3e6, 2.3e4, 1.5e3],
+        [4.1e5, 1.2e6, 2.2e5, 1.5e3, 3.3e4],
+    ]
+)
+
+
+def growing(at):
+    return FULL * (1.0 + at[SPEED][..., None, None] / 1e5)
+
+
+def damped(axes, tables):
+    """A sweep of loaded, viscous contacts; C is made as K is, 1e-6 s of it."""
+    data = made(axes, tables, stiffness=growing)
+    return data.assign(damping=(data["stiffness"].dims, 1e-6 * data["stiffness"].values))
+
+
+@pytest.fixture(scope="module")
+def held():
+    return damped({SPEED: SPEEDS}, scene() | {"supports": {"tilt": "locked", "axial": "displacement"}})
+
+
+def entries(text):
+    """Bulk data by fixed fields: entry -> its lists of fields behind the name, continuations joined.
+
+    Fields of 8 characters, or of 16 where the name or the continuation ends with *; the tenth field joins lines and is empty.
+    """
+    found = []
+    for line in text.splitlines():
+        if line.startswith("$"):
+            continue
+        assert len(line) <= 72, line
+        name, rest = line[:8].strip(), line[8:]
+        width, count = (16, 4) if name.endswith("*") else (8, 8)
+        fields = [rest[k * width : (k + 1) * width].strip() for k in range(count)]
+        if name in ("*", "+"):
+            found[-1][1].extend(fields)
+        else:
+            found.append((name.rstrip("*"), fields))
+    return found
+
+
+def tables(found):
+    """Number -> x, y (n,) of each TABLED1: pairs from the ninth field on, up to ENDT."""
+    out = {}
+    for name, fields in found:
+        if name == "TABLED1":
+            assert fields[1:8] == [""] * 7  # linear axes
+            numbers = [float(one) for one in fields[8 : fields.index("ENDT")]]
+            out[int(fields[0])] = np.array(numbers).reshape(-1, 2).T
+    return out
+
+
+def by_direction(fields):
+    """Letter -> six fields, of PBUSH and PBUSHT: a letter leads each eight fields, behind the number of the property."""
+    return {fields[k + 1]: fields[k + 2 : k + 8] for k in range(0, len(fields), 8) if len(fields) > k + 1 and fields[k + 1]}
+
+
+def test_nastran_reads_the_diagonal_of_the_tangent(held):
+    made_file = rw.export_coefficients(held, kind="nastran", source="tangent", number=40, node=7)
+    found = entries(made_file.text)
+    (element,) = [fields for name, fields in found if name == "CBUSH"]
+    assert element == ["40", "40", "7", "", "", "", "", "0"]  # to ground, in the basic system
+    (nominal,) = [fields for name, fields in found if name == "PBUSH"]
+    (numbers,) = [fields for name, fields in found if name == "PBUSHT"]
+    assert nominal[0] == numbers[0] == "40"
+    there = tables(found)
+    for letter, of in (("K", FULL), ("B", 1e-6 * FULL)):
+        expected = np.zeros((len(SPEEDS), 6))
+        expected[:, [0, 1, 2, 4, 5]] = np.diag(of) * (1.0 + SPEEDS[:, None] / 1e5)
+        np.testing.assert_allclose([float(one) for one in by_direction(nominal)[letter]], expected[0], rtol=DIGITS)
+        for direction, number in enumerate(by_direction(numbers)[letter]):
+            if direction == 3:
+                assert number == ""
+                continue
+            hertz, values = there.pop(int(number))
+            np.testing.assert_allclose(hertz, HERTZ, rtol=DIGITS)
+            np.testing.assert_allclose(values, expected[:, direction], rtol=DIGITS)
+    assert not there  # no table that nothing refers to
+
+
+def test_nastran_says_what_it_leaves_out(held):
+    notes = " ".join(rw.export_coefficients(held, kind="nastran", source="tangent").notes)
+    across = FULL[1, 2] / np.sqrt(FULL[1, 1] * FULL[2, 2])
+    assert f"left out: kyz, kzy (up to {across:.2g} of the diagonal)" in notes
+    size = np.sqrt(np.diag(FULL))
+    tilting = np.max(np.abs(FULL[:3, 3:]) / np.outer(size[:3], size[3:]))
+    assert f"up to {tilting:.2g} of the geometric mean" in notes
+    assert "synchronous response (unbalance) only" in notes and "1e-3" in notes
+
+
+def test_a_secant_has_no_tilts_and_its_head_is_ascii_of_72_characters():
+    made_file = rw.export_coefficients(made({SPEED: SPEEDS}), kind="nastran")
+    assert all(len(line) <= 72 and line.isascii() for line in made_file.text.splitlines())
+    found = entries(made_file.text)
+    assert "CBUSH" not in [name for name, _ in found]  # to complete: a comment
+    assert re.search(r"^\$ CBUSH   1       1       GA      GB", made_file.text, re.MULTILINE)
+    (numbers,) = [by_direction(fields) for name, fields in found if name == "PBUSHT"]
+    there = tables(found)
+    for letter, directions, values in (("K", (1, 2), stiffness(SPEEDS, 1000.0)), ("B", (1, 2), damping(SPEEDS))):
+        for direction in directions:
+            np.testing.assert_allclose(there[int(numbers[letter][direction])][1], values, rtol=DIGITS)
+    assert numbers["K"][3:] == numbers["B"][3:] == ["", "", ""]
+
+
+def apdl(text):
+    """Tables by name as (speeds, values), the other commands by name."""
+    sizes, cells, commands = {}, {}, []
+    for line in text.splitlines():
+        if line.startswith("!"):
+            continue
+        if given := re.fullmatch(r"(\w+)\((\d+),([01])\)=(.*)", line):
+            name, row, column, values = given.groups()
+            values = values.split(",")
+            assert len(values) <= 10  # of one assignment
+            for k, value in enumerate(values):
+                cells[name, int(row) + k, int(column)] = float(value)
+        elif line.startswith("*DIM"):
+            _, name, kind, rows, columns, planes, over = line.split(",")
+            assert (kind, columns, planes, over) == ("TABLE", "1", "1", "OMEGS")
+            sizes[name] = int(rows)
+        else:
+            commands.append(line.split(","))
+    found = {name: np.array([[cells.pop((name, k + 1, c)) for k in range(n)] for c in (0, 1)]) for name, n in sizes.items()}
+    assert not cells
+    return found, commands
+
+
+@pytest.mark.parametrize("axial", ["displacement", "force"])
+def test_ansys_reads_the_matrices_across_the_axis(axial):
+    data = damped({SPEED: SPEEDS}, scene() | {"supports": {"tilt": "locked", "axial": axial}})
+    found, commands = apdl(rw.export_coefficients(data, kind="ansys", source="tangent", number=5).text)
+    assert commands[:2] == [["ET", "5", "COMBI214"], ["KEYOPT", "5", "2", "1"]]
+    constants = [name.strip("%") for line in commands[2:] for name in line[(2 if line[0] == "R" else 1) :]]
+    # The element's order; 1 and 2 are y and z in the YZ plane.
+    places = {"11": (0, 0), "22": (1, 1), "12": (0, 1), "21": (1, 0)}
+    assert constants == [f"{letter}{place}_5" for letter in "KC" for place in places]
+    kept = np.eye(5)[:, 1:3]
+    if axial == "force":  # x follows y, z without a force
+        kept[0] = -FULL[0, 1:3] / FULL[0, 0]
+    for name, place in zip(constants, [*places.values()] * 2, strict=True):
+        expected = (kept.T @ FULL @ kept)[place] * (1.0 + SPEEDS / 1e5) * (1.0 if name[0] == "K" else 1e-6)
+        np.testing.assert_allclose(found[name][0], SPEEDS * RADIANS, rtol=1e-14)  # 15 digits are written
+        np.testing.assert_allclose(found[name][1], expected, rtol=1e-13)
+
+
+def test_unsymmetric_and_absent_entries_are_told_to_ansys():
+    from raceway.studies.ross.coefficients import Coefficients
+    from raceway.studies.rotor_files.ansys import ansys_text
+
+    still, speed = np.zeros((3, 5, 5)), np.array([0.0, 10.0, 20.0])
+    turning = np.array([[2e8, 1e7], [-1e7, 2e8]]) + np.zeros((3, 1, 1))
+    table = Coefficients(speed, None, turning, 0 * turning, speed, "tangent", "made up", (), still, still, "locked")
+    found, commands = apdl(ansys_text(table, (), 1))
+    assert ["KEYOPT", "1", "3", "1"] in commands and ["RMORE", "0", "0"] in commands
+    np.testing.assert_array_equal(found["K12_1"][1], 1e7)
+    np.testing.assert_array_equal(found["K21_1"][1], -1e7)
+
+
+def read_csv(text):
+    rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))
+    return {name: np.array(column, dtype=float) for name, *column in zip(*rows, strict=True)}
+
+
+def test_csv_and_json_hold_every_number(held, tmp_path):
+    columns = read_csv(rw.export_coefficients(held, source="tangent", kind="csv").text)
+    content = json.loads(rw.export_coefficients(held, tmp_path / "b.json", source="tangent").text)
+    assert json.loads((tmp_path / "b.json").read_text()) == content
+    assert columns.keys() >= {"speed [rad/s]", "kyy [N/m]", "cyy [N s/m]", "K tilt_y z [N m/m]", "C x tilt_z [N s/rad]"}
+    np.testing.assert_array_equal(columns["speed [rad/s]"], SPEEDS * RADIANS)
+    np.testing.assert_array_equal(content["speed"]["values"], SPEEDS * RADIANS)
+    for letter, full in (("K", held["stiffness"].values), ("C", held["damping"].values)):
+        np.testing.assert_array_equal(content[letter]["values"], full)  # every bit comes back
+        for i, a in enumerate(content["coordinates"]):
+            for j, b in enumerate(content["coordinates"]):
+                column = f"{letter} {a} {b} [{content[letter]['unit'][i][j]}]"
+                np.testing.assert_array_equal(columns[column], full[:, i, j])
+    for name, one in content["coefficients"].items():
+        np.testing.assert_array_equal(columns[f"{name} [{one['unit']}]"], one["values"])
+
+
+def test_a_table_over_speed_and_frequency():
+    data = made({SPIN: [0.0, 9000.0], SPEED: SPEEDS})
+    columns = read_csv(rw.export_coefficients(data, kind="csv").text)
+    np.testing.assert_allclose(columns["speed [rad/s]"], np.repeat([0.0, 9000.0 * RADIANS], len(SPEEDS)))
+    np.testing.assert_allclose(columns["frequency [rad/s]"], np.tile(SPEEDS * RADIANS, 2))
+    np.testing.assert_array_equal(columns["kyy [N/m]"], np.tile(stiffness(SPEEDS, 1000.0), 2))
+    with pytest.raises(RacewayError, match=r"choose one with --at kinematics\.spin_speed_rpm"):
+        rw.export_coefficients(data, kind="nastran")
+    with pytest.raises(RacewayError, match=r"choose one with --at excitation\.speed_rpm"):
+        rw.export_coefficients(data, kind="ansys")
+    over = rw.export_coefficients(data, kind="nastran", at={SPIN: 9000.0})
+    assert "at one speed of the shaft" in " ".join(over.notes)
+    with pytest.raises(RacewayError, match=f"sweep over `{SPIN}` instead"):
+        rw.export_coefficients(data, kind="ansys", at={SPIN: 9000.0})
+
+
+@pytest.mark.parametrize(
+    "given, told",
+    [
+        ({"kind": "abaqus"}, "must be one of nastran, ansys, csv, json"),
+        ({"path": "b.xls"}, "tells its kind by the ending: one of .csv, .json"),
+        ({"kind": "nastran", "number": 0}, "Nastran numbers its properties from 1 to"),
+        ({"kind": "ansys", "number": 10**6}, "give an element type of Ansys from 1 to"),
+    ],
+)
+def test_bad_input_is_refused(held, given, told):
+    with pytest.raises(RacewayError, match=re.escape(told)):
+        rw.export_coefficients(held, source="tangent", **given)
+
+
+def test_two_points_are_enough_for_straight_lines():
+    assert len(read_csv(rw.export_coefficients(made({SPEED: SPEEDS[:2]}), kind="csv").text)["kyy [N/m]"]) == 2
+    with pytest.raises(SceneError, match="has the one value 2000"):
+        rw.export_coefficients(made({SPEED: SPEEDS[:1]}), kind="csv")
+
+
+def test_the_damping_of_a_real_bearing_is_that_of_its_linear_response():
+    """C of the equilibrium against Im Z / w of a small force with the tilt locked and x free: the same matrices, another way."""
+    given = {
+        "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0, "radial": [150.0, 0.0]}, "contact": {"damping": 300.0},
+        "kinematics": {"spin_speed_rpm": 6000.0}, "identifier": {"kind": "tangent"}, "supports": {"tilt": "free"},
+        "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 1.0, "direction_deg": 0.0},
+    }  # fmt: skip
+    # The lower the frequency, the less the motions without force lag behind: an error of second order in it.
+    data = rw.sweep(given, {SPEED: [30.0, 60.0]})
+    found = rw.export_coefficients(data, kind="csv", source="tangent").coefficients
+    h = np.linalg.inv(found.stiffness + 1j * (found.frequency[:, None, None] * found.damping))
+    z = 1.0 / h[:, 0, 0]
+    np.testing.assert_allclose(z.imag / found.frequency, data["z_imag"].values / found.frequency, rtol=1e-5)
+
+
+def test_the_command_writes_all_of_them(tmp_path):
+    (tmp_path / "b.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[contact]\ndamping = 100.0\n')
+    swept = invoke("sweep", tmp_path / "b.toml", "--grid", f"{SPIN}=0:20000:3", "--out", tmp_path / "store")
+    assert swept.exit_code == 0, swept.output
+    files = [tmp_path / name for name in ("b.bdf", "b.inp", "b.csv")]
+    words = [word for pair in zip(("--nastran", "--ansys", "--table"), files, strict=True) for word in pair]
+    found = invoke("export", tmp_path / "store", *words, "--number", 3, "--json")
+    assert found.exit_code == 0, found.output
+    content = json.loads(found.stdout)
+    assert content["files"] == [str(path) for path in files] and content["programs"] == ["Nastran", "Ansys", "CSV"]
+    columns = read_csv(files[2].read_text())
+    np.testing.assert_array_equal(columns["kyy [N/m]"], content["coefficients"]["kyy"])
+    there, _ = apdl(files[1].read_text())
+    np.testing.assert_allclose(there["K11_3"][1], columns["kyy [N/m]"], rtol=1e-14)
+    nastran = entries(files[0].read_text())
+    (numbers,) = [by_direction(fields) for name, fields in nastran if name == "PBUSHT"]
+    np.testing.assert_allclose(tables(nastran)[int(numbers["K"][1])][1], columns["kyy [N/m]"], rtol=DIGITS)
+    assert columns["C y y [N s/m]"].min() > 0.0
+    shown = invoke("export", tmp_path / "store", *words, "--number", 3)
+    assert "coefficients for Nastran, Ansys, CSV" in shown.stdout
+    for note in content["notes"]:
+        assert note[:60].rsplit(" ", 1)[0] in " ".join(shown.stdout.split())
+    refused = invoke("export", tmp_path / "store")
+    assert refused.exit_code == 2 and "give --ross, --nastran, --ansys or --table" in " ".join(refused.stderr.split())
+    refused = invoke("export", tmp_path / "store", "--table", tmp_path / "b.xls")
+    assert refused.exit_code == 2 and "tells its kind by the ending" in refused.stderr
