@@ -101,6 +101,7 @@ class RossTable(Shown):
         """The numbers by our names, and the notes, as plain tables."""
         return {
             "ross": self.file.generation,
+            "programs": [self.program],
             "tag": self.tag,
             **self.coefficients.to_dict(),
             "notes": list(self.notes),

@@ -47,7 +47,7 @@ class CoefficientFile(Shown):
 
     def to_dict(self) -> Tables:
         """The numbers by our names, and the notes, as plain tables."""
-        return {"kind": self.kind, "tag": self.tag, **self.coefficients.to_dict(), "notes": list(self.notes)}
+        return {"programs": [self.program], "tag": self.tag, **self.coefficients.to_dict(), "notes": list(self.notes)}
 
     def write(self, path: str | Path) -> Path:
         """Write the file, whole or not at all.
