@@ -221,7 +221,15 @@ def table(width):
     values |= {name: [(k + 1) * 1.23456e8 * (1.0 + 0.1 * n) for n in range(5)] for k, name in enumerate(names[:width])}
     notes = ["made up"]
     speed = [104.719755 * n for n in range(5)]
-    return {"ross": 3, "tag": "B7206C", "speed": speed, "frequency": None, "coefficients": values, "notes": notes}
+    return {
+        "ross": 3,
+        "programs": ["ROSS 3"],
+        "tag": "B7206C",
+        "speed": speed,
+        "frequency": None,
+        "coefficients": values,
+        "notes": notes,
+    }
 
 
 @pytest.mark.parametrize("width", [1, 4, 9])

@@ -2,7 +2,7 @@
 
 many        what they share: the engine (items in, rows out, kept and resumed), points, axes, row store, pages
 compare, precision, stability, sweep, verify, view, ross, measured    one folder a command, with what it prints and draws
-rotor_files their coefficients for Nastran and Ansys, as CSV and JSON
+rotor_files  coefficients for Nastran and Ansys, as CSV and JSON
 limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
 infer, catalogue    balls and grooves from printed numbers; the bearings that were made so, with their commands
 article, rig, map    whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
