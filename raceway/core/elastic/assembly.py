@@ -102,6 +102,11 @@ class Assembly:
         """Compute the forces of equal parts by one matrix (``raceway.core.elastic.equal_parts``)."""
         self.groups = groups
 
+    def unequal(self) -> list[Body]:
+        """One of each group of equal bodies; all where no groups are known."""
+        first = [group.members[0] for group in self.groups] or range(len(self.bodies))
+        return [self.bodies[index] for index in first]
+
     @cached_property
     def _forces(self) -> BodyForces:
         return BodyForces([body.operator for body in self.bodies], self.starts, self.groups)

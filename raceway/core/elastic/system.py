@@ -56,8 +56,8 @@ class ElasticSystem:
         self._weight = np.concatenate([np.where(reach > 0.0, 1.0 / np.maximum(reach, 1e-30), 0.0), np.ones(self.size - m)])
         self._u = np.zeros(3 * assembly.nodes)
         self._y = np.zeros(self.size)
-        #: Velocities (size,), step and share of places with which contact forces were evaluated last.
-        self._at: tuple[np.ndarray | None, float, float] = (None, 0.0, 0.0)
+        #: Velocities (size,) and step with which contact forces were evaluated last.
+        self._at: tuple[np.ndarray | None, float] = (None, 0.0)
         self._element_step: float | None = None
         self._refuse_overlap()
 
@@ -76,7 +76,7 @@ class ElasticSystem:
     def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         a = self.assembly
         out, self._u = a.forces(dt, np.ascontiguousarray(u), v, self.contact)
-        self._at = v if dt > 0.0 else None, dt, 0.0
+        self._at = v if dt > 0.0 else None, dt
         m = a.frame_size
         out[:m] += a.frame_damping @ v[:m]
         return out
@@ -87,7 +87,7 @@ class ElasticSystem:
         self._y, self._u = y.copy(), a.nodal(y)
         out = a.internal(y, self._u)
         if self.contact is not None:
-            self._at = None, 0.0, share
+            self._at = None, 0.0
             out += a.reduced(self.contact.evaluate(0.0, self._u, None, share))
         return out
 
@@ -100,9 +100,9 @@ class ElasticSystem:
         """(size,) increment by which the forces of the last ``internal`` change by ``right``; without superelements by their tangents."""
         if self.condensed is None:
             return self.solve(c_k, c_c, c_m, right)
-        v, dt, share = self._at
+        v, dt = self._at
         rate = None if v is None else self.assembly.nodal(np.ascontiguousarray(v))
-        return self.condensed.increment(c_k, c_c, c_m, right, self._u, rate, dt, share, locates=dt == 0.0)
+        return self.condensed.increment(c_k, c_c, c_m, right, self._u, rate, dt, locates=dt == 0.0)
 
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         m = self.assembly.frame_size
@@ -152,7 +152,7 @@ class ElasticSystem:
     def stable_step(self) -> float:
         """Of elements and contacts together: 1/dt^2 adds up, as the largest eigenvalues at most do [s]."""
         if self._element_step is None:
-            self._element_step = min(body.operator.stable_step() for body in self.assembly.bodies)
+            self._element_step = min(body.operator.stable_step() for body in self.assembly.unequal())
         mine = np.inf if self.contact is None else self.contact.stable_step(self.assembly.node_mass)
         return float(1.0 / np.sqrt(1.0 / self._element_step**2 + 1.0 / mine**2))
 

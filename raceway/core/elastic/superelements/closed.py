@@ -35,6 +35,7 @@ class Closed:
         self.part, self._factors, self._across, self.blocks = part, factors, across, blocks
         self._before, self._behind, self._order = _places(part)
         self._next = part.copies.turns[1]
+        self._loaded: tuple[np.ndarray, np.ndarray] | None = None
 
     @classmethod
     def of(cls, part: Part) -> Closed:
@@ -78,13 +79,28 @@ class Closed:
         return self.part.nodes
 
     def respond(self, loads: np.ndarray) -> np.ndarray:
-        """Displacements (copies, 3 k) of the contacts' nodes under forces (copies, 3 k) there."""
+        """Displacements (copies, 3 k) of the contacts' nodes under forces (copies, 3 k) there.
+
+        Notes
+        -----
+        By reciprocity, row j of block -c is what a force j does c sectors on.
+        """
         turns = self.part.copies.turns
         local = turned_vectors(loads, turns.transpose(0, 2, 1))
-        out = np.zeros_like(local)
-        for away, block in enumerate(self.blocks):
-            out += np.roll(local @ block.T, away, axis=0)
+        columns, rows = self._under(np.asarray(local.any(axis=0)))
+        out, few = np.zeros_like(local), local[:, columns]
+        for away in range(len(turns)):
+            out += np.roll(few @ rows[-away], away, axis=0)
         return turned_vectors(out, turns)
+
+    def _under(self, loaded: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Loaded columns (3 k,) bool, and their rows of the blocks: few in a contact, held until others are loaded."""
+        if 2 * loaded.sum() > len(loaded):
+            return np.ones_like(loaded), self.blocks
+        known = self._loaded
+        if known is None or (loaded & ~known[0]).any() or 2 * loaded.sum() < known[0].sum():
+            known = self._loaded = loaded, self.blocks[:, loaded]
+        return known
 
     def among(self, nodes: np.ndarray) -> np.ndarray:
         """(3 m, 3 m) flexibility of some of the contacts' nodes (m,), numbered through all sectors [m/N]."""

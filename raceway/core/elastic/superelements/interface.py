@@ -11,6 +11,7 @@ import numpy as np
 
 from raceway.core.elastic.superelements.balls import Balls
 from raceway.core.elastic.superelements.loose import gather_turned
+from raceway.core.elastic.superelements.ring_flexibility import RingFlexibility
 from raceway.core.elastic.superelements.rings import Ring
 
 
@@ -57,7 +58,7 @@ class Interface:
         self.extra = len(balls[0][0].springs)
         self._first = np.cumsum([0, *(len(ring.nodes) for ring in rings)])
         self._balls: dict[int, tuple[Balls, int, int]] = {}
-        self._known: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        self._known: RingFlexibility | None = None
         begin = int(self._first[-1])
         for group, members in balls:
             for copy, ball in enumerate(members):
@@ -107,29 +108,29 @@ class Interface:
         beside = (turn @ group.flexibility[places, group.size :].reshape(-1, 3, self.extra)).reshape(size, self.extra)
         return np.block([[inner, beside], [beside.T, group.flexibility[group.size :, group.size :]]])
 
-    def of_rings(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Flexibility (3 k, 3 k) of some of the rings' nodes (k,), ``nodes`` (m,) among them, and their motion (3 k, m) with the frame.
+    def of_rings(self, nodes: np.ndarray) -> RingFlexibility:
+        """Of some of the rings' nodes (k,), ``nodes`` (m,) among them.
 
         Notes
         -----
         Contacts move little from iteration to iteration: what was asked for before stays, up to twice of what is asked.
         """
-        known = np.union1d(self._known[0], nodes) if self._known else nodes
+        known = np.union1d(self._known.nodes, nodes) if self._known else nodes
         if len(known) > 2 * len(nodes):
             known = nodes
-        if self._known is None or not np.array_equal(known, self._known[0]):
-            self._known = known, *self._among(known)
+        if self._known is None or not np.array_equal(known, self._known.nodes):
+            self._known = self._among(known)
         return self._known
 
-    def _among(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        size = 3 * len(nodes)
-        flexibility, carried = np.zeros((size, size)), np.zeros((size, self.frame_size))
+    def _among(self, nodes: np.ndarray) -> RingFlexibility:
+        carried = np.zeros((3 * len(nodes), self.frame_size))
+        blocks, ends = [], 3 * np.searchsorted(nodes, self._first)
         for k, ring in enumerate(self.rings):
-            chosen = np.flatnonzero((nodes >= self._first[k]) & (nodes < self._first[k + 1]))
-            own, rows = nodes[chosen] - self._first[k], unknowns(chosen)
-            flexibility[np.ix_(rows, rows)] = ring.element.among(own)
+            rows = slice(int(ends[k]), int(ends[k + 1]))
+            own = nodes[rows.start // 3 : rows.stop // 3] - self._first[k]
+            blocks.append((rows, ring.element.among(own)))
             carried[rows, : ring.carried.shape[1]] = ring.carried[unknowns(own)]
-        return flexibility, carried
+        return RingFlexibility(nodes, blocks, carried)
 
 
 def unknowns(nodes: np.ndarray) -> np.ndarray:

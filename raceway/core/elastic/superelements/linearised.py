@@ -36,7 +36,8 @@ class Linearised:
         self._face, self._tangents, self._frame, self._unknown = face, tangents, frame, unknown
         used = [one.rings for one in tangents.values()]
         nodes = np.unique(np.concatenate(used)) if used else np.zeros(0, dtype=np.int64)
-        self._nodes, self._flexibility, self._carried = face.of_rings(nodes)
+        self._rings = face.of_rings(nodes)
+        self._nodes, self._carried = self._rings.nodes, self._rings.carried
         self._size = 3 * len(self._nodes)
         self._balls = {k: _Ball(face, k, one) for k, one in tangents.items()}
         self._places = {k: unknowns(np.searchsorted(self._nodes, one.rings)) for k, one in tangents.items()}
@@ -55,7 +56,7 @@ class Linearised:
         for k, one in self._tangents.items():
             own[k] = self._balls[k].alone(driver.nodes[one.ball], driver.balls[k])
             rest[self._places[k]] += self._balls[k].across @ own[k][: 3 * len(one.ball)]
-        right = driver.nodes[self._nodes].ravel() - self._flexibility @ rest
+        right = driver.nodes[self._nodes].ravel() - self._rings.times(rest)
         on_frame = np.where(self._unknown, driver.frame - self._carried.T @ rest, 0.0)
         found = self._inverse(np.concatenate([right, on_frame]), tolerance)
         force, balls = np.zeros_like(driver.nodes), np.zeros_like(driver.balls)
@@ -77,7 +78,7 @@ class Linearised:
         matrix[np.arange(size), np.arange(size)] = 1.0
         for k, places in self._places.items():
             stiffness = self._balls[k].stiffness
-            matrix[:size, places] += self._flexibility[:, places] @ stiffness
+            matrix[:size, places] += self._rings.under(places, stiffness)
             matrix[size:, places] += self._carried[places].T @ stiffness
         matrix[:size, size:], matrix[size:, size:] = -self._carried, self._frame
         held = size + np.flatnonzero(~self._unknown)
@@ -93,7 +94,7 @@ class Linearised:
         size, m, carried = self._size, len(self._frame), self._carried
         factors = {}
         for k, places in self._places.items():
-            own = self._flexibility[np.ix_(places, places)] @ self._balls[k].stiffness
+            own = self._rings.among(places, self._balls[k].stiffness)
             own[np.arange(len(own)), np.arange(len(own))] += 1.0
             factors[k] = lu_factor(own, overwrite_a=True, check_finite=False)
 
@@ -122,7 +123,7 @@ class Linearised:
             moved = moved.ravel()
             force, frame = pressed(moved[:size]), moved[size:]
             on_frame = np.where(self._unknown, carried.T @ force + self._frame @ frame, frame)
-            out = moved[:size] + self._flexibility @ force - carried @ frame
+            out = moved[:size] + self._rings.times(force) - carried @ frame
             return preconditioned(np.concatenate([out, on_frame]))
 
         operator = LinearOperator((size + m, size + m), matvec=applied, dtype=float)

@@ -14,6 +14,7 @@ from raceway.core.elastic.superelements.bearing import interface_of, touchable
 from raceway.core.elastic.superelements.interface import Interface, Motions
 from raceway.core.elastic.superelements.kept import OnProgress
 from raceway.core.elastic.superelements.linearised import Linearised
+from raceway.core.elastic.superelements.pressing import Beyond, Pressing
 from raceway.core.elastic.superelements.tangent import BallTangent
 from raceway.errors import ConvergenceError
 
@@ -21,6 +22,8 @@ from raceway.errors import ConvergenceError
 NEWTON_LIMIT = 40
 #: Unbalanced forces of the contacts over what balances at which Newton's method ends: solutions have six digits before refinement.
 TOLERANCE = 1e-10
+#: The same over the forces by which an increment changes them: bodies' single precision leaves as much.
+INCREMENT = 1e-6
 #: Relative error of a step of Newton's method: its own is no smaller.
 ENOUGH = 1e-6
 #: Relative change of tangents up to which Newton's method goes on with those before: so much of its error is left by an iteration.
@@ -83,7 +86,6 @@ class CondensedSolver:
         u: np.ndarray,
         v: np.ndarray | None,
         dt: float,
-        share: float = 0.0,
         locates: bool = False,
     ) -> np.ndarray:
         """(size,) increment by which forces change by ``right``: those of the contacts themselves, not their tangents.
@@ -91,13 +93,12 @@ class CondensedSolver:
         Parameters
         ----------
         u, v : (3 nodes,) displacements and velocities at which the last contact forces were evaluated;  dt : with this step [s]
-        share : with this share (``Contact.evaluate``)
         locates : whether places on the second surfaces are looked up meanwhile
         """
         while True:
             try:
-                return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt, share, locates)
-            except _Beyond as beyond:
+                return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt, locates)
+            except Beyond as beyond:
                 self._widen(beyond.nodes)
 
     def _widen(self, nodes: np.ndarray) -> None:
@@ -119,14 +120,6 @@ def _alike(one: tuple[np.ndarray, ...], other: tuple[np.ndarray, ...], close: fl
         and float(np.abs(np.subtract(a, b, dtype=float)).max(initial=0.0)) <= close * float(np.abs(a).max(initial=0.0))
         for a, b in zip(one, other, strict=True)
     )
-
-
-class _Beyond(Exception):
-    """A contact presses on nodes that its bodies were not reduced to."""
-
-    def __init__(self, nodes: np.ndarray) -> None:
-        super().__init__()
-        self.nodes = nodes
 
 
 class _Step:
@@ -167,32 +160,31 @@ class _Step:
         force, frame = self._linearised(close=0.0).forces(self.alone)
         return self._whole(self._moved(force, frame), force)
 
-    def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float, share: float, locates: bool) -> np.ndarray:
+    def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float, locates: bool) -> np.ndarray:
         """Newton's method with a line search; every state balances all forces but those of the contacts."""
-        contact = self.contact
-        start = self._contact_force()
+        pressed = Pressing(self.contact, self.face, u, v, self.rate, dt)
+        start = pressed.forces()
 
         def unbalanced(state: Motions, force: Motions) -> np.ndarray:
-            rate = None if v is None else self._with(v, self.rate * state.nodes)
-            contact.evaluate(dt, self._with(u, state.nodes), rate)
-            return force.nodes - (self._contact_force() - start)
+            return force.nodes - (pressed.forces_at(state.nodes) - start)
 
         force, frame = self._linearised().forces(self.alone)
         state = self._moved(force, frame)
         rest = unbalanced(state, force)
+        asked = INCREMENT * np.abs(force.nodes).max()
         for _ in range(NEWTON_LIMIT):
-            if locates and contact.update(contact.place + (contact.move @ self._with(u, state.nodes)).reshape(-1, 3)):
+            if locates and pressed.locate(state.nodes):
                 rest = unbalanced(state, force)
             size = np.abs(start + force.nodes).max()
-            if np.abs(rest).max() <= TOLERANCE * max(size, 1e-300):
+            if np.abs(rest).max() <= max(TOLERANCE * size, asked, 1e-300):
                 return self._whole(state, force)
             if not np.isfinite(rest).all():
                 raise ConvergenceError("forces are not finite.")
             self.solver.iterations += 1
             back = self.face.moved(Motions(rest, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
             driver = Motions(back.nodes, back.balls, self.face.on_frame(rest))
-            pressed, turned = self._linearised().forces(driver, ENOUGH)
-            change = Motions(pressed.nodes - rest, pressed.balls, turned)
+            pressed_on, turned = self._linearised().forces(driver, ENOUGH)
+            change = Motions(pressed_on.nodes - rest, pressed_on.balls, turned)
             way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
             state, force, rest = self._along(state, way, force, change, unbalanced, rest)
         raise ConvergenceError(
@@ -216,24 +208,6 @@ class _Step:
             return (trial, tried, left), float((way.nodes * left).sum()), False
 
         return searched(float((way.nodes * rest).sum()), at)
-
-    def _with(self, values: np.ndarray, more: np.ndarray) -> np.ndarray:
-        """(3 nodes,) values with more (n, 3) at the contacts' nodes."""
-        out = values.copy()
-        out.reshape(-1, 3)[self.face.numbers] += more
-        return out
-
-    def _contact_force(self) -> np.ndarray:
-        """(n, 3) internal forces of the contacts on the contacts' nodes, as last evaluated."""
-        contact, place = self.contact, self.face.place
-        chosen = np.flatnonzero(contact.force.any(axis=1))
-        out = np.zeros((len(self.face.numbers), 3))
-        rows = place[contact.nodes[chosen]]
-        if (rows < 0).any():
-            raise _Beyond(contact.nodes[chosen][rows < 0])
-        for a in range(8):
-            np.add.at(out, rows[:, a], -contact.weights[chosen, a, None] * contact.force[chosen])
-        return out
 
     def _linearised(self, close: float = CLOSE) -> Linearised:
         """With the tangents of the last contact forces; the one before where the same points touch and these are as ``close``."""
