@@ -4,6 +4,7 @@ rigid, condensed, elastic   kinds of plug-in ``bodies``;  patches: contacts of c
 model        a bearing that was built, as the pipeline asks it, and everything else that a run computes with
 basis        what every kind starts from: geometry, contacts, loads, linear parts of the ring
 mounting     preload of a pair, an axial displacement that is held
+running      contact laws at the running speed: entraining speeds, loads, parameters that fit the equilibrium
 equilibrium  the static state;  grooves: angles and edges of contacts;  pressure: of contact resultants
 contact_error   of laws that are not calibrated: against Hertz, or the overlap that they leave
 modules      optional modules that these bodies import

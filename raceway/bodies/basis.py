@@ -94,26 +94,39 @@ def call_plugin(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
         raise PluginError(f"{who}: {duty} raises {type(why).__name__}: {why}") from why
 
 
-def law_params(scene: Scene, basis: Basis) -> np.ndarray:
-    """(2 Z, k) parameters of the contact law: inner races first, then outer."""
+def contact_pairs(scene: Scene, basis: Basis) -> ContactPairs:
+    """The contacts as a law sees them, mounted and at standstill."""
     inner, outer = basis.inner, basis.outer
-    z = len(basis.azimuth)
+    z, rings, balls = len(basis.azimuth), scene.bearing.rings, scene.bearing.balls
 
     def both(a: float | np.ndarray, b: float | np.ndarray) -> np.ndarray:
         return np.concatenate([np.broadcast_to(one, z) for one in (a, b)]).astype(float)
 
-    pairs = ContactPairs(
+    def every(value: float) -> np.ndarray:
+        return np.full(2 * z, value)
+
+    return ContactPairs(
         curvature_a=both(inner.curvatures[0], outer.curvatures[0]),
         curvature_b=both(inner.curvatures[1], outer.curvatures[1]),
-        contact_modulus=both(basis.modulus, basis.modulus),
+        contact_modulus=every(basis.modulus),
         hertz_factor=both(inner.factor, outer.factor),
-        reference_load=both(basis.ball_load, basis.ball_load),
+        reference_load=every(basis.ball_load),
+        ring_young=every(rings.young),
+        ring_poisson=every(rings.poisson),
+        ball_young=every(balls.young),
+        ball_poisson=every(balls.poisson),
+        running_angle=every(0.0),
     )
+
+
+def law_params(scene: Scene, pairs: ContactPairs) -> np.ndarray:
+    """(2 Z, k) parameters of the contact law: inner races first, then outer."""
     params = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
-    if params.ndim != 2 or len(params) != 2 * z:
+    count = len(pairs.curvature_a)
+    if params.ndim != 2 or len(params) != count:
         raise PluginError(
             f"contact law '{scene.contact.kind}': build() returned parameters of shape {params.shape}; "
-            f"it must be ({2 * z}, k): a row for each ball-race pair"
+            f"it must be ({count}, k): a row for each ball-race pair"
         )
     return params
 

@@ -5,16 +5,20 @@ Both are set at standstill, before anything has grown; speed and temperature the
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess
+from raceway.bodies.running import renew
 from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.ring import Growth, Ring, Spin
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
+from raceway.framework.duties import renews
 from raceway.planning.recording import turns_of
 from raceway.scene.growth import grooves
 from raceway.scene.tables import Scene
@@ -45,11 +49,12 @@ def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
         mounted = _under(system.as_mounted(growth), scene.load.axial)
         start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
         guess = _follow_spring(scene, basis, mounted, start) if sprung else mounted.settle(start)[0]
-    if sprung:
-        if system.spin is not None:
-            system.spin = _follow_speed(scene, basis, system, system.spin, guess)
-        guess = _follow_spring(scene, basis, system, guess)
-    return guess
+    place = partial(_follow_spring, scene, basis) if sprung else None
+    if renews(scene.contact.law) and isinstance(system, System):
+        guess = renew(scene, basis, system, guess, place)
+    if sprung and system.spin is not None:
+        system.spin = _follow_speed(scene, basis, system, system.spin, guess)
+    return guess if place is None else place(system, guess)
 
 
 def growth_of(scene: Scene, basis: Basis) -> Growth:

@@ -7,6 +7,7 @@ compiled.  These protocols are one level deep: nothing has to inherit from them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -53,6 +54,12 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     7. ``foundation`` = True, if it is there, says that a resultant is the integral of a pressure that follows from the overlap
        at each place: results then tell the law's own peak pressure and semi-axes, sqrt(A B) / pi dQ/ddelta and the overlap
        ellipse's, instead of Hertz's at the same load.
+    8. ``renewed`` = True, if it is there, says that parameters follow the running speed and the loads: ``build`` is called once
+       for the mounted bearing at standstill, where ``pairs.entraining_speed`` and ``pairs.load`` are None and the law is dry, and
+       again at the running equilibrium until loads and parameters fit each other; again where a run changes the speed.
+    9. ``reach(pairs)``, if it is there, with ``renewed``: how far from touching each contact begins to carry (n,) [m], 0 or more:
+       what stands between the surfaces, such as a film.  The bearing makes room for it: the kernel's gap is measured from there.
+    10. ``report(pairs)``, if it is there, with ``renewed``: a ``LawReport`` at the running equilibrium.
     """
 
     name: ClassVar[str]
@@ -76,6 +83,12 @@ class ContactPairs:
     reference_load : load of a ball under the axial load alone [N]
     area : area of a surface point [m2], None for resultants; each row then stands for the points of a contact
     length : of a line contact [m], which has A = 0 and no Hertz factor (nan); None where contacts are ellipses
+    ring_young, ring_poisson, ball_young, ball_poisson : materials [Pa]; None where bodies do not tell them
+    running_angle : of the running direction against the minor semi-axis [rad]; 0 in ball bearings
+    entraining_speed : mean speed of both surfaces against the contact, along the running direction [m/s], from the kinematics at
+        the running speed and the loaded contact angles; None at standstill
+    load : in the running equilibrium [N], at least a tenth of the most loaded contact's of its race and row: that of a contact
+        which is about to carry; of balls that orbit the mean of their race and row; None at standstill
     """
 
     curvature_a: np.ndarray
@@ -85,6 +98,57 @@ class ContactPairs:
     reference_load: np.ndarray
     area: np.ndarray | None = None
     length: np.ndarray | None = None
+    ring_young: np.ndarray | None = None
+    ring_poisson: np.ndarray | None = None
+    ball_young: np.ndarray | None = None
+    ball_poisson: np.ndarray | None = None
+    running_angle: np.ndarray | None = None
+    entraining_speed: np.ndarray | None = None
+    load: np.ndarray | None = None
+
+    @property
+    def radius_along(self) -> np.ndarray:
+        """(n,) effective radius along the running direction [m]: 1 / (2 B) of balls that roll along the minor semi-axis."""
+        return self._radius(0.0)
+
+    @property
+    def radius_across(self) -> np.ndarray:
+        """(n,) effective radius across the running direction [m]."""
+        return self._radius(0.5 * math.pi)
+
+    def _radius(self, further: float) -> np.ndarray:
+        import numpy as np
+
+        angle = further + (0.0 if self.running_angle is None else self.running_angle)
+        across, along = np.sin(angle) ** 2, np.cos(angle) ** 2
+        return np.asarray(0.5 / (self.curvature_b * along + self.curvature_a * across))
+
+    @property
+    def ellipticity(self) -> np.ndarray:
+        """(n,) a / b of the contact ellipse, from the complete elliptic integrals."""
+        import numpy as np
+
+        from raceway.core.contact.hertz import ellipticity
+
+        difference = (self.curvature_b - self.curvature_a) / (self.curvature_b + self.curvature_a)
+        values, place = np.unique(difference, return_inverse=True)
+        return np.array([ellipticity(float(one)) for one in values])[place]
+
+
+@attrs.frozen(eq=False)
+class LawReport:
+    """What a law tells of the contacts in the running equilibrium.
+
+    Attributes
+    ----------
+    columns : name -> (n,) numbers or words, to ``equilibrium.balls[]`` of result.json, with ``inner_`` and ``outer_`` before
+    table : name -> number of all contacts, to ``equilibrium.law``
+    warnings : what a user should know
+    """
+
+    columns: Mapping[str, np.ndarray]
+    table: Mapping[str, float | str | None]
+    warnings: tuple[str, ...] = ()
 
 
 class Excitation(attrs.AttrsInstance, Protocol):
@@ -276,12 +340,14 @@ class Traits:
     resultants : one force a contact, whose energy and pressure follow from its gap
     calibrated : what the contacts' calibration leaves is part of the total error
     every_node : all nodes are unknowns: a second run to compare with would cost as much as the first
+    renews : parameters of contact laws are renewed at the running speed and equilibrium (``ContactLaw``, duty 8)
     """
 
     compiled: bool = True
     resultants: bool = True
     calibrated: bool = False
     every_node: bool = False
+    renews: bool = False
 
 
 @attrs.frozen

@@ -1,13 +1,21 @@
-"""Calls of duties of the kind of bodies that a scene names: what it raises, or returns of another type, is put to its name."""
+"""Calls of duties of the kind of bodies that a scene names: what it raises, or returns of another type, is put to its name.
+
+Duties of contact laws that may be left out have their defaults here.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from raceway.errors import PluginError
-from raceway.framework.contracts import Cost, Traits
+from raceway.framework.contracts import Cost, LawReport, Traits
 from raceway.framework.sources import blamed
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.framework.contracts import ContactPairs
 
 #: Duty -> what it returns.
 _RETURNS: dict[str, tuple[type, ...]] = {
@@ -42,4 +50,42 @@ def bodies(scene: Any, duty: str, *arguments: Any) -> Any:
 def traits_of(scene: Any) -> Traits:
     """Of the bodies in a scene."""
     found: Traits = bodies(scene, "traits")
+    return found
+
+
+def renews(law: Any) -> bool:
+    """Whether a contact law's parameters follow the running speed and the loads; not unless it says so."""
+    return bool(getattr(law, "renewed", False))
+
+
+def reach_of(law: Any, pairs: ContactPairs) -> np.ndarray:
+    """How far from touching the contacts of a law begin to carry (n,) [m]; 0 unless it says more.
+
+    Raises
+    ------
+    PluginError
+        It raises, or returns no such array.
+    """
+    import numpy as np
+
+    n = len(pairs.curvature_a)
+    if not hasattr(law, "reach"):
+        return np.zeros(n)
+    who = f"contact law '{law.name}'"
+    with blamed(who, "reach()"):
+        found = np.asarray(law.reach(pairs))
+    if found.shape != (n,) or not (found >= 0.0).all() or not np.isfinite(found).all():
+        raise PluginError(f"{who}: reach() must return {n} finite lengths of 0 or more, one for each contact")
+    return found
+
+
+def law_report(law: Any, pairs: ContactPairs) -> LawReport | None:
+    """What a renewed law tells of its contacts; None unless it does."""
+    if not renews(law) or not hasattr(law, "report"):
+        return None
+    who = f"contact law '{law.name}'"
+    with blamed(who, "report()"):
+        found = law.report(pairs)
+    if not isinstance(found, LawReport):
+        raise PluginError(f"{who}: report() returned {type(found).__name__}; it must be a LawReport")
     return found

@@ -14,6 +14,7 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import held_table, preload_table
+from raceway.bodies.running import report_of
 from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
@@ -285,6 +286,9 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         columns[f"semi_major_{word}_m"] = a
         columns[f"semi_minor_{word}_m"] = b
     columns |= model.bearing.ball_columns(model, equilibrium)
+    law = report_of(model, equilibrium)
+    for name, values in {} if law is None else law.columns.items():
+        columns |= {f"inner_{name}": values[:z], f"outer_{name}": values[z:]}
     several = len(model.scene.bearing.rows) > 1
     rows: list[Tables] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
     return {
@@ -293,7 +297,8 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         "damping": equilibrium.damping.tolist(),
         "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
         "free_contact_angle_deg": math.degrees(model.scene.bearing.contact_angle),
-        "balls": [{**rows[k], **{key: float(column[k]) for key, column in columns.items()}} for k in range(z)],
+        "balls": [{**rows[k], **{key: column[k].item() for key, column in columns.items()}} for k in range(z)],
+        "law": None if law is None else dict(law.table),
         "preload": preload_table(model, equilibrium),
         "held_axial": held_table(model, equilibrium),
         "iterations": equilibrium.iterations,

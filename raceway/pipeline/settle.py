@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import attrs
 import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import lost_preload
+from raceway.bodies.running import report_of
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
@@ -40,7 +42,9 @@ def settle(
     inner, outer = model.bearing.contact_angles(model, q, now.ball, now.contact_force)
     model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
-    return Equilibrium(q, stiffness, now.damping, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    found = Equilibrium(q, stiffness, now.damping, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    law = report_of(model, found)
+    return found if law is None else attrs.evolve(found, warnings=(*law.warnings, *warnings))
 
 
 def _refuse_no_load(model: Model) -> None:

@@ -8,7 +8,7 @@ import attrs
 
 from raceway.core.schemes.drivers import missing_driver
 from raceway.errors import Mistake, SceneError
-from raceway.framework.duties import bodies, traits_of
+from raceway.framework.duties import bodies, renews, traits_of
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.scene.growth import growth_faults
 from raceway.scene.inner_ring import ring_inertia
@@ -32,6 +32,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
+    _refuse_renewed(scene, refuse)
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
     alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
@@ -66,6 +67,21 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake("rotor.transverse_inertia", scene.rotor.transverse_inertia, why))
     if faults:
         raise SceneError(faults)
+
+
+def _refuse_renewed(scene: Scene, refuse: _Refuse) -> None:
+    """Laws that follow the running speed, where nothing turns or bodies do not renew them."""
+    contact = scene.contact
+    if not renews(contact.law):
+        return
+    why = (
+        "needs the speed at which its contacts run, and nothing turns: give excitation.speed_rpm or kinematics.spin_speed_rpm, or take "
+        "kind = 'hertz', the dry law"
+    )
+    refuse(scene.spin_speed == 0.0, "contact.kind", contact.kind, why)
+    if contact.discretisation in contact.law.discretisations:
+        why = "follows the running speed, which contact resultants on rigid or condensed bodies do: take those, or kind = 'hertz'"
+        refuse(not traits_of(scene).renews, "contact.kind", contact.kind, why)
 
 
 def _refuse_different_rows(scene: Scene, refuse: _Refuse) -> None:

@@ -47,7 +47,7 @@ class Rigid:
 
     def traits(self, scene: Scene) -> Traits:
         """Contact resultants with compiled forces."""
-        return Traits()
+        return Traits(renews=True)
 
     def stable_step(self, scene: Scene) -> float:
         """Of the ring on its contacts [s]."""

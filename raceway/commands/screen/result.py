@@ -13,6 +13,7 @@ from raceway.commands.screen.result_parts import (
     cost_rows,
     equilibrium_rows,
     error_rows,
+    film_rows,
     orbit_rows,
     stability_rows,
     stiffness_rows,
@@ -36,6 +37,7 @@ def run_screen(result: ReadTables, files: Sequence[str], explain: bool = False) 
     rows = [
         *answer_rows(result),
         *equilibrium_rows(result),
+        *film_rows(result),
         *ball_pass_rows(result["ball_pass"]),
         *stiffness_rows(result, explain),
         *error_rows(result, explain),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
 import numpy as np
@@ -42,6 +42,7 @@ class ChangingSpeed:
     growth: float
     gyroscopic: np.ndarray
     shift: Callable[[np.ndarray], np.ndarray] | None = None
+    law: Callable[[Any, float], Any] | None = None
 
     def speed(self, time: np.ndarray) -> np.ndarray:
         """w (n,) [rad/s] at times (n,) [s] from zero on."""
@@ -70,6 +71,8 @@ class ChangingSpeed:
     def constants(self, system: R, speed: float) -> R:
         """The system at a steady speed [rad/s]."""
         ratio = speed / self.reference
+        if self.law is not None:
+            system = self.law(system, speed)
         scalars, table = system.scalars.copy(), system.table.copy()
         scalars[REST_RADIAL] += self.growth * (ratio**2 - 1.0)
         scalars[GYROSCOPIC] *= ratio**2

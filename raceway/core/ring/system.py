@@ -16,8 +16,10 @@ from raceway.core.ring.kernels.layout import (
     CENTRIFUGAL,
     FRICTION,
     GYROSCOPIC,
+    OWN_OFFSET_INNER,
+    OWN_OFFSET_OUTER,
 )
-from raceway.core.ring.ring import COORDINATES, TOLERANCE, Evaluation, Ring
+from raceway.core.ring.ring import COORDINATES, TOLERANCE, Evaluation, Growth, Ring
 from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, Rest
 from raceway.core.stepping.states import check_state
 from raceway.errors import ConvergenceError
@@ -32,13 +34,16 @@ class System(Ring):
     kernel : compiled ``SYSTEM``;  law : compiled ``LAW``
     base_kernel : the same bodies without gyroscopic moments and friction, whose forces have a potential; ``kernel``
         itself where there are none
-    law_params : (2 Z, k)
+    law_params : (2 Z, k);  mounted_params : those at standstill, where the law has others
+    reach : (2 Z,) how far from touching the contacts begin to carry [m], which the table's offsets hold
     """
 
     kernel: Any
     base_kernel: Any
     law: Any
     law_params: np.ndarray
+    mounted_params: np.ndarray | None = None
+    reach: np.ndarray | None = None
 
     @property
     def conservative(self) -> bool:
@@ -47,8 +52,27 @@ class System(Ring):
 
     def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> System:
         """With the law's parameters of their contacts."""
-        params = np.ascontiguousarray(self.law_params[self.contacts_of(chosen)])
-        return attrs.evolve(super().of_balls(chosen, table), law_params=params)
+        contacts = self.contacts_of(chosen)
+        parts = {
+            name: np.ascontiguousarray(values[contacts])
+            for name in ("law_params", "mounted_params", "reach")
+            if (values := getattr(self, name)) is not None
+        }
+        return attrs.evolve(super().of_balls(chosen, table), **parts)
+
+    def running(self, law_params: np.ndarray, reach: np.ndarray) -> System:
+        """A copy with the law's parameters (2 Z, k) and reach (2 Z,) [m] at a running speed."""
+        table, before = self.table.copy(), 0.0 if self.reach is None else self.reach
+        table[:, [OWN_OFFSET_INNER, OWN_OFFSET_OUTER]] -= (reach - before).reshape(2, -1).T
+        mounted = self.law_params if self.mounted_params is None else self.mounted_params
+        return attrs.evolve(self, table=table, law_params=law_params, mounted_params=mounted, reach=reach)
+
+    def as_mounted(self, growth: Growth) -> System:
+        """At standstill, where laws have the parameters of standstill."""
+        found = super().as_mounted(growth)
+        if found.mounted_params is None or found.reach is None:
+            return found
+        return found.running(found.mounted_params, np.zeros_like(found.reach))
 
     @property
     def ball_columns(self) -> int:

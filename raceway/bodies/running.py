@@ -1,0 +1,123 @@
+"""Contact laws at the running speed: entraining speeds, loads, and parameters that fit the equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Basis, contact_pairs, law_params
+from raceway.bodies.grooves import contact_angles
+from raceway.core.contact.film import entraining_speed
+from raceway.core.ring.changing_speed import ChangingSpeed
+from raceway.core.ring.kernels.layout import CAGE
+from raceway.core.ring.system import System
+from raceway.errors import ConvergenceError
+from raceway.framework.contracts import ContactPairs, LawReport
+from raceway.framework.duties import law_report, reach_of, renews
+from raceway.scene.tables import Scene
+
+if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
+
+#: Part of the most loaded contact's load of a race and row that a contact without it is taken to be about to carry.
+_LEAST = 0.1
+#: Loads are met to this part of the largest one; iterations.  They settle fast: a film thins with the load to the power 0.067.
+_TOLERANCE, _LIMIT = 1e-11, 40
+
+
+def running_pairs(
+    scene: Scene, basis: Basis, force: np.ndarray, angles: tuple[np.ndarray, np.ndarray], speed: float | None = None
+) -> ContactPairs:
+    """The contacts as a law sees them in the running equilibrium.
+
+    Parameters
+    ----------
+    force : (2 Z,) [N];  angles : of inner and outer contacts (Z,) [rad], nan where they are open
+    speed : of the inner ring [rad/s], default: the scene's spin speed
+    """
+    z, load = len(basis.azimuth), np.array(force, dtype=float)
+    alpha = np.array(angles, dtype=float)
+    for row, one in enumerate(basis.geometries):
+        chosen = basis.row == row
+        for race in (0, 1):
+            of_row = load[race * z : (race + 1) * z]
+            if scene.kinematics.orbiting:
+                of_row[chosen] = of_row[chosen].mean()
+            of_row[chosen] = np.maximum(of_row[chosen], _LEAST * of_row[chosen].max())
+            open_, known = chosen & np.isnan(alpha[race]), chosen & ~np.isnan(alpha[race])
+            alpha[race, open_] = alpha[race, known].mean() if known.any() else one.contact_angle
+    pitch, ball = (
+        np.array([getattr(one, name) for one in basis.geometries])[basis.row] for name in ("pitch_diameter", "ball_diameter")
+    )
+    speeds = entraining_speed(scene.spin_speed if speed is None else speed, pitch, ball, *alpha)
+    # A set of which no ball is loaded runs as one that is about to be.
+    load = np.where(load > 0.0, load, _LEAST * basis.ball_load)
+    return attrs.evolve(contact_pairs(scene, basis), entraining_speed=np.concatenate(speeds), load=load)
+
+
+def report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
+    """What the scene's law tells of its contacts in an equilibrium; None where it tells nothing."""
+    if not renews(model.scene.contact.law):
+        return None
+    angles = (equilibrium.angle_inner, equilibrium.angle_outer)
+    pairs = running_pairs(model.scene, model.basis, equilibrium.contact_force, angles)
+    return law_report(model.scene.contact.law, pairs)
+
+
+def renew(
+    scene: Scene,
+    basis: Basis,
+    system: System,
+    guess: np.ndarray,
+    place: Callable[[System, np.ndarray], np.ndarray] | None,
+) -> np.ndarray:
+    """(5,) equilibrium with the law's parameters at the running speed, which are built into the system.
+
+    Parameters
+    ----------
+    place : finds the equilibrium of a sprung set, whose rows slide; None: rows stay
+
+    Raises
+    ------
+    ConvergenceError
+        No equilibrium, or loads and parameters that do not meet.
+    """
+    law, q, before = scene.contact.law, guess, np.zeros(2 * system.ball_count)
+    for _ in range(_LIMIT):
+        q = q if place is None else place(system, q)
+        q, ball, _ = system.settle(q)
+        now = system.without(CAGE).evaluate(q, ball=ball)
+        force = now.contact_force
+        if np.abs(force - before).max() <= _TOLERANCE * max(force.max(), 1e-300):
+            return q
+        # The kernel of balls without mass leaves the second column alone: they lie between the groove centres.
+        angles = contact_angles(system, bool(now.ball[:, 1].any()), q, now.ball, force)
+        pairs = running_pairs(scene, basis, force, angles)
+        found = system.running(law_params(scene, pairs), reach_of(law, pairs))
+        system.table, system.law_params = found.table, found.law_params
+        system.mounted_params, system.reach = found.mounted_params, found.reach
+        if isinstance(system.spin, ChangingSpeed):
+            system.spin = attrs.evolve(system.spin, law=_following(scene, basis, force, angles))
+        before = force
+    raise ConvergenceError(
+        f"contact law '{scene.contact.kind}': loads and parameters do not meet in {_LIMIT} equilibria", {"q": q, "ball": ball}
+    )
+
+
+def _following(
+    scene: Scene, basis: Basis, force: np.ndarray, angles: tuple[np.ndarray, np.ndarray]
+) -> Callable[[System, float], System]:
+    """A system and another speed [rad/s] -> the system with its law there, at the loads and angles of the equilibrium."""
+
+    def follow(system: System, speed: float) -> System:
+        if speed <= 0.0:
+            assert system.mounted_params is not None and system.reach is not None, "built in above"
+            return system.running(system.mounted_params, np.zeros_like(system.reach))
+        pairs = running_pairs(scene, basis, force, angles, speed)
+        return system.running(law_params(scene, pairs), reach_of(scene.contact.law, pairs))
+
+    return follow

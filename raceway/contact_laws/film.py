@@ -1,0 +1,206 @@
+"""Hertz contacts that an elastohydrodynamic film keeps apart."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway.contact_laws.lubricant import COLDEST, GRADES, HOTTEST, Walther, pressure_viscosity
+from raceway.framework.contracts import LawReport
+from raceway.framework.options import between, nearest, option, optional, positive
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.core.contact.film import Film as Thickness
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactPairs
+
+#: Lambda below which surfaces carry through asperities.
+_MIXED, _BOUNDARY = 3.0, 1.0
+
+
+@attrs.frozen
+class Film:
+    """Hertz contact behind an oil film (Hamrock and Dowson): the surfaces stand off by the central film thickness.
+
+    Notes
+    -----
+    The thickness belongs to the running speed, the loaded contact angles and each contact's load Q0 in the equilibrium.  Its
+    dependence on the load, h = h0 (Q/Q0)^-e, is kept to first order in the elastic approach d: h = h0 (1 + m - m d/d0), m = 1.5 e.
+    The force by the gap is then again a power of 1.5, K' (reach - gap)^1.5 with reach = (1 + m) h0 and
+    K' = K / (1 + m h0/d0)^1.5: exact in force and stiffness at Q0, and as quick as Hertz.
+    """
+
+    name: ClassVar[str] = "film"
+    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant"})
+    state_size: ClassVar[int] = 0
+    dissipative: ClassVar[bool] = False
+    renewed: ClassVar[bool] = True
+
+    oil: str | None = option(None, help=f"mineral oil by its grade: {', '.join(GRADES)}; needs temperature_c")
+    viscosity_40: float | None = option(
+        None, unit="m2/s", help="kinematic, at 40 C (32e-6 is 32 mm2/s); with viscosity_100", rule=optional(positive())
+    )
+    viscosity_100: float | None = option(None, unit="m2/s", help="kinematic, at 100 C", rule=optional(positive()))
+    viscosity: float | None = option(
+        None, unit="Pa s", help="dynamic, at the running temperature, instead of an oil", rule=optional(positive())
+    )
+    temperature_c: float | None = option(
+        None, unit="°C", help="of the oil in the inlets of the contacts", rule=optional(between(-273.0, 1e3))
+    )
+    density: float = option(870.0, unit="kg/m3", help="of the oil", rule=positive())
+    pressure_viscosity: float | None = option(
+        None,
+        unit="1/Pa",
+        help="coefficient alpha; default: Wooster's rule for mineral oils, from the viscosity",
+        rule=optional(positive()),
+    )
+    starvation: float = option(1.0, help="thickness over that of a flooded contact", rule=between(0.0, 1.0))
+    roughness: float | None = option(
+        None, unit="m", help="rms of both surfaces together, sqrt(R1^2 + R2^2), for Lambda", rule=optional(positive())
+    )
+
+    def __attrs_post_init__(self) -> None:
+        pair = self.viscosity_40 is not None or self.viscosity_100 is not None
+        ways = sum((self.oil is not None, pair, self.viscosity is not None))
+        if ways != 1:
+            said = "no viscosity is given" if ways == 0 else "the viscosity is given more than once"
+            raise ValueError(
+                f"{said}: give `oil` (such as 'VG 32') or `viscosity_40` with `viscosity_100`, both with `temperature_c`, or "
+                "`viscosity` at the running temperature"
+            )
+        if self.viscosity is not None:
+            return
+        if self.oil is not None and self.oil not in GRADES:
+            raise ValueError(f"`oil` = {self.oil!r} is not known{nearest(self.oil, GRADES)}: {', '.join(GRADES)}")
+        if pair and (self.viscosity_40 is None or self.viscosity_100 is None):
+            raise ValueError("`viscosity_40` and `viscosity_100` belong together: two points make a line over the temperature")
+        if self.viscosity_40 is not None and self.viscosity_100 is not None and self.viscosity_40 <= self.viscosity_100:
+            raise ValueError(
+                f"`viscosity_100` = {self.viscosity_100:g} m2/s must be below `viscosity_40` = {self.viscosity_40:g} m2/s: oils "
+                "thin as they warm"
+            )
+        if min(self._line.at_40, self._line.at_100) <= 0.3:
+            raise ValueError("`viscosity_100` must be above 0.3e-6 m2/s, where Walther's line over the temperature ends")
+        if self.temperature_c is None:
+            raise ValueError("`temperature_c` is missing: the viscosity of an oil belongs to a temperature")
+        if not COLDEST <= self.temperature_c <= HOTTEST:
+            raise ValueError(
+                f"`temperature_c` = {self.temperature_c:g} is outside the oil's data: Walther's line through 40 and 100 C is used from "
+                f"{COLDEST:g} to {HOTTEST:g} C. Give `viscosity` at that temperature instead"
+            )
+
+    @classmethod
+    def examples(cls) -> list[Film]:
+        """Instances for the conformance suite."""
+        return [cls(viscosity=0.03, pressure_viscosity=2e-8), cls(viscosity=0.3, pressure_viscosity=1e-8, starvation=0.5)]
+
+    @property
+    def _line(self) -> Walther:
+        if self.oil is not None:
+            return Walther(*GRADES[self.oil])
+        assert self.viscosity_40 is not None and self.viscosity_100 is not None, "checked when made"
+        return Walther(1e6 * self.viscosity_40, 1e6 * self.viscosity_100)
+
+    @property
+    def dynamic_viscosity(self) -> float:
+        """eta [Pa s] at the running temperature."""
+        if self.viscosity is not None:
+            return self.viscosity
+        assert self.temperature_c is not None, "checked when made"
+        return 1e-6 * self._line.viscosity(self.temperature_c) * self.density
+
+    @property
+    def alpha(self) -> float:
+        """Pressure-viscosity coefficient [1/Pa]."""
+        given = self.pressure_viscosity
+        return pressure_viscosity(self.dynamic_viscosity) if given is None else given
+
+    def thickness(self, pairs: ContactPairs) -> Thickness:
+        """Films of the contacts at their entraining speeds and loads."""
+        from raceway.core.contact.film import film
+
+        speed, load = pairs.entraining_speed, pairs.load
+        assert speed is not None and load is not None, "bodies that renew laws tell them"
+        found = film(
+            self.dynamic_viscosity * speed, self.alpha, 2.0 * pairs.contact_modulus, pairs.radius_along, pairs.radius_across,
+            load, pairs.ellipticity,
+        )  # fmt: skip
+        return attrs.evolve(found, central=self.starvation * found.central, minimum=self.starvation * found.minimum)
+
+    def _slope(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
+        """h0 (n,) [m] and m (n,), by which the film thins as the elastic approach grows."""
+        found = self.thickness(pairs)
+        return found.central, -1.5 * found.by_load
+
+    def build(self, pairs: ContactPairs) -> np.ndarray:
+        import numpy as np
+
+        if pairs.entraining_speed is None or pairs.load is None:
+            return pairs.hertz_factor[:, np.newaxis]
+        thick, slope = self._slope(pairs)
+        approach = np.cbrt(pairs.load / pairs.hertz_factor) ** 2
+        return np.asarray(pairs.hertz_factor / (1.0 + slope * thick / approach) ** 1.5)[:, np.newaxis]
+
+    def reach(self, pairs: ContactPairs) -> np.ndarray:
+        import numpy as np
+
+        if pairs.entraining_speed is None or pairs.load is None:
+            return np.zeros_like(pairs.hertz_factor)
+        thick, slope = self._slope(pairs)
+        return np.asarray((1.0 + slope) * thick)
+
+    def kernel(self) -> Kernel:
+        from raceway.core.contact_laws.hertz import three_halves_or_linear
+
+        return three_halves_or_linear
+
+    def report(self, pairs: ContactPairs) -> LawReport:
+        """Thickness, Lambda and regime of every contact, and what makes them doubtful."""
+        import numpy as np
+
+        from raceway.core.contact.film import REGIMES
+
+        found = self.thickness(pairs)
+        lambdas = found.minimum / self.roughness if self.roughness is not None else np.full_like(found.minimum, np.nan)
+        columns = {
+            "film_central_m": found.central,
+            "film_minimum_m": found.minimum,
+            "film_parameter": lambdas,
+            "film_regime": np.array(REGIMES)[found.regime],
+            "entraining_speed_m_per_s": np.asarray(pairs.entraining_speed),
+        }
+        table = {"viscosity_pa_s": self.dynamic_viscosity, "pressure_viscosity_per_pa": self.alpha}
+        return LawReport(columns, table, (*_doubts(found), *self._rough(lambdas)))
+
+    def _rough(self, lambdas: np.ndarray) -> list[str]:
+        """A sentence where asperities carry."""
+        if self.roughness is None:
+            return []
+        least = float(lambdas.min())
+        told = f"Lambda = h_min / roughness is {least:.2g} at the thinnest film"
+        if least < _BOUNDARY:
+            return [
+                f"boundary lubrication: {told}, below {_BOUNDARY:g}: the surfaces touch, and the film of smooth surfaces is not what "
+                "carries. Take a thicker oil, a higher speed or smoother surfaces, or contact.kind = 'hertz'"
+            ]
+        return [f"mixed lubrication: {told}, below {_MIXED:g}: asperities carry a part"] if least < _MIXED else []
+
+
+def _doubts(found: Thickness) -> list[str]:
+    """A sentence where contacts are outside the ranges that a formula was fitted over, or in several regimes."""
+    from raceway.core.contact.film import FITTED, REGIMES
+
+    told, elastic = [], found.regime == 0
+    for word, values in (("U", found.speed), ("W", found.load), ("G", found.material), ("k", found.ellipticity)):
+        low, high = FITTED[word]
+        inside = values[elastic]
+        if inside.size and (inside.min() < low or inside.max() > high):
+            told.append(f"{word} = {inside.min():.3g} to {inside.max():.3g}, fitted from {low:g} to {high:g}")
+    said = [f"the film formula is used outside the range that it was fitted over: {'; '.join(told)}"] if told else []
+    others = sorted({REGIMES[one] for one in found.regime if one != 0})
+    if others:
+        said.append(f"contacts are not in the piezoviscous-elastic regime of rolling bearings but {' and '.join(others)}")
+    return said

@@ -1,0 +1,46 @@
+"""Viscosity of a lubricant at a temperature."""
+
+from __future__ import annotations
+
+from math import log10
+
+import attrs
+
+#: Mineral oils by their ISO viscosity grade: kinematic viscosity at 40 and at 100 C [mm2/s].  At 40 C it is the grade's
+#: mid-point by definition (ISO 3448); at 100 C what is typical of a viscosity index near 95.
+GRADES: dict[str, tuple[float, float]] = {
+    "VG 10": (10.0, 2.6), "VG 15": (15.0, 3.4), "VG 22": (22.0, 4.3), "VG 32": (32.0, 5.4), "VG 46": (46.0, 6.8),
+    "VG 68": (68.0, 8.7), "VG 100": (100.0, 11.4), "VG 150": (150.0, 15.0), "VG 220": (220.0, 19.4),
+}  # fmt: skip
+#: Temperatures [C] over which a line through two measured viscosities is used.
+COLDEST, HOTTEST = 0.0, 140.0
+_AT, _ZERO = (40.0, 100.0), 273.15
+
+
+@attrs.frozen
+class Walther:
+    """log10 log10(nu + 0.7) falls linearly with log10 T, nu in mm2/s and T in K (ASTM D341, Walther 1931)."""
+
+    at_40: float
+    at_100: float
+
+    def viscosity(self, temperature: float) -> float:
+        """Kinematic viscosity [mm2/s] at a temperature [C]."""
+        x = [log10(one + _ZERO) for one in (*_AT, temperature)]
+        y = [log10(log10(one + 0.7)) for one in (self.at_40, self.at_100)]
+        at = y[0] + (y[1] - y[0]) * (x[2] - x[0]) / (x[1] - x[0])
+        return float(10.0 ** 10.0**at - 0.7)
+
+
+def pressure_viscosity(viscosity: float) -> float:
+    """Coefficient alpha [1/Pa] of a mineral oil from its viscosity [Pa s] at the same temperature.
+
+    Notes
+    -----
+    Wooster's rule alpha = (0.6 + 0.965 log10 eta) 1e-8 with eta in mPa s, at least 0.6e-8: an estimate for mineral oils.
+
+    References
+    ----------
+    Stachowiak, Batchelor, Engineering Tribology, chapter 2.
+    """
+    return 1e-8 * (0.6 + 0.965 * max(log10(max(1e3 * viscosity, 1.0)), 0.0))

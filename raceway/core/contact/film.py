@@ -1,0 +1,121 @@
+"""Thickness of an elastohydrodynamic film in an elliptic contact: smooth, isothermal, fully flooded.
+
+Notes
+-----
+With the entraining speed u, the viscosity eta, the pressure-viscosity coefficient alpha, E' = 2 E*, the radii R_x along and R_y
+across the running direction, the load Q and the ellipticity k = a/b: U = eta u / (E' R_x), G = alpha E', W = Q / (E' R_x^2),
+H = h / R_x.  The four regimes, of which the one with the thickest minimum film is taken:
+
+piezoviscous-elastic   H_c = 2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 e^(-0.73 k)),  H_min = 3.63 U^0.68 G^0.49 W^-0.073 (1 - e^(-0.68 k))
+isoviscous-elastic     H_c = 7.32 (1 - 0.72 e^(-0.28 k)) U^0.64 W^-0.22,  H_min = 7.43 U^0.65 W^-0.21 (1 - 0.85 e^(-0.31 k))
+piezoviscous-rigid     H_c = H_min = 141 (G W^3 / U^2)^0.375 (1 - e^(-0.0387 R_y/R_x)) (U/W)^2
+isoviscous-rigid       H_c = H_min = 128 r phi^2 (0.131 arctan(r/2) + 1.683)^2 (U/W)^2,  r = R_y/R_x,  phi = 1 / (1 + 2 / (3 r))
+
+References
+----------
+Hamrock, Dowson, J. Lubr. Technol. 99 (1977) 264 (piezoviscous-elastic), 100 (1978) 236 (isoviscous-elastic); Brewe, Hamrock,
+Taylor, J. Lubr. Technol. 101 (1979) 231 (isoviscous-rigid); Jeng, Hamrock, Brewe, ASLE Trans. 30 (1987) 452
+(piezoviscous-rigid); Hamrock, Dowson, Ball Bearing Lubrication (1981); Hamrock, Fundamentals of Fluid Film Lubrication (1994).
+"""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+#: By number; the exponents of the load in H_c stand in the same order.
+REGIMES = ("piezoviscous-elastic", "isoviscous-elastic", "piezoviscous-rigid", "isoviscous-rigid")
+_BY_LOAD = np.array([-0.067, -0.22, 3.0 * 0.375 - 2.0, -2.0])
+#: Ranges over which the piezoviscous-elastic formula was fitted (Hamrock and Dowson 1977): U, W, G and k from circles to 6 to 1
+#: computed, later used up to 8.
+FITTED = {"U": (0.8e-12, 51e-12), "W": (0.11e-6, 1.8e-6), "G": (2.3e3, 6.8e3), "k": (1.0, 8.0)}
+
+
+@attrs.frozen(eq=False)
+class Film:
+    """Films of contacts; arrays (n,).
+
+    Attributes
+    ----------
+    central, minimum : thickness [m];  regime : index of ``REGIMES``
+    by_load : d ln(central) / d ln(load), that of the regime
+    speed, material, load, ellipticity : U, G, W, k
+    """
+
+    central: np.ndarray
+    minimum: np.ndarray
+    regime: np.ndarray
+    by_load: np.ndarray
+    speed: np.ndarray
+    material: np.ndarray
+    load: np.ndarray
+    ellipticity: np.ndarray
+
+
+def film(
+    viscous: np.ndarray, alpha: float, modulus: np.ndarray, along: np.ndarray, across: np.ndarray, load: np.ndarray, k: np.ndarray
+) -> Film:
+    """Film of each contact by the regime that holds; no film where nothing entrains.
+
+    Parameters
+    ----------
+    viscous : (n,) eta u [N/m];  alpha : pressure-viscosity coefficient [1/Pa];  modulus : (n,) E' = 2 E* [Pa]
+    along, across : (n,) effective radii along and across the running direction [m];  load : (n,) [N], above 0
+    k : (n,) ellipticity, a/b
+    """
+    speed, heavy = viscous / (modulus * along), load / (modulus * along**2)
+    material = alpha * modulus
+    central, minimum = _by_regime(np.maximum(speed, 1e-300), material, heavy, k, across / along)
+    regime = np.argmax(minimum, axis=0)
+    chosen, moves = regime, viscous > 0.0
+    one = np.arange(len(regime))
+    return Film(
+        np.where(moves, central[chosen, one] * along, 0.0),
+        np.where(moves, minimum[chosen, one] * along, 0.0),
+        regime, _BY_LOAD[chosen], speed, material, heavy, k,
+    )  # fmt: skip
+
+
+def _by_regime(
+    u: np.ndarray, g: np.ndarray, w: np.ndarray, k: np.ndarray, ratio: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """H_c and H_min (4, n) of all regimes."""
+    phi = 1.0 / (1.0 + 2.0 / (3.0 * ratio))
+    thinned = (u / w) ** 2
+    viscous = 141.0 * (g * w) ** 0.375 * (w / u) ** 0.75 * -np.expm1(-0.0387 * ratio) * thinned
+    rigid = 128.0 * ratio * phi**2 * (0.131 * np.arctan(0.5 * ratio) + 1.683) ** 2 * thinned
+    central = np.array([
+        2.69 * u**0.67 * g**0.53 * w**-0.067 * (1.0 - 0.61 * np.exp(-0.73 * k)),
+        7.32 * (1.0 - 0.72 * np.exp(-0.28 * k)) * u**0.64 * w**-0.22,
+        viscous,
+        rigid,
+    ])  # fmt: skip
+    minimum = np.array([
+        3.63 * u**0.68 * g**0.49 * w**-0.073 * -np.expm1(-0.68 * k),
+        7.43 * u**0.65 * w**-0.21 * (1.0 - 0.85 * np.exp(-0.31 * k)),
+        viscous,
+        rigid,
+    ])  # fmt: skip
+    return central, minimum
+
+
+def entraining_speed(
+    spin: float, pitch_diameter: np.ndarray, ball_diameter: np.ndarray, inner: np.ndarray, outer: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean speed of both surfaces against the contact (n,) [m/s], of the inner and of the outer race.
+
+    Parameters
+    ----------
+    spin : speed of the inner ring [rad/s], the outer one stands
+    inner, outer : (n,) contact angles [rad]
+
+    Notes
+    -----
+    A ball that rolls at both races without slip: with g = D cos(a) / d_m of either race the cage turns at
+    w_c = w (1 - g_i) / (2 - g_i + g_o), the surfaces of the inner contact run at (w - w_c) d_m/2 (1 - g_i), those of the outer at
+    w_c d_m/2 (1 + g_o), which is the same speed; of one angle w d_m/4 (1 - g^2).
+    """
+    gi, go = (ball_diameter * np.cos(one) / pitch_diameter for one in (inner, outer))
+    cage = spin * (1.0 - gi) / (2.0 - gi + go)
+    half = 0.5 * pitch_diameter
+    return (spin - cage) * half * (1.0 - gi), cage * half * (1.0 + go)
