@@ -198,6 +198,29 @@ class OwnUnits(Hertz):
 
 
 @attrs.frozen
+class FollowsLoad(Hertz):
+    """Follows the load and does not say so."""
+
+    name: ClassVar[str] = "follows_load"
+    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant"})
+
+    def build(self, pairs):
+        return (pairs.hertz_factor * (1.0 if pairs.load is None else pairs.load / pairs.reference_load))[:, None].copy()
+
+
+@attrs.frozen
+class StandsOff(Hertz):
+    """Stands off at any speed."""
+
+    name: ClassVar[str] = "stands_off"
+    discretisations: ClassVar[frozenset[str]] = frozenset({"resultant"})
+    renewed: ClassVar[bool] = True
+
+    def reach(self, pairs):
+        return 1e-3 / pairs.curvature_b
+
+
+@attrs.frozen
 class FlatParameters(Hertz):
     name: ClassVar[str] = "flat"
 

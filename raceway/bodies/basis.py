@@ -119,8 +119,9 @@ def contact_pairs(scene: Scene, basis: Basis) -> ContactPairs:
     )
 
 
-def law_params(scene: Scene, pairs: ContactPairs) -> np.ndarray:
-    """(2 Z, k) parameters of the contact law: inner races first, then outer."""
+def law_params(scene: Scene, basis: Basis, pairs: ContactPairs | None = None) -> np.ndarray:
+    """(2 Z, k) parameters of the contact law: inner races first, then outer; without ``pairs`` those of standstill."""
+    pairs = contact_pairs(scene, basis) if pairs is None else pairs
     params = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
     count = len(pairs.curvature_a)
     if params.ndim != 2 or len(params) != count:

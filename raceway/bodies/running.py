@@ -97,14 +97,15 @@ def renew(
         # The kernel of balls without mass leaves the second column alone: they lie between the groove centres.
         angles = contact_angles(system, bool(now.ball[:, 1].any()), q, now.ball, force)
         pairs = running_pairs(scene, basis, force, angles)
-        found = system.running(law_params(scene, pairs), reach_of(law, pairs))
+        found = system.running(law_params(scene, basis, pairs), reach_of(law, pairs))
         system.table, system.law_params = found.table, found.law_params
         system.mounted_params, system.reach = found.mounted_params, found.reach
         if isinstance(system.spin, ChangingSpeed):
             system.spin = attrs.evolve(system.spin, law=_following(scene, basis, force, angles))
         before = force
     raise ConvergenceError(
-        f"contact law '{scene.contact.kind}': loads and parameters do not meet in {_LIMIT} equilibria", {"q": q, "ball": ball}
+        f"contact law '{scene.contact.kind}': loads and parameters do not meet in {_LIMIT} equilibria",
+        {"q": q, "ball": ball},
     )
 
 
@@ -118,6 +119,6 @@ def _following(
             assert system.mounted_params is not None and system.reach is not None, "built in above"
             return system.running(system.mounted_params, np.zeros_like(system.reach))
         pairs = running_pairs(scene, basis, force, angles, speed)
-        return system.running(law_params(scene, pairs), reach_of(scene.contact.law, pairs))
+        return system.running(law_params(scene, basis, pairs), reach_of(scene.contact.law, pairs))
 
     return follow

@@ -76,7 +76,9 @@ class Film:
         if self.oil is not None and self.oil not in GRADES:
             raise ValueError(f"`oil` = {self.oil!r} is not known{nearest(self.oil, GRADES)}: {', '.join(GRADES)}")
         if pair and (self.viscosity_40 is None or self.viscosity_100 is None):
-            raise ValueError("`viscosity_40` and `viscosity_100` belong together: two points make a line over the temperature")
+            raise ValueError(
+                "`viscosity_40` and `viscosity_100` belong together: two points make a line over the temperature"
+            )
         if self.viscosity_40 is not None and self.viscosity_100 is not None and self.viscosity_40 <= self.viscosity_100:
             raise ValueError(
                 f"`viscosity_100` = {self.viscosity_100:g} m2/s must be below `viscosity_40` = {self.viscosity_40:g} m2/s: oils "
@@ -145,12 +147,8 @@ class Film:
         return np.asarray(pairs.hertz_factor / (1.0 + slope * thick / approach) ** 1.5)[:, np.newaxis]
 
     def reach(self, pairs: ContactPairs) -> np.ndarray:
-        import numpy as np
-
-        if pairs.entraining_speed is None or pairs.load is None:
-            return np.zeros_like(pairs.hertz_factor)
         thick, slope = self._slope(pairs)
-        return np.asarray((1.0 + slope) * thick)
+        return (1.0 + slope) * thick
 
     def kernel(self) -> Kernel:
         from raceway.core.contact_laws.hertz import three_halves_or_linear

@@ -29,7 +29,7 @@ class Walther:
         x = [log10(one + _ZERO) for one in (*_AT, temperature)]
         y = [log10(log10(one + 0.7)) for one in (self.at_40, self.at_100)]
         at = y[0] + (y[1] - y[0]) * (x[2] - x[0]) / (x[1] - x[0])
-        return float(10.0 ** 10.0**at - 0.7)
+        return float(10.0**10.0**at - 0.7)
 
 
 def pressure_viscosity(viscosity: float) -> float:

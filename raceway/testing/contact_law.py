@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.framework.contracts import ContactPairs
+from raceway.framework.duties import law_report, reach_of
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 from raceway.testing.units import scale_of
 
@@ -17,20 +18,38 @@ if TYPE_CHECKING:
 
 #: Contacts of a small ball bearing: curvatures 1/m, contact modulus Pa, Hertz factor N/m^1.5, load N, area of a point m2.
 _CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA = 5.0, 130.0, 1.16e11, 1.3e10, 300.0, 1e-9
-_PAIR_FIELDS = tuple(attrs.fields_dict(ContactPairs))
+#: Entraining speed m/s, Young's modulus Pa, Poisson's ratio.
+_SPEED, _YOUNG, _POISSON = 8.0, 2.1e11, 0.29
+#: Units of all arrays that a law may get.
+_PAIR_UNITS = {
+    "curvature_a": "1/m", "curvature_b": "1/m", "contact_modulus": "Pa", "hertz_factor": "N/m^1.5", "reference_load": "N",
+    "area": "m2", "length": "m", "ring_young": "Pa", "ring_poisson": "", "ball_young": "Pa", "ball_poisson": "",
+    "running_angle": "rad", "entraining_speed": "m/s", "load": "N",
+}  # fmt: skip
 
 
 def example_pairs(n: int, seed: int = 1, nodal: bool = True) -> ContactPairs:
-    """n contacts, each within a factor two of those of a bearing of 30 mm bore; resultants have no ``area``."""
-    spread = np.random.default_rng(seed).uniform(0.7, 1.4, (6, n))
+    """n running contacts, each within a factor two of those of a bearing of 30 mm bore; resultants have no ``area``."""
+    rng = np.random.default_rng(seed)
+    spread = rng.uniform(0.7, 1.4, (6, n))
     values = (_CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA)
     pairs = ContactPairs(*(value * row for value, row in zip(values, spread, strict=True)))
-    return pairs if nodal else attrs.evolve(pairs, area=None)
+    speed, load = _SPEED * rng.uniform(0.7, 1.4, n), _LOAD * rng.uniform(0.7, 1.4, n)
+    young, poisson = np.full(n, _YOUNG), np.full(n, _POISSON)
+    return attrs.evolve(
+        pairs, area=pairs.area if nodal else None, ring_young=young, ring_poisson=poisson, ball_young=young,
+        ball_poisson=poisson, running_angle=np.zeros(n), entraining_speed=speed, load=load,
+    )  # fmt: skip
+
+
+def at_standstill(pairs: ContactPairs) -> ContactPairs:
+    """The contacts of the mounted bearing."""
+    return attrs.evolve(pairs, entraining_speed=None, load=None)
 
 
 def _given(pairs: ContactPairs) -> list[str]:
     """Names of the arrays that a law gets."""
-    return [name for name in _PAIR_FIELDS if getattr(pairs, name) is not None]
+    return [name for name in _PAIR_UNITS if getattr(pairs, name) is not None]
 
 
 def discretisation_of(law: ContactLaw) -> str:
@@ -103,6 +122,34 @@ class ContactLawSuite(Suite):
         require(np.isfinite(params).all(), "build() returns values that are not finite")
         one = attrs.evolve(pairs, **{name: getattr(pairs, name)[2:3] for name in _given(pairs)})
         require(np.array_equal(np.asarray(law.build(one))[0], params[2]), "a contact's row depends on the other contacts")
+
+    @duty("only a `renewed` law follows speed and load; its reach is 0 or more and vanishes with the entraining speed")
+    def test_running(self, law: ContactLaw) -> str:
+        """At standstill and as good as there a law is the same; 1e-15 of a speed leaves 1e-9 of any power above 0.6."""
+        told = getattr(law, "renewed", False)
+        require(type(told) is bool, f"`renewed` = {told!r} must be True or False")
+        for name in ("reach", "report"):
+            require(told or not hasattr(law, name), f"{name}() is called for laws with `renewed` = True only")
+        pairs = example_pairs(9, nodal=discretisation_of(law) == "nodal")
+        assert pairs.entraining_speed is not None and pairs.load is not None, "as made above"
+        resting, running = np.asarray(law.build(at_standstill(pairs))), np.asarray(law.build(pairs))
+        require(resting.shape == running.shape, "build() returns another number of columns at standstill")
+        require(np.isfinite(resting).all(), "build() returns values that are not finite at standstill")
+        if not told:
+            require(np.array_equal(resting, running), "parameters follow speed or load: say renewed = True")
+            return "neither speed nor load"
+        slow = attrs.evolve(pairs, entraining_speed=1e-15 * pairs.entraining_speed)
+        approach = np.cbrt(pairs.load / pairs.hertz_factor) ** 2
+        left = float((reach_of(law, slow) / approach).max())
+        require(left < 1e-9, f"a reach of {left:.2g} of Hertz's approach stays at 1e-15 of the speed: it must vanish")
+        off = float(np.abs(np.asarray(law.build(slow)) - resting).max() / np.abs(resting).max())
+        require(off < 1e-9, f"parameters differ by {off:.2g} from those of standstill at 1e-15 of the speed")
+        one = attrs.evolve(pairs, **{name: getattr(pairs, name)[2:3] for name in _given(pairs)})
+        require(reach_of(law, one)[0] == reach_of(law, pairs)[2], "a contact's reach depends on the other contacts")
+        report = law_report(law, pairs)
+        for name, values in {} if report is None else report.columns.items():
+            require(np.shape(values) == (9,), f"report(): column '{name}' has shape {np.shape(values)}, not (9,)")
+        return f"reach up to {1e6 * reach_of(law, pairs).max():.3g} µm"
 
     @duty("kernel() is compiled with @jit(LAW)")
     def test_signature(self, law: ContactLaw) -> None:
@@ -300,9 +347,8 @@ class ContactLawSuite(Suite):
         except ValueError as why:
             return f"not checked: the options' own rules refuse other units ({why})"
         pairs = example_pairs(64, nodal=discretisation_of(law) == "nodal")
-        units = dict(zip(_PAIR_FIELDS, ("1/m", "1/m", "Pa", "N/m^1.5", "N", "m2", "m"), strict=True))
         scaled = ContactPairs(
-            **{name: getattr(pairs, name) * scale_of(units[name], length, force, time) for name in _given(pairs)}
+            **{name: getattr(pairs, name) * scale_of(_PAIR_UNITS[name], length, force, time) for name in _given(pairs)}
         )
         a = Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))
         b = Driven(other, other.kernel(), np.ascontiguousarray(other.build(scaled), dtype=float))
@@ -314,6 +360,9 @@ class ContactLawSuite(Suite):
         require(
             wrong < 1e-9, f"forces differ by {wrong:.2g} in other units: a dimensional number hides in build() or the kernel"
         )
+        reached, other_reach = reach_of(law, pairs), reach_of(other, scaled) / length
+        wrong = np.abs(other_reach - reached).max() / max(reached.max(), 1e-300)
+        require(wrong < 1e-9, f"reach() differs by {wrong:.2g} in other units: a dimensional number hides in it")
         return ""
 
     def _along(self, driven: Driven, gaps: np.ndarray, rates: np.ndarray, dt: float) -> np.ndarray:

@@ -55,6 +55,8 @@ class Dissipating(broken_laws.Broken):
         (law("other_signature"), "signature", "not for LAW alone"),
         (law("plain_python"), "signature", "is not compiled"),
         (broken_laws.OwnUnits(), "unit_invariance", "a dimensional number hides"),
+        (broken_laws.FollowsLoad(), "running", "say renewed = True"),
+        (broken_laws.StandsOff(), "running", "it must vanish"),
         (broken_laws.FlatParameters(), "parameters", r"returns shape \(7,\), not \(7, k\)"),
         (
             broken_laws.NeedsOption,

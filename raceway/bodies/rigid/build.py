@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitation, law_params, linear_parts, make_basis
+from raceway.bodies.basis import Basis, changing_speed, excitation, law_params, linear_parts, make_basis
 from raceway.bodies.contact_error import against_hertz
 from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import growth_of, place_ring
@@ -55,7 +55,7 @@ def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
         kernel=kernel,
         base_kernel=base,
         law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
-        law_params=law_params(scene, contact_pairs(scene, basis)),
+        law_params=law_params(scene, basis),
         law_state=np.zeros((2 * len(basis.azimuth), scene.contact.law.state_size)),
         scalars=_scalars(scene, plan, basis),
         table=_ball_table(scene, plan, basis),

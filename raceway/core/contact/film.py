@@ -53,7 +53,13 @@ class Film:
 
 
 def film(
-    viscous: np.ndarray, alpha: float, modulus: np.ndarray, along: np.ndarray, across: np.ndarray, load: np.ndarray, k: np.ndarray
+    viscous: np.ndarray,
+    alpha: float,
+    modulus: np.ndarray,
+    along: np.ndarray,
+    across: np.ndarray,
+    load: np.ndarray,
+    k: np.ndarray,
 ) -> Film:
     """Film of each contact by the regime that holds; no film where nothing entrains.
 

@@ -52,13 +52,11 @@ class System(Ring):
 
     def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> System:
         """With the law's parameters of their contacts."""
-        contacts = self.contacts_of(chosen)
-        parts = {
-            name: np.ascontiguousarray(values[contacts])
-            for name in ("law_params", "mounted_params", "reach")
-            if (values := getattr(self, name)) is not None
-        }
-        return attrs.evolve(super().of_balls(chosen, table), **parts)
+        found, contacts = super().of_balls(chosen, table), self.contacts_of(chosen)
+        found.law_params = np.ascontiguousarray(self.law_params[contacts])
+        if self.mounted_params is not None and self.reach is not None:
+            found.mounted_params, found.reach = self.mounted_params[contacts].copy(), self.reach[contacts].copy()
+        return found
 
     def running(self, law_params: np.ndarray, reach: np.ndarray) -> System:
         """A copy with the law's parameters (2 Z, k) and reach (2 Z,) [m] at a running speed."""
