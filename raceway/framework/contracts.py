@@ -341,6 +341,7 @@ class Traits:
     calibrated : what the contacts' calibration leaves is part of the total error
     every_node : all nodes are unknowns: a second run to compare with would cost as much as the first
     renews : parameters of contact laws are renewed at the running speed and equilibrium (``ContactLaw``, duty 8)
+    damps : contacts have dashpots in proportion to their stiffness (``scene.time_constant``)
     """
 
     compiled: bool = True
@@ -348,6 +349,7 @@ class Traits:
     calibrated: bool = False
     every_node: bool = False
     renews: bool = False
+    damps: bool = False
 
 
 @attrs.frozen

@@ -23,6 +23,7 @@ def _identified(result: Result) -> list[Fact]:
     if found is None:
         return []
     k, c, z = found.equivalent_stiffness, found.equivalent_damping, found.dynamic_stiffness
+    band = result.band
     total, damping_error = result.error["total"], result.equivalent_damping_error
     tilt = result.model.scene.supports.tilt
     held = f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
@@ -30,7 +31,9 @@ def _identified(result: Result) -> list[Fact]:
         _within(
             "stiffness K", k, result.equivalent_stiffness_error, 1e-6, "N/µm", f"{60.0 * found.frequency_hz:g} r/min, {held}"
         ),
-        _within("damping C", c, damping_error, 1.0, "N s/m", "Im Z / w"),
+        _within("damping C", c, damping_error, 1.0, "N s/m", "Im Z / w")
+        if band is None
+        else _ends(band["equivalent_damping"]),
         ("|Z|", number(1e-6 * abs(z), "N/µm"), "force over displacement of the 1x line"),
         ("orbit", f"{_small(found.orbit_major)} x {_small(found.orbit_minor)} µm", "semi-axes of the 1x line"),
         ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated"),
@@ -45,6 +48,14 @@ def _within(name: str, value: float, error: float | None, scale: float, unit: st
     if abs(value) < error:
         return name, "not resolved", f"below its error of {told}; {remark}"
     return name, number_within(scale * value, scale * error, unit), f"+- {told}; {remark}"
+
+
+def _ends(ends: list[float]) -> Fact:
+    return (
+        "damping C",
+        f"{ends[0]:.3g} to {ends[1]:.3g} N s/m",
+        "both ends of the band of time constants; all else is the low end's",
+    )
 
 
 def _small(metres: float) -> str:

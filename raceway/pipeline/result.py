@@ -20,6 +20,7 @@ from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
 from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.ball_pass import ball_pass_table
+from raceway.pipeline.damping import damping_origin
 from raceway.pipeline.facts import facts
 from raceway.pipeline.motion import motion_table
 from raceway.pipeline.simulate import Simulation
@@ -48,6 +49,7 @@ class Result(Shown):
     bodies : the table ``model``: what elastic bodies change against rigid ones; None for rigid bodies
     lines : spectral lines of the motion, empty where it was not recorded or its speed changes
     warnings : tuple of str, the weightiest first
+    band : numbers [low, high] at both ends of the band of time constants, for ``contact.damping`` = "band"; all else is the low end's
 
     Examples
     --------
@@ -68,6 +70,7 @@ class Result(Shown):
     lines: list[Line]
     warnings: tuple[str, ...]
     bodies: Tables | None = None
+    band: Tables | None = None
 
     @property
     def title(self) -> str:
@@ -223,6 +226,8 @@ class Result(Shown):
             "equivalent_stiffness_error": self.equivalent_stiffness_error,
             "equivalent_damping": found.equivalent_damping,
             "equivalent_damping_error": self.equivalent_damping_error,
+            "damping_origin": damping_origin(self.model.scene),
+            "band": self.band,
             "mass_used_kg": found.mass_used,
             "tilt": self.model.scene.supports.tilt,
             "phase_lag_deg": found.phase_lag_deg,

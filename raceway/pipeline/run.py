@@ -23,6 +23,7 @@ from raceway.core.stepping.energy import drift, friction_lost, largest_share
 from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.allowance import PATIENCE, Allowance
+from raceway.pipeline.damping import run_band
 from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.error.estimate import error_table, no_error
 from raceway.pipeline.error.misfit import misfit_warnings
@@ -67,10 +68,11 @@ def run(
         No solution, or none in the time allowed; ``error.state`` holds the last good arrays.
     """
     registry = registry or default_registry()
-    wall = working_clock()
     try:
         try:
-            return _run(scene, registry, on_progress, wall, near, patience, stay)
+            once = partial(_run, registry=registry, on_progress=on_progress, near=near, patience=patience, stay=stay)
+            band = scene.contact.in_a_band and scene.excitation is not None
+            return _finished(run_band(scene, once) if band else once(scene), registry)
         except (ArithmeticError, np.linalg.LinAlgError) as why:
             raise ConvergenceError(
                 f"the numbers of this scene leave what can be computed with ({why}): check its units"
@@ -87,11 +89,11 @@ def _run(
     scene: Scene,
     registry: Registry,
     on_progress: OnProgress | None,
-    wall: float,
     near: Result | None,
     patience: float,
     stay: bool,
 ) -> Result:
+    wall = working_clock()
     plan = make_plan(scene, registry=registry)
     allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
@@ -113,7 +115,7 @@ def _run(
     compile_s = take_compile_seconds()
     bodies = model.bearing.report(model, equilibrium) or None
     times = {"wall_s": done - wall, "compile_s": compile_s, "build_s": built - wall, "solve_s": done - built}
-    result = Result(
+    return Result(
         model=model,
         equilibrium=equilibrium,
         identification=found.identification,
@@ -126,6 +128,10 @@ def _run(
         bodies=bodies,
         warnings=_warnings(model, equilibrium, found, bodies),
     )
+
+
+def _finished(result: Result, registry: Registry) -> Result:
+    """The result, with what plug-ins that hear of it fail in."""
     try:
         registry.notify("raceway_run_finished", result=result)
     except RacewayError as why:  # what is computed is kept

@@ -33,6 +33,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
     _refuse_renewed(scene, refuse)
+    _refuse_time_constant(scene, refuse)
     need_bore = "needs the bearing's `bore`"
     refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
     alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
@@ -82,6 +83,19 @@ def _refuse_renewed(scene: Scene, refuse: _Refuse) -> None:
     if contact.discretisation in contact.law.discretisations:
         why = "follows the running speed, which contact resultants on rigid or condensed bodies do: take those, or kind = 'hertz'"
         refuse(not traits_of(scene).renews, "contact.kind", contact.kind, why)
+
+
+def _refuse_time_constant(scene: Scene, refuse: _Refuse) -> None:
+    """Damping in proportion to the stiffness, where bodies have none."""
+    contact = scene.contact
+    ways = {"damping": contact.damping if contact.in_a_band else None, "time_constant": contact.time_constant}
+    ways["loss_factor"] = contact.loss_factor
+    why = "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, or contact.damping in N s/m"
+    for key, value in ways.items():
+        refuse(value is not None and not traits_of(scene).damps, f"contact.{key}", value, why)
+    changing = scene.excitation is not None and scene.excitation.period_s is None
+    why = "belongs to one frequency, and the excitation has none: give contact.time_constant"
+    refuse(contact.loss_factor is not None and changing, "contact.loss_factor", contact.loss_factor, why)
 
 
 def _refuse_different_rows(scene: Scene, refuse: _Refuse) -> None:

@@ -66,10 +66,10 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
         why_not = f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
         parts.decide(scene.spin_changes, "change of centrifugal and gyroscopic terms with the speed", why, why_not)
     rates = scene.excitation is not None and (scene.integrator.method.inertial or not uses_record(scene))
-    why_not = (
-        "contact.damping is 0" if scene.contact.damping == 0.0 else "nothing moves, or no rates: a series of equilibria"
-    )
-    parts.decide(scene.contact.damping > 0.0 and rates, "contact damping", "contact.damping is set", why_not)
+    damped = scene.contact.dashpot > 0.0 or scene.time_constant > 0.0
+    why_not = "contact.damping is 0" if not damped else "nothing moves, or no rates: a series of equilibria"
+    why = "contact.damping is set" if scene.contact.dashpot > 0.0 else f"c = tau k, tau = {scene.time_constant:.3g} s"
+    parts.decide(damped and rates, "contact damping", why, why_not)
     friction = parts.decide(scene.contact.friction > 0.0, "friction", "contact.friction is set", "contact.friction is 0")
     wanted = scene.kinematics.gyroscopic != "none"
     why_not = "nothing turns: no spin speed" if wanted else "kinematics.gyroscopic is none"

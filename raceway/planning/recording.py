@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil
+from math import ceil, sqrt
 
 from raceway.errors import SceneError
 from raceway.framework.duties import bodies
@@ -37,7 +37,19 @@ def predicted_steps_per_turn(scene: Scene) -> int:
         return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
     stable = bodies(scene, "stable_step")
-    return STEPS_PER_TURN if stable is None else stable_steps_per_turn(period, stable)
+    return STEPS_PER_TURN if stable is None else stable_steps_per_turn(period, damped_limit(stable, scene.time_constant))
+
+
+def damped_limit(limit: float, time_constant: float) -> float:
+    """Stable limit of explicit steps whose rates are those of the step before [s], from that without damping.
+
+    Notes
+    -----
+    A mode of frequency w = 2 / limit with the dashpot c = tau k has the damping ratio z = tau w / 2; its limit is
+    2 / w (sqrt(1 + z^2) - z).
+    """
+    ratio = time_constant / limit
+    return limit * (sqrt(1.0 + ratio**2) - ratio)
 
 
 def stable_steps_per_turn(period: float, limit: float) -> int:

@@ -341,6 +341,11 @@ class Mounting:
         }
 
 
+#: Band of a rolling bearing's damping over its stiffness [s]: Kraemer, Dynamics of Rotors and Foundations (1993), as ROSS cites it
+#: for ``ross.BallBearingElement``.
+TIME_CONSTANTS = (0.25e-5, 2.5e-5)
+
+
 @attrs.frozen
 class Contact:
     kind: str = option("hertz", help="contact law")
@@ -354,8 +359,37 @@ class Contact:
         help="of a sticking contact; default: of the contact ellipse along its major axis (Mindlin), at the ball load under the axial load",
         rule=optional(positive()),
     )
-    damping: float = option(0.0, unit="N s/m", help="normal, each contact", rule=at_least(0.0))
+    damping: float | str = option(
+        0.0,
+        unit="N s/m",
+        help="normal, each contact; 'band': runs both ends of the band of time constants of rolling bearings",
+        rule=word_or(at_least(0.0), "band"),
+    )
+    time_constant: float | None = option(
+        None, unit="s", help="tau of a dashpot c = tau k at each contact, k its stiffness", rule=optional(positive())
+    )
+    loss_factor: float | None = option(
+        None, help="eta of a dashpot c = eta k / w at each contact, w the excitation's frequency", rule=optional(positive())
+    )
     law: Any = attrs.field(default=None, metadata={"plugin": "contact_law"})
+
+    def __attrs_post_init__(self) -> None:
+        ways = {"damping": self.damping, "time_constant": self.time_constant, "loss_factor": self.loss_factor}
+        given = [f"`{name}`" for name, value in ways.items() if value]
+        if len(given) > 1:
+            raise ValueError(
+                f"{' and '.join(given)} exclude each other: each is the damping of the contacts. Give one of them"
+            )
+
+    @property
+    def dashpot(self) -> float:
+        """The same dashpot at every contact [N s/m]; 0 where damping goes with the stiffness."""
+        return self.damping if isinstance(self.damping, float) else 0.0
+
+    @property
+    def in_a_band(self) -> bool:
+        """Whether both ends of the band of time constants are run."""
+        return self.damping == "band"
 
 
 @attrs.frozen
@@ -491,6 +525,16 @@ class Scene(Shown):
         if rpm is None:
             rpm = getattr(self.excitation, "speed_rpm", 0.0) if self.excitation is not None else 0.0
         return rpm * pi / 30.0
+
+    @property
+    def time_constant(self) -> float:
+        """Of the contacts' dashpots c = tau k [s]; 0 where there are none of this kind, of a band the low end."""
+        contact = self.contact
+        if contact.in_a_band:
+            return TIME_CONSTANTS[0]
+        if contact.loss_factor is not None and self.excitation is not None:
+            return contact.loss_factor / (2.0 * pi * float(self.excitation.frequency_hz))
+        return contact.time_constant or 0.0
 
     @property
     def spin_changes(self) -> bool:

@@ -87,7 +87,9 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     slow = recorded and not scene.integrator.method.inertial
     rotor = [f"rotor.{key}" for key in ("mass", "transverse_inertia", "polar_inertia", "damping")]
     why = f"integrator '{scene.integrator.kind}' knows neither inertia nor rates"
-    told(slow, why, *rotor, "contact.damping")
+    dashpots = [f"contact.{key}" for key in ("damping", "time_constant", "loss_factor")]
+    told(slow, why, *rotor, *dashpots)
+    told(not dynamic, "the scene has no [excitation]", *dashpots)
     locked = scene.supports.tilt == "locked"
     told(locked and not slow, "supports.tilt is locked", "rotor.transverse_inertia", "rotor.polar_inertia")
     told(scene.contact.friction == 0.0, "contact.friction is 0", "contact.stick_stiffness")

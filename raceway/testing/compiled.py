@@ -8,6 +8,7 @@ from numba import float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
+from raceway.core.ring.kernels.layout import DIAMETER
 from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
 
 
@@ -62,7 +63,7 @@ def one_contact(t, q, v, balls, contacts, constants, response):
     for i in range(gap.size):
         gap[i] = _OPEN
         rate[i] = 0.0
-    gap[0] = scalars[scalars.size - 1] - q[0]
+    gap[0] = scalars[DIAMETER] - q[0]
     rate[0] = -v[0]
     law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
     for i in range(5):

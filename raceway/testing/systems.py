@@ -17,14 +17,14 @@ from scipy.integrate import solve_ivp
 
 from raceway.core.contact_laws.power import three_halves
 from raceway.core.excitations.harmonic import harmonic, no_force
-from raceway.core.ring.kernels.layout import COLUMNS, REST_AXIAL, SCALARS, TILT_ARM
+from raceway.core.ring.kernels.layout import COLUMNS, DIAMETER, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion
 from raceway.storage.tables import Tables
 from raceway.testing.compiled import counting, one_contact
 
-#: The last entry of ``scalars``, a diameter that no ball here has: the gap at x = 0 [m].
-CLEARANCE = SCALARS - 1
+#: A diameter that no ball here has: the gap at x = 0 [m].
+CLEARANCE = DIAMETER
 _OPEN = 1.0
 
 MASS, STIFFNESS, DASHPOT, GYROSCOPIC = 2.0, 2e8, 600.0, 800.0

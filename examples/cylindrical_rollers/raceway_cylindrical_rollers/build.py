@@ -147,7 +147,7 @@ def _scalars(scene: Scene, basis: Basis, clearance: float) -> np.ndarray:
     out = np.zeros(ring.SCALARS)
     out[ring.REST_RADIAL] = scene.kinematics.radial_expansion - 0.5 * clearance
     out[ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
-    out[ring.DAMPING] = scene.contact.damping
+    out[ring.DAMPING] = scene.contact.dashpot
     if scene.kinematics.orbiting:
         out[ring.CAGE] = basis.geometry.cage_speed(scene.spin_speed)
     return out

@@ -43,7 +43,7 @@ def build(scene: Scene, plan: Plan) -> CondensedBearing:
     stiff = rigid.build(scene, plan)
     bodies = elastic_bodies(scene, stiff.basis)
     _refuse_stiff_law(scene, stiff, bodies)
-    _refuse_dashpots(scene, plan, bodies)
+    _refuse_dashpots(scene, plan, stiff, bodies)
     angles = _angles(scene, stiff) if plan.keeps(BETWEEN_BALLS) else None
     system = elastic_system(surrogate(stiff.system), bodies, angles)
     system.table[:, ring.SHIFT] = 0.0
@@ -184,17 +184,19 @@ def _refuse_stiff_law(scene: Scene, stiff: RigidBearing, bodies: ElasticBodies) 
             )
 
 
-def _refuse_dashpots(scene: Scene, plan: Plan, bodies: ElasticBodies) -> None:
+def _refuse_dashpots(scene: Scene, plan: Plan, stiff: RigidBearing, bodies: ElasticBodies) -> None:
     """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
     taken = -min(bodies.at(scene.bearing.contact_angle))
     if plan.time_step_s is None or scene.integrator.method.steady or taken <= 0.0:
         return
     # A rate is 1.5 / dt of a displacement; the contact's own stiffness needs the other half.
     bound = 0.5 * plan.time_step_s / (1.5 * taken)
-    if scene.contact.damping > bound:
-        raise SceneError.at(
-            "contact.damping",
-            scene.contact.damping,
-            f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take "
-            f"{1e9 * taken:.3g} nm/N off them. Take at most {bound:.3g} N s/m, or fewer steps a turn",
-        )
+    told = f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take {1e9 * taken:.3g} nm/N off them"
+    if scene.contact.dashpot > bound:
+        why = f"{told}. Take at most {bound:.3g} N s/m, or fewer steps a turn"
+        raise SceneError.at("contact.damping", scene.contact.damping, why)
+    load = float(typical_load(stiff.basis))
+    stiffness = max(1.5 * load / float(one.approach(load)) for one in (stiff.basis.inner, stiff.basis.outer))
+    if scene.time_constant * stiffness > bound:
+        why = f"{told}. Take at most {bound / stiffness:.3g} s, or fewer steps a turn"
+        raise SceneError.at("contact.time_constant", scene.time_constant, why)

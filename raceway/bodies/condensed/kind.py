@@ -80,7 +80,7 @@ class Condensed:
         """Compiled, but for surface points; Hertz's law is calibrated on those."""
         if _nodal(scene):
             return Traits(compiled=False, resultants=False)
-        return Traits(calibrated=scene.contact.kind == "hertz", renews=True)
+        return Traits(calibrated=scene.contact.kind == "hertz", renews=True, damps=True)
 
     def stable_step(self, scene: Scene) -> float:
         """Of the ring on its contacts [s]."""

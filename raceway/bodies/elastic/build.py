@@ -127,7 +127,7 @@ def _setup(scene: Scene, basis: Basis, rigid: System) -> BearingData:
         hourglass=scene.bodies.hourglass,
         seat_inner=scene.supports.inner_seat,
         seat_outer=scene.supports.outer_seat,
-        contact_damping=contact.damping,
+        contact_damping=contact.dashpot,
         ball_force=float(rigid.table[0, CENTRIFUGAL]),
         growth=radial_growth(scene),
         friction=contact.friction,

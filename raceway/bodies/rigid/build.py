@@ -106,7 +106,7 @@ def _scalars(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
     cage = geometry.cage_speed(scene.spin_speed)
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(scene, geometry)
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] += growth.common
-    out[ring.DAMPING] = scene.contact.damping
+    out[ring.DAMPING], out[ring.TIME_CONSTANT] = scene.contact.dashpot, scene.time_constant
     if kinematics.orbiting:
         out[ring.CAGE] = cage
     out[ring.DIAMETER] = geometry.ball_diameter

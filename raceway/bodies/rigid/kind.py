@@ -47,7 +47,7 @@ class Rigid:
 
     def traits(self, scene: Scene) -> Traits:
         """Contact resultants with compiled forces."""
-        return Traits(renews=True)
+        return Traits(renews=True, damps=True)
 
     def stable_step(self, scene: Scene) -> float:
         """Of the ring on its contacts [s]."""

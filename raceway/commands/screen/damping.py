@@ -12,7 +12,7 @@ _NOTHING = 1e-2
 
 
 #: What to do in the scene.
-_REMEDY = "give contact.damping (N s/m, each contact) accordingly"
+_REMEDY = "take contact.damping = 'band', or give contact.time_constant, contact.loss_factor or contact.damping"
 
 
 def dry_damping_note(content: ReadTables) -> str | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from raceway.commands.screen.damping import dry_damping_note
 from raceway.commands.screen.text import Row, number, number_within, tilt_words
 from raceway.storage.tables import ReadTables
@@ -22,13 +24,30 @@ def answer_rows(result: ReadTables) -> list[Row]:
     return [
         (f"Answer at {found['speed_rpm']:g} r/min, {tilt_words(found['tilt'])}", "", ""),
         _stiffness(found, f"K = Re Z + m w^2, m = {mass:.4g} kg"),
-        resolved(
-            "equivalent damping C", found["equivalent_damping"], found["equivalent_damping_error"], "N s/m", "C = Im Z / w"
-        ),
+        *damping_rows(found),
         ("|Z|", number(1e-6 * z["abs"], "N/µm"), "dynamic stiffness, force over displacement"),
         ("orbit, semi-axes", f"{1e6 * orbit['major_m']:.4g} x {minor} µm", f"1x motion{', a line' if thin else ''}"),
         *([("", "", dry)] if dry else []),
     ]
+
+
+def damping_rows(found: ReadTables) -> list[Row]:
+    """C with its origin; of a band C, loss factor and phase at both ends."""
+    band, origin = found["band"], found["damping_origin"]
+    if band is None:
+        row = resolved(
+            "equivalent damping C", found["equivalent_damping"], found["equivalent_damping_error"], "N s/m", origin
+        )
+        return [row]
+    return [
+        ("equivalent damping C", _range(band["equivalent_damping"], "N s/m"), origin),
+        ("loss factor", _range(band["loss_factor"]), "w C / K at both ends; all else is that of the low end"),
+        ("phase lag", _range(band["phase_lag_deg"], "deg"), "displacement behind force"),
+    ]
+
+
+def _range(ends: Sequence[float], unit: str = "") -> str:
+    return f"{ends[0]:.3g} to {ends[1]:.3g} {unit}".rstrip()
 
 
 def _static(result: ReadTables) -> list[Row]:

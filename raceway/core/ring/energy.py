@@ -7,7 +7,7 @@ import numpy as np
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.friction import friction_energy
-from raceway.core.ring.kernels.layout import CENTRIFUGAL, DAMPING
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Record
 
@@ -59,10 +59,22 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     if system.scalars[DAMPING] > 0.0:
         speed = np.gradient(record.gap, dt, axis=0)
         lost = lost + system.scalars[DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
+    if system.scalars[TIME_CONSTANT] > 0.0:
+        lost = lost + _lost_in_contacts(system, record, np.gradient(record.gap, dt, axis=0))
     losses = cumulative(lost, dt) + friction.lost
     total = kinetic + stored - work + losses
     size = max(kinetic.max(), np.ptp(stored), np.ptp(work), np.ptp(losses), 1e-300)
     return EnergyBalance(kinetic, stored, work, losses, float(np.abs(total - total[0]).max() / size))
+
+
+def _lost_in_contacts(system: System, record: Record, speed: np.ndarray) -> np.ndarray:
+    """(n,) power that a time constant takes [W]: what the contacts carry beyond their springs, times the approach's rate."""
+    elastic = np.empty_like(record.gap)
+    work = np.empty((3, record.gap.shape[1]))
+    for k, gap in enumerate(np.ascontiguousarray(record.gap)):
+        system.law(gap, work[2], system.law_params, system.law_state, system.law_state.copy(), 0.0, elastic[k], *work[:2])
+    lost: np.ndarray = ((elastic - record.contact_force) * speed).sum(axis=1)
+    return lost
 
 
 def cumulative(values: np.ndarray, dt: float) -> np.ndarray:

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.contact.damping import add_damping
 from raceway.core.excitations.harmonic import no_force
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
 from raceway.core.ring.kernels.layout import COLUMNS, DAMPING, OFFSET_INNER, REST_AXIAL, SCALARS, TILT_ARM
+from raceway.core.ring.kernels.normal import normal_forces
 from raceway.core.ring.system import System
 from raceway.core.signatures import SYSTEM
 
@@ -30,7 +30,6 @@ _OPEN = 1.0
 @jit(SYSTEM)
 def impact(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; q[0] is the only coordinate that counts, the balls do not move."""
-    law, law_params, law_old, law_new, dt = contacts
     scalars, _ = constants
     f, K, C, work = response
     gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
@@ -40,8 +39,7 @@ def impact(t, q, v, balls, contacts, constants, response):
         rate[i] = 0.0
     gap[0] = scalars[CLEARANCE] - q[0]
     rate[0] = -v[0]
-    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
-    add_damping(scalars[DAMPING], gap, rate, force, d_gap, d_rate)
+    normal_forces(contacts, scalars, work)
     for i in range(5):
         f[i] = 0.0
     f[0] = force[0]

@@ -11,7 +11,6 @@ acceleration in its meridian plane is left out: its slowest mode, along the groo
 import numpy as np
 from numba import boolean, float64, int64, void
 
-from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import (
     AXIAL_BY_SHIFT,
@@ -37,7 +36,6 @@ from raceway.core.ring.kernels import (
 )
 from raceway.core.ring.kernels.layout import (
     CENTRIFUGAL,
-    DAMPING,
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_FACTOR,
@@ -50,6 +48,7 @@ from raceway.core.ring.kernels.layout import (
     ring_force,
     ring_tangent,
 )
+from raceway.core.ring.kernels.normal import normal_forces
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
 _ITERATIONS = 200
@@ -224,12 +223,10 @@ def _condense(k, ball_gain, work):
 def rigid_inertial(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball (Z, 2) holds p [m]; a row of zeros asks for a first guess."""
     ball, ball_gain, ball_known = balls
-    law, law_params, law_old, law_new, dt = contacts
     scalars, table = constants
     f, K, C, work = response
     z, elastic_bodies = table.shape[0], work.shape[0] > WORK_ROWS
-    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
-    by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+    force = work[CONTACT_FORCE]
     place(t, q, v, constants, work, (DIRECTION, CENTRE, VELOCITY))
     if elastic_bodies:
         move_centres(work, CENTRE, VELOCITY)
@@ -239,8 +236,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     for _ in range(_ITERATIONS):
         for k in range(z):
             _approach(k, scalars, table, ball, ball_gain, ball_known, work)
-        law(gap, rate, law_params, law_old, law_new, dt, force, by_gap, by_rate)
-        add_damping(scalars[DAMPING], gap, rate, force, by_gap, by_rate)
+        normal_forces(contacts, scalars, work)
         for k in range(z):
             if work[DONE, z + k] == 0.0:
                 moving -= _settles(k, scalars[OFFSET_OUTER], table, ball, ball_gain, work)

@@ -8,14 +8,11 @@ the gyroscopic moment, tau from friction; both put the couple -r h, h = tau - T,
 -r k_t u, which belongs to the stored energy).  Gyroscopic moments and sliding have no potential: tangents are not symmetric.
 """
 
-from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import (
     CONTACT_FORCE,
     FORCE_BY_GAP,
     FORCE_BY_RATE,
-    GAP,
-    GAP_RATE,
     KERNEL_ROWS,
     WORK_ROWS,
 )
@@ -23,7 +20,6 @@ from raceway.core.ring.kernels import tangential_rows as row
 from raceway.core.ring.kernels.friction import roll, rub
 from raceway.core.ring.kernels.gyroscopic import add_gyroscopic
 from raceway.core.ring.kernels.layout import (
-    DAMPING,
     FRICTION,
     GYROSCOPIC,
     LEVER,
@@ -33,6 +29,7 @@ from raceway.core.ring.kernels.layout import (
     move_centres,
     place,
 )
+from raceway.core.ring.kernels.normal import normal_forces
 from raceway.core.ring.kernels.section import Seat
 from raceway.core.ring.kernels.tangential_newton import PATIENCE, approach, first_guess, seat_outside, settles
 from raceway.core.ring.kernels.tangential_rows import contacts_of
@@ -46,10 +43,9 @@ _ITERATIONS = 300
 def rigid_tangential(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball (Z, 4): p [m], slips [m]."""
     ball, ball_gain, ball_known = balls
-    law, law_params, law_old, law_new, dt = contacts
     scalars, table = constants
     f, K, C, work = response
-    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    force = work[CONTACT_FORCE]
     by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
     elastic_bodies = work.shape[0] > WORK_ROWS
     z = table.shape[0]
@@ -65,8 +61,7 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
                 # Forces without a potential can lead in circles: once more from the seat on the outer race.
                 seat_outside(k, scalars, table, ball, work)
             approach(k, scalars, ball, ball_gain, ball_known, work)
-        law(gap, rate, law_params, law_old, law_new, dt, force, by_gap, by_rate)
-        add_damping(scalars[DAMPING], gap, rate, force, by_gap, by_rate)
+        normal_forces(contacts, scalars, work)
         for k in range(z):
             if work[row.STATE, z + k] == row.MOVES:
                 sides = contacts_of(k, ball_gain, work)

@@ -10,7 +10,6 @@ offsets at first touch.  A ball that carries nothing sits midway between the rac
 import numpy as np
 from numba import boolean, float64, int64, void
 
-from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import (
     AXIAL_BY_SHIFT,
@@ -34,7 +33,6 @@ from raceway.core.ring.kernels import (
     WORK_ROWS,
 )
 from raceway.core.ring.kernels.layout import (
-    DAMPING,
     OFFSET_INNER,
     OFFSET_OUTER,
     OUTER_SHARE,
@@ -46,6 +44,7 @@ from raceway.core.ring.kernels.layout import (
     ring_force,
     ring_tangent,
 )
+from raceway.core.ring.kernels.normal import normal_forces
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
 _ITERATIONS = 60
@@ -156,12 +155,10 @@ def _keep_for_bodies(k, z, ball_gain, work):
 def rigid_weightless(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball[:, 0] is s_o [m], ball[:, 1] is not used."""
     ball, ball_gain, ball_known = balls
-    law, law_params, law_old, law_new, dt = contacts
     scalars, table = constants
     f, K, C, work = response
     z, arm, elastic_bodies = table.shape[0], scalars[TILT_ARM], work.shape[0] > WORK_ROWS
-    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
-    by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+    force = work[CONTACT_FORCE]
     place(t, q, v, constants, work, (DIRECTION, NORMAL, VELOCITY))
     if elastic_bodies:
         move_centres(work, NORMAL, VELOCITY)
@@ -169,8 +166,7 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
         _share(k, scalars, table, ball, ball_gain, ball_known, work)
     moving = 1
     for _ in range(_ITERATIONS):
-        law(gap, rate, law_params, law_old, law_new, dt, force, by_gap, by_rate)
-        add_damping(scalars[DAMPING], gap, rate, force, by_gap, by_rate)
+        normal_forces(contacts, scalars, work)
         moving = 0
         for k in range(z):
             moving += _moves(k, z, ball_gain, work)
