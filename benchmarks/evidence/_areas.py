@@ -13,6 +13,7 @@ AREAS = {
         bodies/modules bodies/mounting bodies/rigid contact_laws core/__init__ core/contact core/contact_laws
         core/ring/dense core/mesh/ring_section core/ring/__init__ core/ring/equilibrium core/ring/kernels core/ring/ring core/ring/increment core/ring/root
         core/ring/system data/bearings bodies/pressure pipeline/settle scene/growth scene/inner_ring""",
+    "film": "bodies/running contact_laws/film contact_laws/lubricant core/contact/film core/ring/kernels/normal pipeline/damping",
     "motion": """
         core/excitations core/schemes/advance core/ring/changing_speed core/ring/energy core/ring/friction core/schemes core/ring/surrogate core/ring/orbit
         core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__
@@ -90,6 +91,7 @@ MEASURES = {
     "error_estimate": "rigid motion errors",
     "error_starts": "rigid motion errors",
     "expected_values": "rigid motion",
+    "film": "film rigid motion",
     "fuzz": "rigid motion periodic errors mesh plan scene",
     "hexahedron": "solids",
     "identified_stiffness": "rigid motion",

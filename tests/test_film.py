@@ -1,0 +1,139 @@
+"""Oil films against formulas written out and a preload by hand; damping in proportion to the stiffness; mistakes."""
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.core.contact.film import film
+from raceway.pipeline.damping import DRY
+from raceway.pipeline.run import run
+from raceway.planning.plan import make_plan
+from raceway.scene.tables import TIME_CONSTANTS
+from validation.film import OIL, pair, preload_by_hand, regimes, scene, springs
+
+DRY_LAW = {"kind": "hertz"}
+
+
+def refused(contact, **tables):
+    """What is said of a scene that cannot run."""
+    with pytest.raises(rw.SceneError) as told:
+        make_plan(scene(contact, **tables))
+    return str(told.value)
+
+
+def test_thickness_is_that_of_the_formulas_written_out():
+    rng, n = np.random.default_rng(1), 200
+    viscous, load = 10.0 ** rng.uniform(-4.0, 1.0, n), 10.0 ** rng.uniform(-1.0, 4.0, n)
+    modulus, along, across, k = np.full(n, 2.3e11), np.full(n, 4e-3), np.full(n, 0.1), rng.uniform(1.0, 9.0, n)
+    found = film(viscous, 2e-8, modulus, along, across, load, k)
+    for i in range(n):
+        each = regimes(viscous[i] / (2.3e11 * 4e-3), 2e-8 * 2.3e11, load[i] / (2.3e11 * 4e-3**2), k[i], 25.0)
+        best = max(range(4), key=lambda one: each[one][1])
+        assert found.regime[i] == best
+        # Both are a few powers in double precision.
+        assert (found.central[i], found.minimum[i]) == pytest.approx([4e-3 * one for one in each[best]], rel=1e-12)
+
+
+def test_without_viscosity_a_film_is_the_dry_law():
+    wet, dry = (run(scene(law, load={"radial": [200.0, 0.0]})) for law in ({"kind": "film", "viscosity": 1e-30}, DRY_LAW))
+    # The film is thinner than the rounding of every length that it is added to.
+    assert np.abs(wet.displacement - dry.displacement).max() <= 1e-12 * np.abs(dry.displacement).max()
+    assert wet.equivalent_stiffness == pytest.approx(dry.equivalent_stiffness, rel=1e-9)
+
+
+def test_a_rigid_mounting_gains_the_preload_of_the_film_and_a_sprung_one_none():
+    for kind in ("rigid", "spring"):
+        found = run(pair(OIL, kind, 10000.0))
+        table, basis = found.to_dict()["equilibrium"], found.model.basis
+        films = tuple(table["balls"][0][f"{race}_film_central_m"] for race in ("inner", "outer"))
+        hand = preload_by_hand(1000.0, (basis.inner.factor, basis.outer.factor), films)
+        assert hand > 1200.0
+        # The hand solves the same closed form; loads and films meet to 1e-11.
+        assert table["preload"]["running_n"] == pytest.approx(hand if kind == "rigid" else 1000.0, rel=1e-8)
+
+
+def test_the_film_follows_a_speed_that_changes():
+    """A run-up's system at a speed is that of a steady scene, but for loads and angles, which move films by 1e-3 or less."""
+    up = {"kind": "run_up", "first_speed_rpm": 6000.0, "speed_rpm": 12000.0, "unbalance": 1e-6}
+    tables = {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": 1000.0},
+        "contact": OIL,
+        "kinematics": {"ball_inertia": False},
+    }
+    changing = rw.Scene.from_dict(
+        {**tables, "excitation": {**up, "duration_s": 1.0}, "identifier": {"kind": "order_tracking"}}
+    )
+    system = rw.build_model(changing, make_plan(changing)).system
+    steady = scene(OIL, kinematics={"ball_inertia": False, "spin_speed_rpm": 6000.0})
+    wanted = rw.build_model(steady, make_plan(steady)).system
+    assert system.spin.constants(system, 6000.0 * np.pi / 30.0).reach == pytest.approx(wanted.reach, rel=2e-3)
+
+
+@pytest.mark.parametrize("law", [DRY_LAW, OIL])
+def test_damping_is_tau_times_the_stiffness_of_the_springs(law):
+    for tau in TIME_CONSTANTS:
+        found = run(scene({**law, "time_constant": tau}, kinematics={"ball_inertia": False}))
+        # 1e-3: the steps' phase error at the low end; the closed form is that of small motions.
+        assert found.equivalent_damping == pytest.approx(tau * springs(found.model, found.equilibrium), rel=1e-3)
+
+
+def test_the_dashpot_is_the_derivative_of_the_force_by_the_rate():
+    one = scene({"kind": "hertz", "time_constant": 1e-5}, kinematics={"ball_inertia": False})
+    model = rw.build_model(one, make_plan(one))
+    q, ball, _ = model.system.settle(model.guess)
+    v, h = np.array([1e-3, 2e-3, -1e-3, 0.0, 0.0]), 1e-6
+    now = model.system.evaluate(q, v, ball)
+    for k in range(3):
+        step = h * np.eye(5)[k]
+        slope = (model.system.evaluate(q, v + step, ball).force - model.system.evaluate(q, v - step, ball).force) / (2.0 * h)
+        # Central differences of a power of 1.5: 1e-7 at these rates.
+        assert now.damping[:3, k] == pytest.approx(slope[:3], rel=1e-5, abs=1e-5 * np.abs(now.damping).max())
+
+
+def test_a_band_has_both_ends_and_its_origin():
+    found = run(scene({"kind": "hertz", "damping": "band"}, kinematics={"ball_inertia": False}))
+    told = found.to_dict()["identification"]
+    low, high = told["band"]["equivalent_damping"]
+    assert high / low == pytest.approx(10.0, rel=1e-3)
+    assert told["equivalent_damping"] == low
+    assert "band" in told["damping_origin"]
+    assert run(scene(DRY_LAW)).to_dict()["identification"]["damping_origin"] == DRY
+
+
+def test_an_explicit_step_is_shortened_by_the_damping():
+    found = run(
+        scene(
+            {"kind": "hertz", "time_constant": 2.5e-5},
+            integrator={"kind": "central_difference"},
+            kinematics={"ball_inertia": False},
+        )
+    )
+    assert found.equivalent_damping == pytest.approx(2.5e-5 * springs(found.model, found.equilibrium), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("contact", "told"),
+    [
+        ({"kind": "film"}, "no viscosity is given"),
+        ({"kind": "film", "oil": "VG 33", "temperature_c": 40.0}, "VG 32"),
+        ({"kind": "film", "oil": "VG 32"}, "`temperature_c` is missing"),
+        ({"kind": "film", "oil": "VG 32", "temperature_c": 200.0}, "outside the oil's data"),
+        ({"kind": "film", "viscosity_40": 5e-6, "viscosity_100": 32e-6, "temperature_c": 40.0}, "thin as they warm"),
+        ({"kind": "film", "viscosity": 0.03, "oil": "VG 32", "temperature_c": 40.0}, "more than once"),
+        ({"kind": "hertz", "damping": 10.0, "time_constant": 1e-5}, "exclude each other"),
+    ],
+)
+def test_mistakes_are_told_with_a_remedy(contact, told):
+    assert told in refused(contact)
+
+
+def test_a_film_needs_a_speed_and_bodies_that_renew_laws():
+    assert "nothing turns" in refused(OIL, kinematics={"spin_speed_rpm": 0.0})
+    assert "rigid or condensed" in refused(OIL, bodies={"kind": "elastic"})
+    assert "rigid or condensed" in refused({"kind": "hertz", "time_constant": 1e-5}, bodies={"kind": "elastic"})
+
+
+def test_boundary_lubrication_is_said():
+    found = run(scene({**OIL, "roughness": 5e-6}))
+    assert any("boundary lubrication" in one for one in found.warnings)
