@@ -100,7 +100,7 @@ def _energy(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
                     yield Case("chatter", "energy:chatter", rest, 0.1)
 
 
-#: integrator, options, step over the contact's period, whether it chatters.
+#: integrator, options, step over the contact's period, whether it may chatter: the law decides.
 _CHATTER: tuple[tuple[str, Changes, float, bool], ...] = (
     ("newmark", {}, 1.0, True),
     ("newmark", {}, 0.05, False),
