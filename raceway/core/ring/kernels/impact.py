@@ -105,3 +105,19 @@ def impact_system(
         force=force,
         force_params=np.zeros(1) if force_params is None else np.ascontiguousarray(force_params, dtype=float),
     )
+
+
+def single_contact(ring: System, contact: int) -> System:
+    """One contact of a ring, with its law, parameters and normal damping, whose approach is x.
+
+    Parameters
+    ----------
+    contact : its number, inner races first, then outer
+    """
+    found = impact_system(1.0, ring.law, ring.law_params[contact], state_size=ring.law_state.shape[1])
+    own = {CLEARANCE: 0.0, REST_AXIAL: found.scalars[REST_AXIAL], TILT_ARM: found.scalars[TILT_ARM]}
+    # Whatever else a ring says of its contacts' normal forces holds here, too.
+    found.scalars = ring.scalars.copy()
+    for entry, value in own.items():
+        found.scalars[entry] = value
+    return found
