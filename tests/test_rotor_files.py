@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 
@@ -13,12 +12,11 @@ import raceway as rw
 from raceway.errors import RacewayError, SceneError
 from tests.stores import SPEEDS, damping, made, scene, stiffness
 from validation.command_line import invoke
+from validation.rotor_files import COMBI214, DIGITS, apdl, by_direction, constants, entries, read_csv, tables
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
 HERTZ = SPEEDS / 60.0
 RADIANS = np.pi / 30.0
-#: 10 significant digits of a field of 16 characters.
-DIGITS = 5.1e-10
 #: A symmetric matrix whose entries all differ.
 FULL = np.array(
     [
@@ -44,42 +42,6 @@ def damped(axes, tables):
 @pytest.fixture(scope="module")
 def held():
     return damped({SPEED: SPEEDS}, scene() | {"supports": {"tilt": "locked", "axial": "displacement"}})
-
-
-def entries(text):
-    """Bulk data by fixed fields: entry -> its lists of fields behind the name, continuations joined.
-
-    Fields of 8 characters, or of 16 where the name or the continuation ends with *; the tenth field joins lines and is empty.
-    """
-    found = []
-    for line in text.splitlines():
-        if line.startswith("$"):
-            continue
-        assert len(line) <= 72, line
-        name, rest = line[:8].strip(), line[8:]
-        width, count = (16, 4) if name.endswith("*") else (8, 8)
-        fields = [rest[k * width : (k + 1) * width].strip() for k in range(count)]
-        if name in ("*", "+"):
-            found[-1][1].extend(fields)
-        else:
-            found.append((name.rstrip("*"), fields))
-    return found
-
-
-def tables(found):
-    """Number -> x, y (n,) of each TABLED1: pairs from the ninth field on, up to ENDT."""
-    out = {}
-    for name, fields in found:
-        if name == "TABLED1":
-            assert fields[1:8] == [""] * 7  # linear axes
-            numbers = [float(one) for one in fields[8 : fields.index("ENDT")]]
-            out[int(fields[0])] = np.array(numbers).reshape(-1, 2).T
-    return out
-
-
-def by_direction(fields):
-    """Letter -> six fields, of PBUSH and PBUSHT: a letter leads each eight fields, behind the number of the property."""
-    return {fields[k + 1]: fields[k + 2 : k + 8] for k in range(0, len(fields), 8) if len(fields) > k + 1 and fields[k + 1]}
 
 
 def test_nastran_reads_the_diagonal_of_the_tangent(held):
@@ -129,42 +91,17 @@ def test_a_secant_has_no_tilts_and_its_head_is_ascii_of_72_characters():
     assert numbers["K"][3:] == numbers["B"][3:] == ["", "", ""]
 
 
-def apdl(text):
-    """Tables by name as (speeds, values), the other commands by name."""
-    sizes, cells, commands = {}, {}, []
-    for line in text.splitlines():
-        if line.startswith("!"):
-            continue
-        if given := re.fullmatch(r"(\w+)\((\d+),([01])\)=(.*)", line):
-            name, row, column, values = given.groups()
-            values = values.split(",")
-            assert len(values) <= 10  # of one assignment
-            for k, value in enumerate(values):
-                cells[name, int(row) + k, int(column)] = float(value)
-        elif line.startswith("*DIM"):
-            _, name, kind, rows, columns, planes, over = line.split(",")
-            assert (kind, columns, planes, over) == ("TABLE", "1", "1", "OMEGS")
-            sizes[name] = int(rows)
-        else:
-            commands.append(line.split(","))
-    found = {name: np.array([[cells.pop((name, k + 1, c)) for k in range(n)] for c in (0, 1)]) for name, n in sizes.items()}
-    assert not cells
-    return found, commands
-
-
 @pytest.mark.parametrize("axial", ["displacement", "force"])
 def test_ansys_reads_the_matrices_across_the_axis(axial):
     data = damped({SPEED: SPEEDS}, scene() | {"supports": {"tilt": "locked", "axial": axial}})
     found, commands = apdl(rw.export_coefficients(data, kind="ansys", source="tangent", number=5).text)
     assert commands[:2] == [["ET", "5", "COMBI214"], ["KEYOPT", "5", "2", "1"]]
-    constants = [name.strip("%") for line in commands[2:] for name in line[(2 if line[0] == "R" else 1) :]]
-    # The element's order; 1 and 2 are y and z in the YZ plane.
-    places = {"11": (0, 0), "22": (1, 1), "12": (0, 1), "21": (1, 0)}
-    assert constants == [f"{letter}{place}_5" for letter in "KC" for place in places]
+    names = constants(commands)
+    assert names == [f"{letter}{place}_5" for letter in "KC" for place in COMBI214]
     kept = np.eye(5)[:, 1:3]
     if axial == "force":  # x follows y, z without a force
         kept[0] = -FULL[0, 1:3] / FULL[0, 0]
-    for name, place in zip(constants, [*places.values()] * 2, strict=True):
+    for name, place in zip(names, [*COMBI214.values()] * 2, strict=True):
         expected = (kept.T @ FULL @ kept)[place] * (1.0 + SPEEDS / 1e5) * (1.0 if name[0] == "K" else 1e-6)
         np.testing.assert_allclose(found[name][0], SPEEDS * RADIANS, rtol=1e-14)  # 15 digits are written
         np.testing.assert_allclose(found[name][1], expected, rtol=1e-13)
@@ -181,11 +118,6 @@ def test_unsymmetric_and_absent_entries_are_told_to_ansys():
     assert ["KEYOPT", "1", "3", "1"] in commands and ["RMORE", "0", "0"] in commands
     np.testing.assert_array_equal(found["K12_1"][1], 1e7)
     np.testing.assert_array_equal(found["K21_1"][1], -1e7)
-
-
-def read_csv(text):
-    rows = list(csv.reader(line for line in text.splitlines() if not line.startswith("#")))
-    return {name: np.array(column, dtype=float) for name, *column in zip(*rows, strict=True)}
 
 
 def test_csv_and_json_hold_every_number(held, tmp_path):

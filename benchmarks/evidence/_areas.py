@@ -44,7 +44,7 @@ AREAS = {
     "measured": "studies/measured storage/number_table",
     "precision": "studies/precision studies/many/measured_run",
     "rig": "studies/rig scene/rig",
-    "ross": "studies/ross",
+    "ross": "studies/ross studies/rotor_files",
     "shaft": "studies/shaft",
     "stability": "studies/stability",
     "sweep": """
@@ -61,7 +61,7 @@ AREAS = {
         data/article_elastic studies/article/command studies/article/elastic studies/article/screen studies/compare/command studies/compare/front studies/compare/labelled studies/compare/screen studies/map/command
         studies/limits/command studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
         studies/precision/labelled studies/precision/screen studies/rig/command studies/rig/screen
-        studies/rotor_files studies/ross/command studies/ross/front studies/ross/points studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
+        studies/ross/command studies/ross/front studies/ross/points studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
         studies/sweep/store_command studies/verify/command studies/verify/screen studies/view/command studies/view/front studies/view/view studies/view/mesh_command
         studies/view/mesh_screen""",
 }

@@ -1,5 +1,7 @@
 """ROSS reads our coefficients: at the points, in a rotor's critical speed, and in a loop with the force on the bearing.
 
+The files for Nastran, Ansys and spreadsheets are read back by the fields of their formats: neither program is there.
+
 ROSS is no part of the extra ``all``.  It is looked for in this environment, or in the interpreters that the variable
 RACEWAY_ROSS_PYTHON names (several: separated as in PATH), each of which has raceway, too: pip install '.[sweep,ross]'.
 """
@@ -17,9 +19,9 @@ from typing import Any
 
 import attrs
 
-from benchmarks.evidence import Row, below, near
+from benchmarks.evidence import Row, _coefficient_files, below, near
 
-TITLE = "Rotor models: coefficients in ROSS"
+TITLE = "Rotor models: bearings in ROSS, files of coefficients"
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = "benchmarks.evidence._ross_rotor"
 COMMAND = f"python -m {STUDY}"
@@ -41,11 +43,12 @@ def rows() -> list[Row]:
     found = interpreters()
     if not found:
         note = "extra ross absent: install it in an environment of its own and name its interpreter in RACEWAY_ROSS_PYTHON"
-        return [Row("rotor models in ROSS", "not run", "run", False, COMMAND, note)]
+        return [Row("rotor models in ROSS", "not run", "run", False, COMMAND, note), *_coefficient_files.rows()]
     lines = len((ROOT / EXAMPLE).read_text(encoding="utf-8").splitlines())
     return [
         below("lines of the example, which puts two bearings under a rotor", lines, 25, f"python {EXAMPLE}"),
         *(row for path in found for row in _rows(path)),
+        *_coefficient_files.rows(),
     ]
 
 

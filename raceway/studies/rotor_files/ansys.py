@@ -6,7 +6,8 @@ K11, K22, K12, K21, C11, C22, C12, C21.  KEYOPT(2) = 1 lays the element in the Y
 References
 ----------
 Mechanical APDL, Rotordynamic Analysis Guide, 3.3.2.1, "User-Defined Stiffness and Damping Characteristics", and Theory Reference,
-13.214, "COMBI214"; command reference, *DIM (OMEGS takes positive values and applies to COMBI214 only).
+13.214, "COMBI214"; command reference, *DIM (OMEGS takes positive values and applies to COMBI214 only).  The order of the constants and
+KEYOPT(3) = 1 as in another exporter, https://github.com/FE-Berserker/Baffalo (Bearingprint.m, Tableprint.m).
 """
 
 from __future__ import annotations
