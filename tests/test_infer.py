@@ -148,7 +148,11 @@ def test_a_conformity_is_fitted_to_printed_stiffnesses():
     found = rw.infer("70 mm", "110 mm", {15: ("47 kN", "43 kN")}, pairs=pairs, maker="NSK")
     # The fit interpolates on a grid of 0.0005 and rounds to four digits.
     assert found.conformity_inner.value == pytest.approx(0.53, abs=1e-4)
-    assert found.conformity_inner.scatter < 1e-3
+    # The scatter is what a stiffness that is printed 0.8 % too high changes: the median error of the series 70.
+    stiffer = [(angle, preload, 1.008 * k) for angle, preload, k in pairs]
+    other = rw.infer("70 mm", "110 mm", {15: ("47 kN", "43 kN")}, pairs=stiffer, maker="NSK")
+    moved = found.conformity_inner.value - other.conformity_inner.value
+    assert moved / found.conformity_inner.value == pytest.approx(found.conformity_inner.scatter, rel=0.15)  # of four digits
 
 
 def test_the_bearing_of_an_answer_runs():

@@ -189,7 +189,7 @@ def _refuse_travel(scene: Scene, slid: float) -> None:
     travel = scene.bearing.spring_travel
     if travel is not None and abs(slid) > travel:
         raise ConvergenceError(
-            f"the rings on the spring would slide {1e6 * abs(slid):.3g} um from where they were mounted, beyond "
+            f"the rings on the spring would slide {1e6 * abs(slid):.3g} µm from where they were mounted, beyond "
             f"`bearing.spring_travel` = {travel:g} m: they meet their stop, and the preload is no longer the spring's. Give it more "
             "travel, load it less, or take preload_kind = 'rigid'."
         )
@@ -246,7 +246,7 @@ def lost_preload(model: Model) -> str:
     if not bearing.preloaded or running_preload(model) > 0.0:
         return ""
     radial = growth_of(model.scene, model.basis).common[1]
-    shrunk = f"the inner raceway has shrunk by {-1e6 * radial:.3g} um (kinematics.radial_expansion = {kinematics.radial_expansion:g} m)"
+    shrunk = f"the inner raceway has shrunk by {-1e6 * radial:.3g} µm (kinematics.radial_expansion = {kinematics.radial_expansion:g} m)"
     warm = ", ".join(
         f"mounting.{key} = {value:g} {'K' if 'temperature' in key else 'm'}"
         for key, value in model.scene.mounting.changes.items()

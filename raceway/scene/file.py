@@ -417,6 +417,7 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
 _PLACEHOLDER = {
     "ball_diameter": 0.01,
     "pitch_diameter": 0.05,
+    "width": 0.015,
     "ball_count": 8,
     "conformity_inner": 0.52,
     "conformity_outer": 0.52,

@@ -174,7 +174,7 @@ def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
     left = running_interference(scene, bearing)
     if left < 0.0:
         rule = (
-            f"is lost at {30.0 * scene.spin_speed / pi:.4g} r/min: the bore grows by {1e6 * (scene.mounting.shaft_interference - left):.3g} um "
+            f"is lost at {30.0 * scene.spin_speed / pi:.4g} r/min: the bore grows by {1e6 * (scene.mounting.shaft_interference - left):.3g} µm "
             "more than the shaft, on the diameter, and the ring comes loose. Fit it tighter, or turn it slower"
         )
         return [Mistake("mounting.shaft_interference", scene.mounting.shaft_interference, rule)]
@@ -184,12 +184,12 @@ def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
     distance = (bearing.conformity_inner + bearing.conformity_outer - 1.0) * bearing.ball_diameter
     centres, between = distance + grown.inner + grown.outer, distance * cos(angle) + grown.radial
     edge = acos(1.0 - groove_depth(bearing) / (0.5 * bearing.ball_diameter))
-    words, key = "temperatures and fits", _cause(scene)
+    words, key = "temperatures and fits", _cause(scene, row)
     value = getattr(scene.mounting, key)
     if centres <= 0.0 or between >= centres:
         short = 1e6 * (between - max(centres, 0.0))
         rule = (
-            f"{words} close the bearing: its grooves leave {short:.3g} um too little room for the balls, which would be squeezed all "
+            f"{words} close the bearing: its grooves leave {short:.3g} µm too little room for the balls, which would be squeezed all "
             "around at a contact angle of 0. Take smaller differences of temperature, a looser fit, or more clearance"
         )
         return [Mistake(f"mounting.{key}", value, rule)]
@@ -203,10 +203,17 @@ def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
     return []
 
 
-def _cause(scene: Scene) -> str:
-    """The key that does most to the grooves: the temperature furthest from the others, or an interference."""
+def _cause(scene: Scene, row: int) -> str:
+    """The key that does most to the grooves' room: the temperature furthest from the others, brought to their mean, or a fit."""
     warm = {name: value for name, value in attrs.asdict(scene.mounting).items() if name.endswith("_temperature")}
     mean = sum(warm.values()) / len(warm)
-    if any(warm.values()):
-        return max(warm, key=lambda name: abs(warm[name] - mean))
-    return "shaft_interference" if scene.mounting.shaft_interference > 0.0 else "housing_interference"
+    furthest = max(warm, key=lambda name: abs(warm[name] - mean))
+    others = (sum(warm.values()) - warm[furthest]) / (len(warm) - 1)
+    without = {furthest: others, "shaft_interference": 0.0, "housing_interference": 0.0}
+
+    def room(**changed: float) -> float:
+        grown = grooves(attrs.evolve(scene, mounting=attrs.evolve(scene.mounting, **changed)), row)
+        return grown.inner + grown.outer - grown.radial
+
+    now = room()
+    return max(without, key=lambda name: abs(room(**{name: without[name]}) - now))

@@ -9,6 +9,8 @@ from raceway.commands.screen.result_answer import loaded_ball, resolved, tangent
 from raceway.commands.screen.text import Row, number, tilt_words
 from raceway.storage.tables import ReadTables
 
+#: Axial forces below this are rounding.
+_ROUNDING_N = 1e-6
 
 def equilibrium_rows(result: ReadTables) -> list[Row]:
     """Displacement and loads; the tangent stiffness where it is not the answer itself."""
@@ -59,7 +61,8 @@ def _mounted(found: ReadTables) -> list[Row]:
         rows.append(("axial force of rows", f"{forces} N", f"rows 1 to {len(preload['rows_n'])} under the loads"))
     if held is not None:
         how = f"what the held displacement takes now; mounted {held['mounted_n']:g} N"
-        rows.append(("axial force", number(held["running_n"], "N"), how))
+        running = held["running_n"] if abs(held["running_n"]) > _ROUNDING_N else 0.0
+        rows.append(("axial force", number(running, "N"), how))
     return rows
 
 

@@ -48,6 +48,8 @@ def entry_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
         key, value = fact["key"], fact["value"]
         name = _NAMES.get(key, key.replace("_", " ").replace(".", ", "))
         shown = number(1e3 * value, "mm") if key in _NAMES else f"{value:.6g}"
+        if key.endswith(".young"):
+            shown = number(1e-9 * value, "GPa")
         scatter = "" if fact["scatter"] is None or key == "ball_count" else f", +- {100.0 * fact['scatter']:.2g} %"
         rows.append((name, shown, f"inferred{scatter}" if fact["inferred"] else "stated"))
         sources.setdefault(fact["source"], []).append(name)
