@@ -35,7 +35,9 @@ def rows() -> list[Row]:
         ("CSV and JSON: speed, K and C, 5x5", 0.0, max(_csv(data, speed, K, C), _json(data, speed, K, C))),
     ):
         words = f"file for {name}, read back, against the sweep, largest difference over the largest entry of its kind"
-        out.append(below(words, found, limit, COMMAND, "B7206C, 1 kN axial, 250 N across, 300 N s/m each contact, 0 to 20000 r/min"))
+        out.append(
+            below(words, found, limit, COMMAND, "B7206C, 1 kN axial, 250 N across, 300 N s/m each contact, 0 to 20000 r/min")
+        )
     return [*out, _damping()]
 
 
@@ -91,5 +93,7 @@ def _damping() -> Row:
     w = found.frequency[:, None, None]
     dynamic = 1.0 / np.linalg.inv(found.stiffness + 1j * w * found.damping)[:, 0, 0]
     moved = data["z_imag"].values
-    words = "C of the equilibrium with free tilts against Im Z of a force of 1 N at 30 and 60 r/min, largest relative difference"
+    words = (
+        "C of the equilibrium with free tilts against Im Z of a force of 1 N at 30 and 60 r/min, largest relative difference"
+    )
     return below(words, float(np.max(np.abs(dynamic.imag / moved - 1.0))), _SLOW, COMMAND)

@@ -12,6 +12,7 @@ from raceway.storage.tables import ReadTables
 #: Axial forces below this are rounding.
 _ROUNDING_N = 1e-6
 
+
 def equilibrium_rows(result: ReadTables) -> list[Row]:
     """Displacement and loads; the tangent stiffness where it is not the answer itself."""
     found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]

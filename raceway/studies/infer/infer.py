@@ -151,7 +151,9 @@ def _grooves(one: Printed, best: Candidate, given: float | None) -> tuple[Number
     if fitted is None:
         both = Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
     else:
-        several = f"{len(one.pairs)} printed stiffnesses of pairs" if len(one.pairs) > 1 else "the printed stiffness of a pair"
+        several = (
+            f"{len(one.pairs)} printed stiffnesses of pairs" if len(one.pairs) > 1 else "the printed stiffness of a pair"
+        )
         both = Number(fitted[0], fitted[1], f"meets {several}")
     return both, both
 
