@@ -130,15 +130,12 @@ def test_a_band_has_both_ends_and_its_origin():
     assert run(scene(DRY_LAW)).to_dict()["identification"]["damping_origin"] == DRY
 
 
-def test_an_explicit_step_is_shortened_by_the_damping():
-    found = run(
-        scene(
-            {"kind": "hertz", "time_constant": 2.5e-5},
-            integrator={"kind": "central_difference"},
-            kinematics={"ball_inertia": False},
-        )
-    )
-    assert found.equivalent_damping == pytest.approx(2.5e-5 * springs(found.model, found.equilibrium), rel=1e-2)
+@pytest.mark.parametrize("tau", [2.5e-5, 1e-4])
+def test_an_explicit_step_is_shortened_by_the_damping(tau):
+    contact, kinematics = {"kind": "hertz", "time_constant": tau}, {"ball_inertia": False}
+    found = run(scene(contact, integrator={"kind": "central_difference"}, kinematics=kinematics))
+    # The error of 1 % allowed; a step that is too long gives C of another size and sign, and does not always end the run.
+    assert found.equivalent_damping == pytest.approx(tau * springs(found.model, found.equilibrium), rel=1e-2)
 
 
 @pytest.mark.parametrize(
