@@ -11,23 +11,24 @@ import numpy as np
 import pytest
 
 from raceway.bodies.model import build_model
+from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.studies.stability import elastic, scenes
+from raceway.studies.stability import elastic, own_force, scenes
 from raceway.studies.stability import study as study_module
 from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
 from raceway.studies.stability.catalogue import SCENES, catalogue
 from raceway.studies.stability.own_force import axial_displacement
 from raceway.studies.stability.stored import axial_force
 from raceway.studies.stability.study import stability
-from raceway.studies.stability.systems import BASE, pair_laws, scene_at, transient
+from raceway.studies.stability.systems import BASE, pair_laws, scene_at, transient, with_law
 from raceway.studies.stability.workers import measure, rows_of
 from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
-CUBIC = Path(__file__).with_name("cubic_law.py")
+CUBIC, DAMPED = (Path(__file__).with_name(f"{name}.py") for name in ("cubic_law", "hunt_crossley"))
 CASES = catalogue(REGISTRY)
 
 
@@ -232,12 +233,42 @@ FOREIGN = (
 )  # fmt: skip
 
 
+@pytest.mark.parametrize("law", ["cubic", "film", "hunt_crossley"])
 @pytest.mark.parametrize("name", FOREIGN)
-def test_expectations_of_a_foreign_law_follow_from_its_own_force(name):
-    registry = registry_with([CUBIC])
-    cases = [one for one in catalogue(registry) if one.name == name and one.arguments["shown"].get("law") == "cubic"]
+def test_expectations_of_any_law_follow_from_its_own_force(name, law):
+    registry = registry_with([CUBIC, DAMPED])
+    cases = [one for one in catalogue(registry) if one.name == name and one.arguments["shown"].get("law") == law]
     rows = [row for one in cases for row in rows_of(one, registry)]
     assert rows and not [row for row in rows if row.verdict != AS_EXPECTED]
+
+
+def small_motions(**contact):
+    registry = registry_with([DAMPED])
+    changes = {"contact.kind": "hunt_crossley", **{f"contact.{key}": value for key, value in contact.items()}}
+    arguments = {"tables": BASE, "integrator": "central_difference", "changes": changes, "shown": {}}
+    return rows_of(Case("c", "limits:small_motions", arguments), registry)
+
+
+def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
+    """Dissipation of 5 s/m: the law's slope by the rate takes a seventh of the limit without it."""
+    rows = small_motions(dissipation=5.0)
+    assert {row.verdict for row in rows} == {AS_EXPECTED}
+    assert rows[-1].predicted < 0.9 * small_motions(dissipation=0.0)[-1].predicted
+    # Deliberate fault: the limit of the springs alone.
+    monkeypatch.setattr(Ring, "damped_time_step", lambda self, tangent, damping: self.critical_time_step(tangent))
+    assert rows[-1].quantity.startswith("stable limit")
+    assert small_motions(dissipation=5.0)[-1].verdict == FAILED
+
+
+def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_force(monkeypatch):
+    scene = scene_at(BASE, {**with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY)
+    model = build_model(scene, make_plan(scene))
+    own, found = axial_displacement(model), settle(model).displacement[0]
+    # Angles and loads that the films are built at meet to 1e-9 and better.
+    assert own == pytest.approx(found, rel=1e-6)
+    # Deliberate fault: surfaces that touch.
+    monkeypatch.setattr(own_force, "reach_of", lambda law, pairs: np.zeros(len(pairs.load)))
+    assert abs(axial_displacement(model) / found - 1.0) > 0.1
 
 
 def test_the_axial_displacement_by_a_laws_own_force():

@@ -19,7 +19,7 @@ from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
 from raceway.scene.tables import TIME_CONSTANTS
-from validation.film import OIL, motion, pair, preload_by_hand, regimes, scene, springs
+from validation.film import OIL, ROLLED, motion, pair, preload_by_hand, regimes, rolled, rolled_by_regime, scene, springs
 
 TITLE = "Oil films and damping"
 COMMAND = "python -m benchmarks.evidence film"
@@ -56,19 +56,19 @@ def _formulas() -> list[Row]:
 
 
 def _published() -> list[Row]:
-    """A steel ball of 30 mm that rolls down a plate at 45 degrees, after 1 cm and 1 m; answers 0.059 and 0.281 µm."""
-    young, diameter, result = 2.1e11 / (1.0 - 0.3**2), 0.03, []
-    load = 7800.0 * np.pi / 6.0 * diameter**3 * 9.81 * np.cos(np.pi / 4.0)
+    """A steel ball that rolls down a plate; printed answers."""
     note = (
-        "exercise of a tribology course, in the notation of Stachowiak and Batchelor: R' = R/2, u = v/2, k = 1.0339; the worked examples of "
-        "Hamrock and of Harris were not found where this project can look things up"
+        "exercise of a tribology course, in the notation of Stachowiak and Batchelor; the worked examples of Hamrock and of Harris were not "
+        "found where this project can look things up"
     )
-    for path, answer in ((0.01, 0.059), (1.0, 0.281)):
-        speed, radius = 0.5 * np.sqrt(10.0 / 7.0 * 9.81 * path * np.sin(np.pi / 4.0)), 0.25 * diameter
-        u, w = 0.05 * speed / (young * radius), load / (young * radius**2)
-        value = 1e6 * radius * regimes(u, 2.2e-8 * young, w, 1.0339, 1.0)[0][1]
+    result = []
+    for path, answer in ROLLED:
+        found = film(**rolled(path))
+        regime, own = REGIMES[found.regime[0]], 1e6 * float(found.minimum[0])
+        value = rolled_by_regime(path)[0]
+        told = f"; the law takes {regime}, {own:.3f} µm"
         name = f"h_min of a ball rolling down a plate, after {path:g} m, piezoviscous-elastic [µm]"
-        result.append(Row(name, value, f"{answer:g}, as printed", f"{value:.3f}" == f"{answer:.3f}", COMMAND, note))
+        result.append(Row(name, value, f"{answer}, as printed", f"{value:.3f}" == answer, COMMAND, note + told))
     return result
 
 

@@ -16,7 +16,13 @@ from raceway.studies.stability.workers import measure
 TITLE = "Stability: stiff and extreme cases"
 COMMAND = "raceway stability"
 #: The whole table, row by row.
-FOREIGN = Path(__file__).resolve().parents[2] / "tests" / "cubic_law.py"
+FOREIGN = [Path(__file__).resolve().parents[2] / "tests" / name for name in ("cubic_law.py", "hunt_crossley.py")]
+#: Law, in words, plug-in.
+LAWS = (
+    ("cubic", "a foreign law, 2e17 N/m3 times the cube of the approach", "tests/cubic_law.py"),
+    ("hunt_crossley", "a foreign law whose force depends on the rate (Hunt and Crossley)", "tests/hunt_crossley.py"),
+    ("film", "the law film, which carries before surfaces touch", ""),
+)
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "reports" / "stability"
 _SECONDS = 480.0
 
@@ -33,7 +39,7 @@ def rows() -> list[Row]:
         ),
         below("processor time of both processes over two [s]", 0.5 * content["cpu_s"], _SECONDS, COMMAND, wall),
     ]
-    out += [_foreign(), *_limits(found), *_orbits(found), *_energy(found), *_chatter(found)]
+    out += [*_any_law(), *_limits(found), *_orbits(found), *_energy(found), *_chatter(found)]
     for name in dict.fromkeys(row["case"] for row in found):
         own = [row for row in found if row["case"] == name]
         good = sum(row["verdict"] == "as expected" for row in own)
@@ -54,14 +60,25 @@ def _missed(rows: list[dict[str, Any]]) -> str:
     return f"farthest: {setting}: {worst['quantity']}, {off:+.2g} %; {worst['note']}"
 
 
-def _foreign() -> Row:
-    """A conforming law that is unlike Hertz', through every case of contact laws."""
-    registry = registry_with([FOREIGN])
-    cases = [one for one in catalogue(registry) if one.arguments.get("shown", {}).get("law") == "cubic"]
-    found = [row for rows in measure(cases, 2, registry, [FOREIGN])[0] for row in rows]
-    failed = sum(row.verdict == "failed" for row in found)
-    words = "rows that are not as expected of a foreign law, 2e17 N/m3 times the cube of the approach"
-    return below(words, float(failed), 0.0, f"{COMMAND} --plugin tests/cubic_law.py", f"of {len(found)}, {len(cases)} cases")
+def _any_law() -> list[Row]:
+    """Conforming laws that are unlike Hertz', each through every case of contact laws: stiffness, rate, reach and speed."""
+    registry = registry_with(FOREIGN)
+    whole, out = catalogue(registry), []
+    for law, words, file in LAWS:
+        cases = [one for one in whole if one.arguments.get("shown", {}).get("law") == law]
+        found = [row for rows in measure(cases, 2, registry, FOREIGN)[0] for row in rows]
+        failed = sum(row.verdict == "failed" for row in found)
+        command = f"{COMMAND} --plugin {file}" if file else COMMAND
+        out.append(
+            below(
+                f"rows that are not as expected of {words}",
+                float(failed),
+                0.0,
+                command,
+                f"of {len(found)}, {len(cases)} cases",
+            )
+        )
+    return out
 
 
 def _of(found: Iterable[dict[str, Any]], case: str, keep: Callable[[dict[str, Any]], bool]) -> list[dict[str, Any]]:

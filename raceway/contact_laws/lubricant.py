@@ -7,10 +7,11 @@ from math import log10
 import attrs
 
 #: Mineral oils by their ISO viscosity grade: kinematic viscosity at 40 and at 100 C [mm2/s].  At 40 C it is the grade's
-#: mid-point by definition (ISO 3448); at 100 C what is typical of a viscosity index near 95.
+#: mid-point by definition (ISO 3448), at 100 C that of a viscosity index of 95 (ASTM D2270, inverted), the index that charts of
+#: straight mineral oils are drawn for.
 GRADES: dict[str, tuple[float, float]] = {
-    "VG 10": (10.0, 2.6), "VG 15": (15.0, 3.4), "VG 22": (22.0, 4.3), "VG 32": (32.0, 5.4), "VG 46": (46.0, 6.8),
-    "VG 68": (68.0, 8.7), "VG 100": (100.0, 11.4), "VG 150": (150.0, 15.0), "VG 220": (220.0, 19.4),
+    "VG 10": (10.0, 2.64), "VG 15": (15.0, 3.38), "VG 22": (22.0, 4.25), "VG 32": (32.0, 5.29), "VG 46": (46.0, 6.65),
+    "VG 68": (68.0, 8.53), "VG 100": (100.0, 11.1), "VG 150": (150.0, 14.5), "VG 220": (220.0, 18.8),
 }  # fmt: skip
 #: Temperatures [C] over which a line through two measured viscosities is used.
 COLDEST, HOTTEST = 0.0, 140.0
@@ -37,10 +38,12 @@ def pressure_viscosity(viscosity: float) -> float:
 
     Notes
     -----
-    Wooster's rule alpha = (0.6 + 0.965 log10 eta) 1e-8 with eta in mPa s, at least 0.6e-8: an estimate for mineral oils.
+    Wooster's rule alpha = (0.6 + 0.965 log10 eta) 1e-8 with eta in mPa s, at least 0.6e-8: an estimate, which was not seen in
+    its own source.  Of the coefficients measured on thirteen mineral oils at 30 to 100 C it gives 0.70 to 1.17 times
+    (``validation.film.MEASURED``), which moves a film, h ~ alpha^0.53, by less than a fifth.
 
     References
     ----------
-    Stachowiak, Batchelor, Engineering Tribology, chapter 2.
+    Stachowiak, Batchelor, Engineering Tribology, chapter 2 with table 2.3 of measured coefficients.
     """
     return 1e-8 * (0.6 + 0.965 * max(log10(max(1e3 * viscosity, 1.0)), 0.0))

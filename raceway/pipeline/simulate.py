@@ -17,7 +17,7 @@ from raceway.errors import StabilityError
 from raceway.pipeline.settle import settle
 from raceway.pipeline.starting import Start, chosen_start
 from raceway.planning.plan import make_plan
-from raceway.planning.recording import SAFETY, STEPS_PER_TURN, damped_limit, recorded_per_turn, stable_steps_per_turn
+from raceway.planning.recording import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.storage.tables import Tables
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
@@ -31,7 +31,7 @@ class Simulation:
     Attributes
     ----------
     record : the turns that identification uses;  whole : all of them
-    critical_time_step : 2 / (largest frequency of the stiffest state met) [s]
+    critical_time_step : stable limit of explicit steps at the stiffest state known before the run [s]
     start : how it began
     warnings : what a user should know
     """
@@ -144,9 +144,10 @@ def _ramp_turns(model: Model) -> float:
 
 
 def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
-    """Stable limit of explicit steps at the stiffest of the states known before the run."""
-    tangents = [equilibrium.stiffness, *([] if orbit is None else orbit.stiffness)]
-    return damped_limit(min(model.system.critical_time_step(tangent) for tangent in tangents), model.scene.time_constant)
+    """Stable limit of explicit steps: the shortest of the states known before the run."""
+    slopes = [(equilibrium.stiffness, equilibrium.damping)]
+    slopes += [] if orbit is None else zip(orbit.stiffness, orbit.damping, strict=True)
+    return min(model.system.damped_time_step(stiffness, damping) for stiffness, damping in slopes)
 
 
 def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:

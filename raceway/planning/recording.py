@@ -41,15 +41,15 @@ def predicted_steps_per_turn(scene: Scene) -> int:
 
 
 def damped_limit(limit: float, time_constant: float) -> float:
-    """Stable limit of explicit steps whose rates are those of the step before [s], from that without damping.
+    """Rough stable limit of explicit steps [s] with dashpots c = tau k at the contacts, from that without them.
 
     Notes
     -----
-    A mode of frequency w = 2 / limit with the dashpot c = tau k has the damping ratio z = tau w / 2; its limit is
-    2 / w (sqrt(1 + z^2) - z).
+    ``Ring.damped_time_step`` for one mode: with w = 2 / limit and the damping ratio z = tau w / 2 = tau / limit it is
+    limit (sqrt(1 + 4 z^2) - 2 z).
     """
-    ratio = time_constant / limit
-    return limit * (sqrt(1.0 + ratio**2) - ratio)
+    doubled = 2.0 * time_constant / limit
+    return limit * (sqrt(1.0 + doubled**2) - doubled)
 
 
 def stable_steps_per_turn(period: float, limit: float) -> int:

@@ -11,6 +11,11 @@ isoviscous-elastic     H_c = 7.32 (1 - 0.72 e^(-0.28 k)) U^0.64 W^-0.22,  H_min 
 piezoviscous-rigid     H_c = H_min = 141 (G W^3 / U^2)^0.375 (1 - e^(-0.0387 R_y/R_x)) (U/W)^2
 isoviscous-rigid       H_c = H_min = 128 r phi^2 (0.131 arctan(r/2) + 1.683)^2 (U/W)^2,  r = R_y/R_x,  phi = 1 / (1 + 2 / (3 r))
 
+Seen in print: both piezoviscous-elastic formulas, the constants of the isoviscous-rigid one, and the brackets of the other two.
+Not seen: 7.32, 7.43 and 141.  The latter stands for the 178 G^0.39 ... of the paper's abstract, rewritten with one exponent for
+G W^3 / U^2, and a course's notes print it as 1.41, which would not meet the isoviscous-rigid film where G goes to 0.  Rolling
+bearings are in the first regime; a warning says where a contact is not.
+
 References
 ----------
 Hamrock, Dowson, J. Lubr. Technol. 99 (1977) 264 (piezoviscous-elastic), 100 (1978) 236 (isoviscous-elastic); Brewe, Hamrock,
@@ -26,9 +31,9 @@ import numpy as np
 #: By number; the exponents of the load in H_c stand in the same order.
 REGIMES = ("piezoviscous-elastic", "isoviscous-elastic", "piezoviscous-rigid", "isoviscous-rigid")
 _BY_LOAD = np.array([-0.067, -0.22, 3.0 * 0.375 - 2.0, -2.0])
-#: Ranges over which the piezoviscous-elastic formula was fitted (Hamrock and Dowson 1977): U, W, G and k from circles to 6 to 1
-#: computed, later used up to 8.
-FITTED = {"U": (0.8e-12, 51e-12), "W": (0.11e-6, 1.8e-6), "G": (2.3e3, 6.8e3), "k": (1.0, 8.0)}
+#: Ranges over which the piezoviscous-elastic formula was fitted.  That U spans nearly two decades, W one, and k 1 to 8 stands in
+#: the abstract of Hamrock and Dowson (1977); the ends of U, W and G were not seen in print.
+FITTED = {"U": (0.8e-12, 51e-12), "W": (0.11e-6, 1.3e-6), "G": (2.3e3, 6.8e3), "k": (1.0, 8.0)}
 
 
 @attrs.frozen(eq=False)

@@ -107,4 +107,4 @@ def sampled(found: Found, period: float) -> Orbit:
         raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
     force = np.array([system.outer_force(t) for t in times])
     iterations = found.refined.sweeps
-    return Orbit(period, q, v, a * problem.speed**2, force, ball, K, found.refined.error, iterations)
+    return Orbit(period, q, v, a * problem.speed**2, force, ball, K, C, found.refined.error, iterations)

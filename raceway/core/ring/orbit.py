@@ -65,7 +65,7 @@ class Orbit:
     Attributes
     ----------
     period : float [s];  displacement, velocity, acceleration, force : (N, 5);  ball : (N, Z, 2)
-    stiffness : (N, 5, 5) contact tangents;  residual : largest imbalance over the largest force;  iterations : int
+    stiffness, damping : (N, 5, 5) derivatives of the contact forces by displacement and velocity;  residual : largest imbalance over the largest force;  iterations : int
     """
 
     period: float
@@ -75,6 +75,7 @@ class Orbit:
     force: np.ndarray
     ball: np.ndarray
     stiffness: np.ndarray
+    damping: np.ndarray
     residual: float
     iterations: int
 
@@ -189,7 +190,7 @@ def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertia
     else:
         left = f"relative residual {residual:.1e}" if np.isfinite(residual) else "forces beyond all numbers"
         raise ConvergenceError(f"no periodic orbit found after {iterations} iterations, {left}", {"q": q})
-    return Orbit(period, q, first @ q, second @ q, force, ball, K, residual, iterations)
+    return Orbit(period, q, first @ q, second @ q, force, ball, K, C, residual, iterations)
 
 
 def _evaluate_each(system: Ring, states: States, f: np.ndarray, K: np.ndarray, C: np.ndarray) -> int:

@@ -278,15 +278,35 @@ class Ring(ABC):
 
     def natural_frequencies(self, tangent: np.ndarray) -> np.ndarray:
         """Undamped natural frequencies [rad/s], ascending, with a contact tangent (5, 5)."""
-        mass = self.reduced(self.mass)
-        root = np.linalg.inv(np.linalg.cholesky(mass))
-        squares = np.linalg.eigvalsh(root @ self.reduced(0.5 * (tangent + tangent.T) + self.stiffness) @ root.T)
-        return np.sqrt(np.maximum(squares, 0.0))
+        return np.sqrt(np.maximum(np.linalg.eigvalsh(self._per_mass(tangent, self.stiffness)), 0.0))
 
     def critical_time_step(self, tangent: np.ndarray) -> float:
-        """2 / (largest natural frequency) [s]: the stable limit of central differences."""
+        """2 / (largest natural frequency) [s]: the stable limit of central differences without damping."""
         highest = self.natural_frequencies(tangent)[-1]
         return 2.0 / highest if highest > 0.0 else float("inf")
+
+    def damped_time_step(self, tangent: np.ndarray, damping: np.ndarray) -> float:
+        """Stable limit of central differences [s] with tangent and dashpots (5, 5) of the contacts.
+
+        Notes
+        -----
+        Contacts see the predicted velocity v0 + dt a0 (``raceway.core.schemes.explicit``).  At the limit a motion changes its
+        sign each step, q1 = -q0, v = 0, a0 = -4 q0 / dt^2, so that dt = 2 / s with the largest root s of
+        det(s^2 M - 2 s C - K) = 0; of one mode with the damping ratio z it is (2 / w) (sqrt(1 + 4 z^2) - 2 z).  Damping of the
+        ground acts at the end of the step and does not enter.
+        """
+        undamped = self.critical_time_step(tangent)
+        if not damping.any():
+            return undamped
+        k, c = self._per_mass(tangent, self.stiffness), self._per_mass(damping)
+        one = np.eye(len(k))
+        fastest = float(np.linalg.eigvals(np.block([[0.0 * one, one], [k, 2.0 * c]])).real.max())
+        return min(undamped, 2.0 / fastest) if fastest > 0.0 else undamped
+
+    def _per_mass(self, matrix: np.ndarray, further: np.ndarray | float = 0.0) -> np.ndarray:
+        """The symmetric part of a matrix (5, 5), plus a further one, among the unknowns, for coordinates of unit mass."""
+        root = np.linalg.inv(np.linalg.cholesky(self.reduced(self.mass)))
+        return np.asarray(root @ self.reduced(0.5 * (matrix + matrix.T) + further) @ root.T)
 
     def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""

@@ -103,7 +103,7 @@ class SteppedBearing:
 
     def stable_step(self) -> float:
         np.maximum(self._stiffest, np.diag(self._now.stiffness), out=self._stiffest)
-        return float(self.system.critical_time_step(self._now.stiffness))
+        return float(self.system.damped_time_step(self._now.stiffness, self._now.damping))
 
     def stiffened(self) -> bool:
         return bool((np.diag(self._now.stiffness) > _STIFFER * self._stiffest).any())

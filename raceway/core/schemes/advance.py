@@ -116,7 +116,10 @@ def _failure(
     when = f"after {done - schedule.first} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
     state = _state(schedule, done, motion, ball)
     if counters[REASON] == UNBOUNDED:
-        limit = system.critical_time_step(system.evaluate(motion[0]).stiffness) if np.isfinite(motion).all() else None
+        limit = None
+        if np.isfinite(motion).all():
+            now = system.evaluate(motion[0])
+            limit = system.damped_time_step(now.stiffness, now.damping)
         hint = f"; stable limit of explicit steps there {limit:.3g} s" if limit else ""
         return StabilityError(
             f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Take more `integrator.steps_per_turn`, "

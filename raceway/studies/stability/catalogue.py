@@ -11,7 +11,7 @@ from raceway.studies.stability.case import Case
 from raceway.studies.stability.elastic import elastic_cases
 from raceway.studies.stability.extremes import CONDENSED, PENALTIES, REFUSALS, SCENES, WARNINGS, Changes, force
 from raceway.studies.stability.surface import surface_cases
-from raceway.studies.stability.systems import BASE, pair_laws, transient
+from raceway.studies.stability.systems import BASE, pair_laws, transient, with_law
 
 
 def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Case, ...]:
@@ -49,7 +49,7 @@ def _limits(base: Changes, registry: Registry) -> Iterator[Case]:
         for law in pair_laws(registry):
             for tilt in ("locked", "free"):
                 arguments = {
-                    "tables": base, "integrator": name, "changes": {"contact.kind": law, "supports.tilt": tilt},
+                    "tables": base, "integrator": name, "changes": {**with_law(law, registry), "supports.tilt": tilt},
                     "shown": {"law": law, "tilt": tilt},
                 }  # fmt: skip
                 yield Case("steps around the limit, small motions of the bearing", "limits:small_motions", arguments, 0.5)
@@ -67,7 +67,7 @@ def _orbits(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
     for name in transient(registry):
         for law in pair_laws(registry):
             for axial, newton, tilt in places if whole else [(None, None, None)]:
-                changes: Changes = {"contact.kind": law}
+                changes: Changes = with_law(law, registry)
                 shown: Changes = {"law": law}
                 if axial is not None and newton is not None:
                     changes |= {"load.axial": axial, **force(newton), "supports.tilt": tilt}
@@ -79,7 +79,7 @@ def _orbits(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
 def _energy(base: Changes, registry: Registry, whole: bool) -> Iterator[Case]:
     steps = 1_000_000 if whole else 100_000
     for law in pair_laws(registry):
-        common: Changes = {"tables": base, "changes": {"contact.kind": law}, "shown": {"law": law}}
+        common: Changes = {"tables": base, "changes": with_law(law, registry), "shown": {"law": law}}
         for name in transient(registry):
             one = {**common, "integrator": name}
             for factor, amplitude in ((0.1, 0.03), (0.02, 1.5)):
@@ -127,7 +127,7 @@ def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
             yield Case(f"Hertz' contacts: {name}", "scenes:hertz_factor", {"tables": base, "changes": changes}, 0.1)
         for law in pair_laws(registry):
             arguments: Changes = {
-                "tables": base, "changes": {**changes, "contact.kind": law}, "shown": {"law": law}, "closed_form": closed,
+                "tables": base, "changes": {**changes, **with_law(law, registry)}, "shown": {"law": law}, "closed_form": closed,
                 "judge": judge,
             }  # fmt: skip
             yield Case(name, "scenes:extreme", arguments, 1.5)

@@ -111,7 +111,7 @@ def orbit_at_the_safe_limit(case: Case, registry: Registry) -> list[Row]:
     period = scene.excitation.period_s
     rest = settle(model)
     orbit = steady_orbit(surrogate(model.system), period, rest.displacement, samples=129)
-    limit = min(surrogate(model.system).critical_time_step(k) for k in orbit.stiffness)
+    limit = min(surrogate(model.system).damped_time_step(k, c) for k, c in zip(orbit.stiffness, orbit.damping, strict=True))
     steps = ceil(period / (SAFETY * limit))
     opens = bool((_open_share(surrogate(model.system), orbit)) > 0.0)
 

@@ -37,8 +37,6 @@ BASE: Tables = {
     "contact": {"damping": 0.001},
     "integrator": {"kind": "newmark", "turns": 12},
 }
-#: Halvings of an interval of time steps, and what an eigenvalue of size 1 may be off by.
-_HALVINGS, _NEUTRAL = 40, 1e-9
 #: Nothing that loses energy.
 UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.0}
 
@@ -58,6 +56,18 @@ def pair_laws(registry: Registry) -> list[str]:
     """Names of the laws that rigid bodies can use, without memory: they have a stored energy."""
     entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
     return [e.name for e in entries if "resultant" in e.plugin.discretisations]
+
+
+def with_law(name: str, registry: Registry) -> Tables:
+    """The changes that give a scene a law: a law that needs options has those of its first example."""
+    plugin = registry.find("contact_law", name).plugin
+    try:
+        plugin()
+    except (TypeError, ValueError):
+        first = plugin.examples()[0]
+        fields = [field for field in attrs.fields(plugin) if getattr(first, field.name) != field.default]
+        return {"contact.kind": name, **{f"contact.{field.name}": getattr(first, field.name) for field in fields}}
+    return {"contact.kind": name}
 
 
 def scene_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Scene:
@@ -112,36 +122,5 @@ def still(scene: Scene) -> Still:
     equilibrium = settle(model)
     system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
     damping = system.evaluate(equilibrium.displacement, ball=equilibrium.ball).damping
-    limit = explicit_limit(system, equilibrium.stiffness, damping)
+    limit = system.damped_time_step(equilibrium.stiffness, damping)
     return Still(model, system, equilibrium, limit, scene.contact.law.dissipative)
-
-
-def explicit_limit(system: System, stiffness: np.ndarray, damping: np.ndarray) -> float:
-    """Stable step [s] of central differences with contacts of a stiffness and a damping (5, 5).
-
-    Notes
-    -----
-    Contacts see the predicted velocity, v + dt a (``raceway.core.schemes.explicit``): (M + dt C0 / 2) a1 = -(K + K0) q1 -
-    C (v0 + dt a0) - C0 (v0 + dt a0 / 2), with C0 and K0 of the ground.  That makes the limit shorter than 2 / w, and it is the
-    largest dt whose amplification matrix has no eigenvalue beyond 1.
-    """
-    undamped = float(system.critical_time_step(stiffness))
-    if not damping.any():
-        return undamped
-    free = np.flatnonzero(system.free > 0.0)
-    part = np.ix_(free, free)
-    m, c, c0, k = (each[part] for each in (system.mass, damping, system.damping, stiffness + system.stiffness))
-    one, zero = np.eye(len(free)), np.zeros((len(free), len(free)))
-
-    def grows(dt: float) -> bool:
-        place = np.hstack([one, dt * one, 0.5 * dt**2 * one])
-        pull = k @ place + np.hstack([zero, c + c0, dt * c + 0.5 * dt * c0])
-        push = -np.linalg.solve(m + 0.5 * dt * c0, pull)
-        step = np.vstack([place, np.hstack([zero, one, 0.5 * dt * one]) + 0.5 * dt * push, push])
-        return bool(np.abs(np.linalg.eigvals(step)).max() > 1.0 + _NEUTRAL)
-
-    low, high = 0.0, undamped
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if grows(middle) else (middle, high)
-    return high
