@@ -70,6 +70,7 @@ AREAS = {
 MEASURES = {
     "article": "rigid motion periodic article examples/b7206.toml",
     "article_mesh": "elastic solids mesh plan revolution condensed examples/b7206_article_mesh.toml",
+    "article_motion": "elastic solids mesh rigid revolution condensed examples/b7206_article_mesh.toml",
     "catalogue": "catalogue rigid",
     "compare": "rigid motion periodic compare",
     "compare_bodies": "rigid condensed revolution compare",

@@ -10,7 +10,7 @@ import numpy as np
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.bearing_data import BearingData
 from raceway.core.elastic.body import Body, Frame
-from raceway.core.elastic.cage import Cage, cage_rows
+from raceway.core.elastic.cage import NAMES, SHARE, Cage, cage_rows, cage_stiffness
 from raceway.core.elastic.contacts.gap import CIRCLE
 from raceway.core.elastic.contacts.nodal import NodalContact
 from raceway.core.elastic.equal_parts import equal_parts
@@ -21,9 +21,6 @@ from raceway.core.elastic.touching import nodal_contact, resultant_contact
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.errors import MeshError
-
-#: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.
-CAGE_SHARE = 0.1
 
 
 class ElasticBearing:
@@ -123,7 +120,7 @@ class ElasticBearing:
         return out
 
     def cage_forces(self, y: np.ndarray) -> np.ndarray:
-        """(Z, 4) what the ideal cage carries: force along the orbit [N], moments about x, y, z [N m]."""
+        """(Z, 4) what the ideal cage carries: force along the orbit [N], moments about orbit, radius and axis [N m]."""
         a = self.system.assembly
         if a.cage is None:
             return np.zeros((self.ball_count, 4))
@@ -151,6 +148,7 @@ class ElasticBearing:
         g = s.geometry
         inner = g.ellipses(s.modulus)[0]
         normal = 1.5 * s.reference_load / float(inner.approach(s.reference_load))
+        springs = cage_stiffness(normal, g.ball_diameter, s.friction > 0.0)
         names, nodal = [], np.zeros(3 * assembly.nodes)
         for k in range(len(s.azimuth)):
             body = assembly.bodies[k + 2]
@@ -160,10 +158,8 @@ class ElasticBearing:
             data.append(found.ravel())
             rows.append(np.repeat(4 * k + np.arange(4), found.shape[1]))
             columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(found.shape[1]), 4))
-            nodal[assembly.part(k + 2)] = CAGE_SHARE * normal * np.repeat(mass / mass.sum(), 3)
-            names += [f"{body.name}: along its orbit", *(f"{body.name}: turning about {axis}" for axis in "xyz")]
+            nodal[assembly.part(k + 2)] = SHARE * normal * np.repeat(mass / mass.sum(), 3)
+            names += [f"{body.name}: {motion}" for motion in NAMES]
         shape = (4 * len(s.azimuth), 3 * assembly.nodes)
         matrix = coo_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
-        turning = 0.1 * g.ball_diameter**2  # of a sphere: what a spring on every node by its mass holds against turning
-        one = CAGE_SHARE * normal * np.array([1.0, turning, turning, turning])
-        return Cage(matrix, np.tile(one, len(s.azimuth)), tuple(names), nodal)
+        return Cage(matrix, np.tile(springs, len(s.azimuth)), tuple(names), nodal)

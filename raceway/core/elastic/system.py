@@ -164,7 +164,7 @@ class ElasticSystem:
         if self.contact is not None:
             self.contact.commit()
             # Between steps only: within one, places that jump would keep Newton from converging.
-            self.contact.update(self.contact.where)
+            self.contact.update(self.contact.where, in_motion=True)
 
     def rollback(self) -> None:
         if self.contact is not None:

@@ -85,8 +85,8 @@ class Contact(ABC):
         """B and the law's memory as another contact had them."""
         self.memory[:] = memory
 
-    def update(self, where: np.ndarray) -> bool:
-        """Make B anew for places at ``where`` (n, 3) [m]; whether anything changed."""
+    def update(self, where: np.ndarray, in_motion: bool = False) -> bool:
+        """Make B anew for places at ``where`` (n, 3) [m] that are too far from ``projected``; whether anything changed."""
         return False
 
     @abstractmethod

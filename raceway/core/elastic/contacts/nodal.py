@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
     from raceway.core.jit import Kernel
 
-#: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew.
-_MOVED = 0.02
+#: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew: at rest, and in
+#: motion, where every new place takes or gives a little energy, while a vibration moves points by less.
+_AT_REST, _IN_MOTION = 0.02, 0.5
 
 
 @attrs.frozen(eq=False)
@@ -76,8 +77,8 @@ class NodalContact(Contact):
         self._projected = np.full((len(area), 3), np.inf)
         #: (n, 8) nodes of the assembly that a point's motion is interpolated from, and their weights.
         self.nodes, self.weights = np.zeros((len(area), 8), dtype=np.int64), np.zeros((len(area), 8))
-        #: (n,) how far points may be from where they were projected [m].
-        self._far = np.zeros(len(area))
+        #: (n,) half widths of the facets that points were projected on [m].
+        self._facet = np.zeros(len(area))
         self._weights: csr_matrix = None
         self.update(self.place)
 
@@ -102,10 +103,10 @@ class NodalContact(Contact):
     def refuse(self) -> None:
         """Points find a pressure at any gap."""
 
-    def update(self, where: np.ndarray) -> bool:
+    def update(self, where: np.ndarray, in_motion: bool = False) -> bool:
         """Look up where the points lie on the second surface; whether anything changed."""
         where = np.ascontiguousarray(where, dtype=float)
-        if not has_moved(where, self._projected, self._far):
+        if not has_moved(where, self._projected, (_IN_MOTION if in_motion else _AT_REST) * self._facet):
             return False
         from scipy.sparse import csr_array, kron
 
@@ -116,7 +117,7 @@ class NodalContact(Contact):
             part = slice(begin, begin + count)
             begin += count
             facet, values, self.outside[part] = pair.facets.locate(where[part])
-            self._far[part] = _MOVED * pair.facets.short[facet]
+            self._facet[part] = pair.facets.short[facet]
             columns[part, :4], weights[part, :4] = pair.points.nodes, pair.points.weights
             columns[part, 4:], weights[part, 4:] = pair.facets.quads[facet] + pair.first_node, -values
         self._projected = where.copy()

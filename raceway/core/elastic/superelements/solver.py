@@ -49,18 +49,17 @@ class CondensedSolver:
         self.on_progress: OnProgress | None = None
         #: (nodes,) which nodes bodies are reduced to: as they are meshed, so that they do not depend on loads.
         self._wanted = touchable(contact, assembly.nodes)
-        self._interfaces: dict[float, Interface] = {}
+        self._interface: tuple[float, Interface] | None = None
         #: The last linearised bearing: of which superelements, tangents and frame.
         self.last: tuple[Interface, tuple[np.ndarray, ...], Linearised] | None = None
 
     def interface(self, mass: float) -> Interface:
-        """Superelements of K + mass * M, made at the first call; those of statics and of one step are kept."""
-        if mass not in self._interfaces:
-            for other in [known for known in self._interfaces if known != 0.0 and mass != 0.0]:
-                del self._interfaces[other]
-            self._interfaces[mass] = interface_of(self.assembly, self._wanted, mass, self.on_progress)
+        """Superelements of K + mass * M, made at the first call; those of another mass go: they are as large as the rest of a run."""
+        if self._interface is None or self._interface[0] != mass:
+            self._interface = self.last = None
+            self._interface = mass, interface_of(self.assembly, self._wanted, mass, self.on_progress)
             self.setups += 1
-        return self._interfaces[mass]
+        return self._interface[1]
 
     def forget(self) -> None:
         """Nothing: superelements do not know the contacts."""
@@ -110,7 +109,7 @@ class CondensedSolver:
             )
         self._wanted[nodes] = True
         self._wanted |= touchable(self.contact, self.assembly.nodes)
-        self._interfaces.clear()
+        self._interface = self.last = None
 
 
 def _alike(one: tuple[np.ndarray, ...], other: tuple[np.ndarray, ...], close: float) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
 
 from raceway.core.stepping.protocol import State, SteppedSystem
@@ -20,18 +22,29 @@ NOTHING = 1e-30
 
 def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolerance: float) -> None:
     """Take all steps of the recorder's schedule."""
+    before: deque[np.ndarray] = deque(maxlen=3)
     for step in range(1, recorder.schedule.steps + 1):
-        recorder.accept(_step(system, recorder, recorder.time_of(step), numbers, tolerance))
+        before.append(recorder.state.u)
+        start = 3.0 * (before[2] - before[1]) + before[0] if len(before) == 3 else None
+        recorder.accept(_step(system, recorder, recorder.time_of(step), numbers, tolerance, start))
 
 
-def _step(system: SteppedSystem, recorder: Recorder, t: float, numbers: Numbers, tolerance: float) -> State:
-    """The state at time t, one step on."""
+def _step(
+    system: SteppedSystem, recorder: Recorder, t: float, numbers: Numbers, tolerance: float, start: np.ndarray | None
+) -> State:
+    """The state at time t, one step on.
+
+    Parameters
+    ----------
+    start : where Newton's method begins: the parabola through the displacements before.  Accelerations are no guide: those of modes
+        which the step does not resolve alternate.  None, in the first steps: constant acceleration.
+    """
     am, af, beta, gamma = numbers
     before, dt = recorder.state, recorder.schedule.dt
     rest_before = -system.mass_times(before.a) if before.rest is None else before.rest
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
     predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
-    u = before.u + dt * before.v + 0.5 * dt * dt * before.a  # start from constant acceleration
+    u = before.u + dt * before.v + 0.5 * dt * dt * before.a if start is None else start
     outer = recorder.load(t)
     load = system.measure(outer)
     history: list[float] = []
