@@ -27,6 +27,7 @@ from raceway.errors import ConvergenceError
 #: Rate of the slow motions that a damping is taken from, over the stiffness by the damping [1/s]: an error of second order in it.
 _SLOW = 1e-4
 
+
 @attrs.define(eq=False, kw_only=True)
 class System(Ring):
     """A ring whose contact forces are compiled.

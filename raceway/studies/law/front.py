@@ -15,6 +15,7 @@ from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.damping import damping_origin
 from raceway.scene.given import Change, as_given
+from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 from raceway.studies.law.contact import Contact, contact_of
 from raceway.studies.law.cycle import Cycle, cycle
@@ -151,6 +152,12 @@ def law(
             raise SceneError.at(key, value, "must be finite and above 0")
     given = as_given(BASE if scene is None else scene).changed({"contact.kind": name}, *changes)
     read = given.scene(registry_with([Path(one) for one in plugins]))
+    if read.contact.in_a_band:
+        low, high = TIME_CONSTANTS
+        rule = (
+            f"is a band of time constants, and one contact has one: give contact.time_constant, from {low:g} to {high:g} s"
+        )
+        raise SceneError.at("contact.damping", "band", rule)
     if frequency is None:
         period = None if read.excitation is None else read.excitation.period_s
         frequency = FREQUENCY if period is None else 1.0 / period
@@ -159,9 +166,11 @@ def law(
     size = amplitude * elastic
     approach = np.linspace(_FIRST, _LAST, _POINTS) * elastic - contact.reach
     rate = 2.0 * np.pi * frequency * size * np.array([0.0, 1.0, -1.0])
+    force, stiffness, damping = contact.curves(approach, rate)
+    hertz_force, hertz_stiffness = contact.hertz(approach)
     return LawCurves(
-        read.contact.kind, read.title, damping_origin(read), contact, approach, rate, *contact.curves(approach, rate),
-        *contact.hertz(approach), cycle(contact, size, frequency), tuple(_row(contact, part * elastic) for part in _PARTS),
+        read.contact.kind, read.title, damping_origin(read), contact, approach, rate, force, stiffness, damping,
+        hertz_force, hertz_stiffness, cycle(contact, size, frequency), tuple(_row(contact, part * elastic) for part in _PARTS),
     )  # fmt: skip
 
 

@@ -35,10 +35,15 @@ def draw(found: LawCurves) -> Figure:
     force.set(ylabel="force [N]", title="Force")
     stiffness.set(ylabel="stiffness [N/µm]", title="Stiffness at rest")
     damping.set(ylabel="damping [N s/m]", title="Damping, the force's derivative by the rate")
-    loop.set(ylabel="force [N]", title=f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost, C {motion.damping:.3g} N s/m")
+    loop.set(
+        ylabel="force [N]",
+        title=f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost, C {motion.damping:.4g} N s/m",
+    )
     for panel in (force, stiffness, damping, loop):
         panel.set_xlabel("approach [µm]")
     for panel in (force, stiffness, damping):
         panel.legend(frameon=False, fontsize=8.5)
-    figure.suptitle(f"{found.law}, {contact.race} contact of ball {contact.ball}: {found.title.partition(chr(10))[0]}", fontsize=10.5)
+    figure.suptitle(
+        f"{found.law}, {contact.race} contact of ball {contact.ball}: {found.title.partition(chr(10))[0]}", fontsize=10.5
+    )
     return figure
