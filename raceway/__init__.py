@@ -67,6 +67,7 @@ _MODULES = {
     "raceway.studies.view.front": "view",
     "raceway.studies.infer.front": "infer",
     "raceway.studies.catalogue.front": "catalogue",
+    "raceway.studies.law.front": "law LawCurves",
     "raceway.studies.infer.inferred": "Inferred",
     "raceway.studies.compare.comparison": "Comparison",
     "raceway.studies.precision.result": "Precision",

@@ -64,6 +64,7 @@ COMMANDS = {
     "catalogue": ("catalogue", "7014C"),
     "catalogue, list": ("catalogue", "79*"),
     "catalogue, materials": ("catalogue", "--materials"),
+    "law": ("law", "penalty", "--set", "contact.damping=300"),
     "view": ("view", MINIMAL, "--out", "OUT"),
     "mesh": ("mesh", MINIMAL, *COARSE, "--out", "OUT"),
     "plugins": ("plugins",),

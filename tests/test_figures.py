@@ -22,6 +22,8 @@ from raceway.studies.article import figures as article
 from raceway.studies.article import panel
 from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
+from raceway.studies.law import picture as law_picture
+from raceway.studies.law.front import law
 from raceway.studies.map import picture as map_picture
 from raceway.studies.map.curves import curves as map_curves
 from raceway.studies.measured import figures as measured
@@ -160,10 +162,18 @@ def of_the_catalogue() -> list[Figure]:
     ]
 
 
+def of_laws() -> list[Figure]:
+    """Dry, damped, opening on the way, and carried by a film before the surfaces touch."""
+    film = ("contact.viscosity=0.03", "kinematics.spin_speed_rpm=10000")
+    found = [law("penalty"), law("hertz", None, "contact.damping=3000", amplitude=1.5), law("film", None, *film)]
+    return [law_picture.draw(one) for one in found]
+
+
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
     contact_stress: of_stresses, drawing: of_the_catalogue,
+    law_picture: of_laws,
 }  # fmt: skip
 
 

@@ -59,7 +59,7 @@ AREAS = {
         framework/shown framework/sources front pipeline/facts pipeline/result plugins/__init__ plugins/system_libraries ross scene/schema storage/__init__ storage/cache_folder
         storage/files storage/tables storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         data/article_elastic studies/article/command studies/article/elastic studies/article/screen studies/compare/command studies/compare/front studies/compare/labelled studies/compare/screen studies/map/command
-        studies/limits/command studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
+        studies/law studies/limits/command studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
         studies/precision/labelled studies/precision/screen studies/rig/command studies/rig/screen
         studies/ross/command studies/ross/front studies/ross/points studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
         studies/sweep/store_command studies/verify/command studies/verify/screen studies/view/command studies/view/front studies/view/view studies/view/mesh_command

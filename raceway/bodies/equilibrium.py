@@ -13,7 +13,8 @@ class Equilibrium:
     Attributes
     ----------
     displacement : (5,) x, y, z [m], tilts [rad];  stiffness : (5, 5) tangent of the contacts
-    damping : (5, 5) of the contacts there [N s/m, N s/rad, N m s/m, N m s/rad]; 0 for elastic bodies, which know it in motion only
+    damping : (5, 5) of the contacts there, of slow motions [N s/m, N s/rad, N m s/m, N m s/rad]; 0 for elastic bodies, which know
+        it in motion only
     ball : (Z, 2) positions in the meridian planes [m]
     gap, contact_force : (2 Z,) inner races first [m, N]
     angle_inner, angle_outer : (Z,) contact angles [rad], nan where a contact is open

@@ -42,7 +42,8 @@ def settle(
     inner, outer = model.bearing.contact_angles(model, q, now.ball, now.contact_force)
     model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
-    found = Equilibrium(q, stiffness, now.damping, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    damping = still.damping_at(q, now)
+    found = Equilibrium(q, stiffness, damping, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
     law = report_of(model, found)
     return found if law is None else attrs.evolve(found, warnings=(*law.warnings, *warnings))
 

@@ -5,6 +5,7 @@ compare, precision, stability, sweep, verify, view, ross, measured    one folder
 rotor_files  coefficients for Nastran and Ansys, as CSV and JSON
 limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
 infer, catalogue    balls and grooves from printed numbers; the bearings that were made so, with their commands
+law         one contact of a bearing with any installed contact law, beside Hertz'
 article, rig, map    whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
 command     ``raceway study``
 shaft       the rotor that ``rig`` and ``measured`` set the bearing in

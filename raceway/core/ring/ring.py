@@ -311,3 +311,7 @@ class Ring(ABC):
     def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""
         return now.stiffness
+
+    def damping_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Damping of the contacts (5, 5) at an equilibrium that was evaluated, of slow motions."""
+        return now.damping

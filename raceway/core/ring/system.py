@@ -24,6 +24,9 @@ from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, 
 from raceway.core.stepping.states import check_state
 from raceway.errors import ConvergenceError
 
+#: Rate of the slow motions that a damping is taken from, over the stiffness by the damping [1/s]: an error of second order in it.
+_SLOW = 1e-4
+
 
 @attrs.define(eq=False, kw_only=True)
 class System(Ring):
@@ -192,6 +195,22 @@ class System(Ring):
         if status != 0:
             raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
         return Evaluation(f, K, C, work[GAP].copy(), work[CONTACT_FORCE].copy(), ball, new)
+
+    def damping_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
+        """Damping of the contacts (5, 5) at an equilibrium that was evaluated, of slow motions: the balls move, too.
+
+        Notes
+        -----
+        In a motion with exp(g t) every rate is g times a displacement, the balls' as well: the force changes by K(g) + g C(g), and
+        the damping is the derivative of that by g at 0.  C(0) alone is that of a ring which moves while the balls stay.
+        """
+        if not now.damping.any():
+            return now.damping
+        gain = _SLOW * float(np.diag(now.stiffness)[:3].max() / np.diag(now.damping)[:3].max())
+        ahead, behind = (
+            self.evaluate(q, ball=now.ball, ball_rate=-g * now.ball, step=Increment(gain=g)) for g in (gain, -gain)
+        )
+        return (ahead.stiffness - behind.stiffness) / (2.0 * gain) + 0.5 * (ahead.damping + behind.damping)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE

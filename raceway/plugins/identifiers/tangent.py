@@ -37,7 +37,7 @@ class Tangent:
             force += 2.0 / samples * phase * system.outer_force(k / samples / excitation.frequency_hz)
         chosen = system.free > 0.0
         now = system.evaluate(equilibrium.displacement, ball=equilibrium.ball)
-        dynamic = now.stiffness + system.stiffness - w**2 * system.mass + 1j * w * (now.damping + system.damping)
+        dynamic = now.stiffness + system.stiffness - w**2 * system.mass + 1j * w * (equilibrium.damping + system.damping)
         line = np.zeros(5, dtype=complex)
         line[chosen] = np.linalg.solve(dynamic[np.ix_(chosen, chosen)], force[chosen])
         return identification(self.definition, excitation.frequency_hz, force, line, model.system.mass[1, 1])

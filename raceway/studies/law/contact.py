@@ -1,4 +1,4 @@
-"""A contact of a scene in its equilibrium, alone: force, stiffness and damping at any gap and rate of the gap."""
+"""A contact of a scene in its equilibrium, alone: force, stiffness and damping at any approach and rate."""
 
 from __future__ import annotations
 
@@ -29,15 +29,18 @@ class Contact:
     Attributes
     ----------
     race : "inner" or "outer";  ball : its number, from 1
-    load : normal force in the equilibrium [N];  approach : there [m]
+    load : normal force in the equilibrium [N]
+    approach : there [m]: minus the gap between the undeformed surfaces
+    reach : gap at which the contact begins to carry [m]: 0, or what a film puts between the surfaces
     hertz_factor : K of Hertz' force K delta^1.5 [N/m^1.5]
-    system : a mass against the contact alone, whose x is the approach
+    system : a mass against the contact alone, whose x is approach + reach
     """
 
     race: str
     ball: int
     load: float
     approach: float
+    reach: float
     hertz_factor: float
     system: System
 
@@ -52,15 +55,14 @@ class Contact:
         step : since the memory was committed; None: at rest, without a history
         """
         q, v = np.zeros(5), np.zeros(5)
-        q[0], v[0] = approach, rate
+        q[0], v[0] = approach + self.reach, rate
         now = self.system.evaluate(q, v, ball=np.zeros((1, 2)), step=step or Increment())
-        return float(now.force[0]), float(now.stiffness[0, 0]), float(now.damping[0, 0]), now.memory
+        return float(now.force[0]), float(now.stiffness[0, 0]), float(now.damping[0, 0]) + 0.0, now.memory  # no -0
 
-    def curves(self, approach: np.ndarray, rate: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Force, stiffness and damping (n,) over approaches (n,) [m] at one rate [m/s], without a history."""
-        found = [self.at(float(one), rate)[:3] for one in approach]
-        force, stiffness, damping = np.array(found).T
-        return force, stiffness, damping
+    def curves(self, approach: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """(3, m, n) force, stiffness and damping over rates (m,) [m/s] and approaches (n,) [m], each without a history."""
+        found = [[self.at(float(one), float(rate))[:3] for one in approach] for rate in rates]
+        return np.moveaxis(np.array(found), -1, 0)
 
     def hertz(self, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and stiffness (n,) by Hertz' law over approaches (n,) [m]."""
@@ -74,12 +76,12 @@ def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Co
     Parameters
     ----------
     race : "inner" or "outer"
-    ball : its number, from 1; None: the most loaded one
+    ball : its number, from 1 over all rows; None: the most loaded one
 
     Raises
     ------
     SceneError
-        Another race, a ball that is not there, elastic bodies, contacts at surface points.
+        Another race, a ball that is not there, bodies that are not rigid.
     RacewayError
         A contact that carries nothing.
     ConvergenceError
@@ -88,7 +90,7 @@ def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Co
     if race not in RACES:
         raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
     if scene.bodies.name != "rigid":
-        rule = "hides its contacts behind the bodies' compliance: look at a law with bodies.kind = rigid"
+        rule = "has contacts whose approach is shared with the bodies' compliance: take bodies.kind = 'rigid' to see a law alone"
         raise SceneError.at("bodies.kind", scene.bodies.name, rule)
     model = build_model(scene, make_plan(scene))
     still = settle(model)
@@ -100,11 +102,12 @@ def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Co
     if not 1 <= number <= count:
         raise SceneError.at("ball", ball, f"must be from 1 to {count}")
     index = RACES.index(race) * count + number - 1
-    load, approach = float(still.contact_force[index]), -float(still.gap[index])
+    load = float(still.contact_force[index])
     if load <= 0.0:
-        raise RacewayError(
-            f"ball {number} carries nothing at the {race} race: choose another, the most loaded is {int(np.argmax(loads)) + 1}"
-        )
+        rule = f"carries nothing at the {race} race: the most loaded is {int(np.argmax(loads)) + 1}"
+        raise RacewayError(f"ball {number} {rule}" if loads.any() else f"no ball carries anything at the {race} race")
     ellipse = model.inner if race == "inner" else model.outer
     factors = np.broadcast_to(np.asarray(ellipse.factor, dtype=float), count)
-    return Contact(race, number, load, approach, float(factors[number - 1]), single_contact(ring, index))
+    reach = 0.0 if ring.reach is None else float(ring.reach[index])
+    approach = -float(still.gap[index]) - reach
+    return Contact(race, number, load, approach, reach, float(factors[number - 1]), single_contact(ring, index))

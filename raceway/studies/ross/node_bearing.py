@@ -84,11 +84,10 @@ class NodeBearing:
         w = max(abs(frequency), _SLOW)
         model, rest = self.at_rest(speed)
         system = model.system
-        now = system.evaluate(rest.displacement, ball=rest.ball)
         viscous = 0.5 * (
             system.damping + system.damping.T
         )  # the ring's gyroscopic moments are the rotor model's, as its mass
-        whole = rest.stiffness + system.stiffness + 1j * w * (now.damping + viscous)
+        whole = rest.stiffness + system.stiffness + 1j * w * (rest.damping + viscous)
         whole[:3, :3] += 1j * w * self.damping * np.eye(3)
         inside = self._inside(model)
         seen = _condensed(whole, list(range(self.size)), [i for i in inside if i > 0])
