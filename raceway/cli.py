@@ -41,6 +41,10 @@ _LATER = {
     "precision": ("raceway.studies.precision.command", "Error against run time: which setting is good enough."),
     "stability": ("raceway.studies.stability.command", "Stiff and extreme cases: what must hold, holds."),
     "sweep": ("raceway.studies.sweep.command", "One scene at thousands of points, kept in a store; parallel, resumable."),
+    "follow": (
+        "raceway.studies.follow.command",
+        "K as a curve over speed or any continuous key: folds, stability, special points.",
+    ),
     "study": ("raceway.studies.command", "Whole studies that end in a page, and others' studies."),
     "plot": ("raceway.studies.sweep.store_command", "Draw a sweep: curves, maps, surfaces."),
     "export": ("raceway.studies.ross.command", "Write a sweep's coefficients for a rotor program."),

@@ -22,6 +22,7 @@ from raceway.studies.article import figures as article
 from raceway.studies.article import panel
 from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
+from raceway.studies.follow import picture as followed
 from raceway.studies.law import picture as law_picture
 from raceway.studies.law.front import law
 from raceway.studies.map import picture as map_picture
@@ -169,11 +170,20 @@ def of_laws() -> list[Figure]:
     return [law_picture.draw(one) for one in found]
 
 
+def of_a_branch() -> list[Figure]:
+    """Through two folds, one of them unstable; every kind of label."""
+    rows = [
+        {"parameter": p, "swing": 1e-6 * k, "stiffness": 1e8 / (1 + k), "verdict": "unstable" if 3 < k < 6 else "stable"}
+        for k, p in enumerate((1.0, 2.0, 3.0, 4.0, 3.8, 3.6, 4.2, 5.0))
+    ]
+    labels = [{**rows[k], "kind": kind} for k, kind in enumerate(followed._MARKS)]
+    return [followed.draw({"title": "made up", "key": "excitation.speed_rpm", "rows": rows, "labels": labels})]
+
+
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
-    contact_stress: of_stresses, drawing: of_the_catalogue,
-    law_picture: of_laws,
+    contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch,
 }  # fmt: skip
 
 

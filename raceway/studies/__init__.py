@@ -1,7 +1,7 @@
 """Many runs, or many numbers, made into one answer.  Studies call ``raceway.pipeline.run`` and never reach into a time loop.
 
 many        what they share: the engine (items in, rows out, kept and resumed), points, axes, row store, pages
-compare, precision, stability, sweep, verify, view, ross, measured    one folder a command, with what it prints and draws
+compare, follow, precision, stability, sweep, verify, view, ross, measured    one folder a command, with what it prints and draws
 rotor_files  coefficients for Nastran and Ansys, as CSV and JSON
 limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
 infer, catalogue    balls and grooves from printed numbers; the bearings that were made so, with their commands

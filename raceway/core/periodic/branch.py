@@ -17,17 +17,18 @@ Analysis, 3rd ed. (2010), chapter 4.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import cached_property
 
 import attrs
 import numpy as np
 
 from raceway.core.periodic.arrays import Change, Eliminated
 from raceway.core.periodic.collocation import Solved, gap
-from raceway.core.periodic.floquet import Floquet, floquet
+from raceway.core.periodic.floquet import Floquet, fate_of, transfer
 from raceway.core.periodic.intervals import FORCE, IMBALANCE, condense, imbalances
 from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.rates import renew, stiff
-from raceway.core.periodic.refinement import divided, estimate, resampled
+from raceway.core.periodic.refinement import Estimate, divided, estimate, resampled
 from raceway.core.periodic.sweep import spread
 from raceway.errors import ConvergenceError
 
@@ -45,6 +46,8 @@ class Point:
     parameter : p;  solved : the motion;  error : estimated, over its size
     tangent : (2 n + 1,) direction of the branch in scaled state and parameter;  folded : the parameter turned back since
         the point before
+    deviation : of the state at the start from its prediction, over the motion's size
+    highest : order of the fastest vibration, which ``transfer`` is fit for; 0: as exact as the mesh
     """
 
     parameter: float
@@ -52,10 +55,17 @@ class Point:
     error: float
     tangent: np.ndarray
     folded: bool
+    deviation: float = 0.0
+    highest: float = 0.0
 
-    @property
+    @cached_property
+    def transfer(self) -> np.ndarray:
+        """(2 n, 2 n) of a disturbance over a span, turned back."""
+        return transfer(self.solved, self.highest)
+
+    @cached_property
     def floquet(self) -> Floquet:
-        return floquet(self.solved)
+        return fate_of(self.transfer, self.solved.problem.symmetry.span)
 
 
 @attrs.define(eq=False)
@@ -68,6 +78,8 @@ class Branch:
     unit : a typical change of the parameter;  length : a typical size of the motion [m]
     tolerance : error of the motion over its size that meshes are kept fit for;  most_intervals : that they may have
     slope : (problem, path) -> (m s, 5) derivative of the balance of forces by the parameter; None for a difference quotient
+    fastest : highest natural frequency [rad/s], which multipliers are fit for; 0: as exact as the mesh
+    aim : deviation that steps are chosen for; None: by the number of corrections
     """
 
     problem_at: Callable[[float], Problem]
@@ -76,6 +88,8 @@ class Branch:
     tolerance: float = 1e-6
     most_intervals: int = 2048
     slope: Callable[[Problem, Path], np.ndarray] | None = None
+    fastest: float = 0.0
+    aim: float | None = None
 
     def start(self, solved: Solved, parameter: float, sense: float = 1.0) -> Point:
         """The first point, from a motion that is known; ``sense``: the side to which the parameter goes."""
@@ -83,7 +97,7 @@ class Branch:
         across = np.zeros(n2 + 1)
         across[-1] = sense
         _, _, tangent, linear = self._correct(solved.path, parameter, across, None)
-        return Point(parameter, linear, estimate(linear).error, tangent, False)
+        return Point(parameter, linear, self._estimate(linear, tangent).error, tangent, False, 0.0, self._order(linear))
 
     def follow(self, first: Point, step: float, longest: float | None = None) -> Iterator[Point]:
         """Points from ``first`` on, one by one, for as long as they are asked for.
@@ -103,27 +117,40 @@ class Branch:
         while True:
             here.solved.problem.watch()
             try:
-                here, iterations = self._step(here, size)
+                here = self.step(here, size)
             except ConvergenceError as why:
                 size *= 0.5
                 if size < 1e-6 * step:
                     raise ConvergenceError(f"the branch ends at {here.parameter:.6g}: {why}") from why
                 continue
             yield here
-            size = min(size * (1.5 if iterations <= 4 else 0.7 if iterations > 7 else 1.0), longest)
+            size = min(size * self.growth(here), longest)
 
-    def _step(self, here: Point, size: float) -> tuple[Point, int]:
+    def growth(self, here: Point) -> float:
+        """Factor of the next step over the one that led here: a prediction along the tangent deviates by its square."""
+        if self.aim is not None:
+            return float(np.clip(np.sqrt(self.aim / max(here.deviation, 1e-300)), 0.3, 2.0))
+        return 1.5 if here.solved.sweeps <= 4 else 0.7 if here.solved.sweeps > 7 else 1.0
+
+    def step(self, here: Point, size: float) -> Point:
+        """The point at a length along the branch, in units.
+
+        Raises
+        ------
+        ConvergenceError
+            The corrector finds none, or turned round.
+        """
         solved = here.solved
-        n, path, dp = len(solved.problem.free), solved.path, size * here.tangent[-1] * self.unit
+        path, dp = solved.path, size * here.tangent[-1] * self.unit
         # Predictor: the last linearised problem carries the tangent at the start through the span; the last correction, which it
         # adds once more, is far below the tolerance.
         dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
-        first = size * self.length * here.tangent[: 2 * n]
+        first = size * self.displacement(here)
         spread(solved.problem.free, solved.eliminated, first, dp, Change(dq, dv, da))
         moved = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da, ball=path.ball.copy(), rate=path.rate.copy())
         at = here.parameter + dp
         path, parameter, tangent, last = self._correct(moved, at, here.tangent, (moved, at))
-        found = estimate(last)
+        found = self._estimate(last, tangent)
         for _ in range(4):
             if found.error <= self.tolerance or 2 * path.intervals > self.most_intervals:
                 break
@@ -131,12 +158,39 @@ class Branch:
             nodes, parent = divided(path.nodes, parts)
             finer = resampled(last.problem, path, nodes, parent)
             path, parameter, tangent, last = self._correct(finer, parameter, here.tangent, (finer, parameter))
-            found = estimate(last)
+            found = self._estimate(last, tangent)
         # Back where it came from: a corrector that turned round.
         if float(tangent @ here.tangent) < 0.5:
             raise ConvergenceError("the branch bends too much for the step")
         folded = tangent[-1] * here.tangent[-1] < 0.0
-        return Point(parameter, last, found.error, tangent, folded), last.sweeps
+        off = np.abs([path.q[0] - moved.q[0], path.v[0] - moved.v[0]]) / last.problem.weight
+        deviation = float(off.max()) / max(last.size, 1e-300)
+        return Point(parameter, last, found.error, tangent, folded, deviation, self._order(last))
+
+    def crossing(self, point: Point) -> float:
+        """Determinant of the bordered problem, which changes its sign where another branch crosses, and not at a fold."""
+        return float(np.linalg.det(self._bordered(point.solved.problem, point.solved.eliminated.whole, point.tangent)))
+
+    def displacement(self, point: Point) -> np.ndarray:
+        """(2 n,) of the unknown state at the start of the span, by a unit of length along the branch."""
+        return self.length * point.tangent[:-1]
+
+    def _order(self, solved: Solved) -> float:
+        return self.fastest / solved.problem.speed
+
+    def _estimate(self, solved: Solved, tangent: np.ndarray) -> Estimate:
+        """The error across the branch, which has a value at folds too."""
+        bordered = self._bordered(solved.problem, solved.eliminated.whole, tangent)
+        return estimate(solved, lambda end: np.linalg.solve(bordered, np.append(end, 0.0))[:-1])
+
+    def _bordered(self, problem: Problem, whole: np.ndarray, across: np.ndarray) -> np.ndarray:
+        """(2 n + 1, 2 n + 1) of the closing condition in scaled state and parameter, ``across`` as its last row."""
+        n2 = 2 * len(problem.free)
+        out = np.empty((n2 + 1, n2 + 1))
+        out[:n2, :n2] = problem.closing - whole[:, :n2]
+        out[:n2, n2] = -whole[:, n2 + 1] * self.unit / self.length
+        out[n2] = across
+        return out
 
     def _linearise(self, problem: Problem, path: Path, parameter: float) -> tuple[Eliminated, np.ndarray] | None:
         """The linearisation, with the derivative by the parameter, and its report."""
@@ -173,10 +227,7 @@ class Branch:
                 raise ConvergenceError("the balls find no place between the races")
             linear, report = linearised
             whole = linear.whole
-            bordered = np.zeros((2 * n + 1, 2 * n + 1))
-            bordered[: 2 * n, : 2 * n] = problem.closing - whole[:, : 2 * n]
-            bordered[: 2 * n, 2 * n] = -whole[:, 2 * n + 1] * self.unit / self.length
-            bordered[2 * n] = across
+            bordered = self._bordered(problem, whole, across)
             right = np.zeros((2 * n + 1, 2))
             right[: 2 * n, 0] = (whole[:, 2 * n] + gap(problem, path)) / self.length
             right[2 * n, 1] = 1.0

@@ -86,12 +86,20 @@ def floquet(solved: Solved, highest: float = 0.0) -> Floquet:
     The rates of the balls are taken as they are along the motion.  That leaves the phases as they are, and the decay that the
     contacts' dashpots bring off by the difference of the races' compliances over their sum (2 % of the decay for B7206C).
     """
-    n = len(solved.problem.free)
+    return fate_of(transfer(solved, highest), solved.problem.symmetry.span)
+
+
+def transfer(solved: Solved, highest: float = 0.0) -> np.ndarray:
+    """(2 n, 2 n) of a disturbance of the state over a span, turned back; ``highest`` as of ``floquet``."""
     whole = solved.eliminated.whole if highest == 0.0 else _finer(solved, highest)
-    over_span = np.linalg.eigvals(solved.problem.closing.T @ whole[:, : 2 * n]).astype(complex)
-    turns = 2.0 * np.pi / solved.problem.symmetry.span
+    return np.asarray(solved.problem.closing.T @ whole[:, : 2 * len(solved.problem.free)])
+
+
+def fate_of(over: np.ndarray, span: float) -> Floquet:
+    """Multipliers of a transfer over a span [rad]."""
+    over_span = np.linalg.eigvals(over).astype(complex)
     with np.errstate(divide="ignore"):
-        over_turn = np.exp(turns * np.log(over_span))
+        over_turn = np.exp(2.0 * np.pi / span * np.log(over_span))
     order = np.argsort(-np.abs(over_turn))
     return Floquet(over_turn[order], over_span[order])
 

@@ -12,6 +12,8 @@ intervals are divided again and again.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import attrs
 import numpy as np
 
@@ -48,8 +50,14 @@ class Estimate:
     field: np.ndarray
 
 
-def estimate(solved: Solved) -> Estimate:
-    """The error of a motion by its defects, carried round, and by the tail of its polynomials."""
+def estimate(solved: Solved, closed: Callable[[np.ndarray], np.ndarray] | None = None) -> Estimate:
+    """The error of a motion by its defects, carried round, and by the tail of its polynomials.
+
+    Parameters
+    ----------
+    closed : change of the state at the start (2 n,) with which the span closes after a gap (2 n,) at its end; None: the parameter
+        of a branch stays as it is, which has no answer at a fold
+    """
     problem, path = solved.problem, solved.path
     system, free, weight = problem.system, problem.free, problem.weight
     m, s, n = path.intervals, len(problem.rule.points), len(free)
@@ -66,7 +74,7 @@ def estimate(solved: Solved) -> Estimate:
     transfer, whole = solved.eliminated.transfer, solved.eliminated.whole
     carry(free, transfer, np.zeros(2 * n), defect, dq, dv)
     end = np.concatenate([dq[-1, free], dv[-1, free]])
-    first = np.linalg.solve(problem.closing - whole[:, : 2 * n], end)
+    first = np.linalg.solve(problem.closing - whole[:, : 2 * n], end) if closed is None else closed(end)
     carry(free, transfer, first, defect, dq, dv)
     h = np.diff(path.nodes)
     legendre = np.abs(np.einsum("js,msc->mjc", problem.rule.legendre, path.a.reshape(m, s, 5))) / weight

@@ -1,0 +1,86 @@
+"""``raceway follow``.  Part of ``raceway.cli``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import click
+
+from raceway.commands.frame import (
+    RESULTS,
+    attempt,
+    common,
+    on_scene,
+    out_option,
+    plugin_files,
+    record,
+    show,
+    show_progress,
+)
+from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
+from raceway.errors import SceneError
+from raceway.framework.registry import registry_with
+from raceway.storage.files import writable
+
+
+class FollowOptions(NamedTuple):
+    """What ``raceway follow`` is given."""
+
+    scene: Path
+    over: str
+    points: int
+    aim: float
+    changes: tuple[str, ...]
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
+
+
+@click.command(short_help="K as a curve over speed or any continuous key: folds, stability, special points.")
+@on_scene
+@click.option(
+    "--over", required=True, metavar="A.B=FIRST:LAST", help="Continuous key that the steady orbit is followed over."
+)
+@click.option("--points", type=click.IntRange(2, 100_000), default=1000, show_default=True, help="Orbits at most.")
+@click.option(
+    "--aim", type=click.FloatRange(1e-6, 0.1), default=1e-3, show_default=True, metavar="PART",
+    help="Deviation from the tangent over the orbit's size that steps are chosen for.",
+)  # fmt: skip
+@out_option(f"{RESULTS}/TITLE-follow")
+@click.option("--pictures/--no-pictures", default=True, help="Draw amplitude and K over the key as PNG (default).")
+@plugin_files
+@common
+@record(FollowOptions)
+def follow(given: FollowOptions) -> int:
+    """Follow the steady orbit of a scene from the first value of a key to the last, through folds: K, C, amplitude, phase and
+    stability of each orbit, with folds, period doublings, Neimark-Sacker points and peaks located.
+
+    Writes follow.json, follow.csv and follow.png. The scene's integrator and identifier count for nothing.
+
+    \b
+    Example:
+      raceway follow examples/b7206.toml --over excitation.speed_rpm=500:30000
+      raceway follow examples/b7206.toml --over load.axial=2000:100 \\
+          --set supports.tilt=free
+    """
+    registry = registry_with(given.plugins)
+    tables, mistakes = changed_tables(given.scene, given.changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    folder = writable(given.out or RESULTS / f"{slug(str(tables['title']))}-follow")
+    pictures = given.pictures and has_matplotlib()
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.studies.follow.front import follow as study
+
+        found = study(
+            tables, given.over, points=given.points, aim=given.aim, plugins=given.plugins, progress=progress,
+        )  # fmt: skip
+    content, files = found.to_dict(), list[str]()
+    failed = attempt(lambda: found.write(folder, pictures), files)
+    from raceway.studies.follow.screen import follow_screen
+
+    show(content, given.as_json, failed, lambda: follow_screen(content, files))
+    return 0

@@ -1,0 +1,75 @@
+"""Picture of a followed branch: amplitude and K over the key, stable and unstable, special points and peaks labelled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from raceway.plugins.reports.pictures import new_figure
+from raceway.storage.tables import ReadTables
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_STABLE, _UNSTABLE, _OTHER, _INSTEAD = "#0b5fa5", "#c8501e", "#2a8f5b", "#555f6b"
+#: Kind of a label -> mark.
+_MARKS = {"fold": "s", "branch point": "D", "period doubling": "^", "Neimark-Sacker": "o", "contact opens": "x", "peak": "+"}
+#: Quantities: column, factor, words.
+_PANELS = (("swing", 1e6, "amplitude of all harmonics  [µm]"), ("stiffness", 1e-6, "K  [N/µm]"))
+#: Peaks that are labelled at most, the highest.
+_PEAKS = 6
+
+
+def draw(content: ReadTables) -> Figure:
+    """Two panels over the key, of the tables of ``raceway follow --json``."""
+    figure = new_figure(9.6, 8.0)
+    panels = figure.subplots(2, 1, sharex=True)
+    for panel, (column, factor, words) in zip(panels, _PANELS, strict=True):
+        _curve(panel, content["rows"], column, factor, "")
+        _marks(panel, content["labels"], column, factor)
+        panel.set_ylabel(words)
+        panel.grid(True, color="#e3e7eb", linewidth=0.8)
+        panel.set_axisbelow(True)
+        panel.spines[["top", "right"]].set_visible(False)
+    panels[-1].set_xlabel(content["key"])
+    peaks = sorted((x for x in content["labels"] if x["kind"] == "peak"), key=lambda x: -float(x["swing"]))[:_PEAKS]
+    for peak in peaks:
+        words = f"{peak['parameter']:.6g}\n{1e6 * peak['swing']:.4g} µm"
+        at = (peak["parameter"], 1e6 * peak["swing"])
+        panels[0].annotate(words, at, xytext=(0, 6), textcoords="offset points", ha="center", fontsize=8)
+    handles = dict(zip(*reversed(panels[0].get_legend_handles_labels()), strict=True))
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+    figure.suptitle(content["title"].partition("\n")[0], fontsize=11)
+    return figure
+
+
+def _curve(panel: Axes, rows: Sequence[ReadTables], column: str, factor: float, words: str) -> None:
+    """The branch in pieces of one verdict, each up to the first point of the next one."""
+    first = 0
+    for k in range(1, len(rows) + 1):
+        if k < len(rows) and _unstable(rows[k]) == _unstable(rows[first]):
+            continue
+        piece = rows[first : k + 1]
+        bad = _unstable(rows[first])
+        panel.plot(
+            [row["parameter"] for row in piece], [factor * row[column] for row in piece],
+            color=_UNSTABLE if bad else _STABLE, linestyle="--" if bad else "-", linewidth=1.4,
+            label=("unstable" if bad else "stable") + words,
+        )  # fmt: skip
+        first = k
+
+
+def _unstable(row: ReadTables) -> bool:
+    return bool(row["verdict"] == "unstable")
+
+
+def _marks(panel: Axes, labels: Sequence[ReadTables], column: str, factor: float) -> None:
+    for kind, mark in _MARKS.items():
+        chosen = [label for label in labels if label["kind"] == kind]
+        if chosen:
+            panel.plot(
+                [x["parameter"] for x in chosen], [factor * x[column] for x in chosen], linestyle="", marker=mark,
+                markersize=6, color="black", markerfacecolor="white", label=kind,
+            )  # fmt: skip

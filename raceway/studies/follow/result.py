@@ -1,0 +1,117 @@
+"""A followed branch, as tables and files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import attrs
+
+from raceway.core.periodic.branch import Point
+from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
+from raceway.studies.follow.row import COLUMNS, Row
+
+#: Kinds of labels beside the special points: a local maximum of the swing, a first contact that opens on the way.
+PEAK, OPENS = "peak", "contact opens"
+
+
+@attrs.frozen
+class Label:
+    """A special point or a peak: its kind and its orbit.
+
+    Attributes
+    ----------
+    kind : "fold", "branch point", "period doubling", "Neimark-Sacker", PEAK or OPENS
+    angle : of the critical pair over a span [rad];  point : of the branch, of special points
+    """
+
+    kind: str
+    row: Row
+    angle: float | None = None
+    point: Point | None = attrs.field(default=None, eq=False, repr=False)
+
+    def to_dict(self) -> Tables:
+        return {"kind": self.kind, "angle_rad": self.angle, **self.row.to_dict()}
+
+
+@attrs.define(eq=False)
+class Followed:
+    """The branch of steady orbits over a key of a scene.
+
+    Attributes
+    ----------
+    key : of the scene, followed from ``first`` towards ``last``;  span_deg : that the orbits repeat themselves after
+    rows : orbits in the order of the branch;  labels : special points and peaks
+    end : why it ends before ``last``; "" where it reaches it
+    notes : what a user should know
+    """
+
+    key: str
+    first: float
+    last: float
+    span_deg: float
+    title: str
+    rows: list[Row] = attrs.field(factory=list)
+    labels: list[Label] = attrs.field(factory=list)
+    end: str = ""
+    notes: list[str] = attrs.field(factory=list)
+
+    @property
+    def unstable(self) -> list[tuple[Row, Row]]:
+        """Ends of the stretches of unstable orbits in the order of the branch, at special points where such are known."""
+        out: list[tuple[Row, Row]] = []
+        marks = [label.row for label in self.labels if label.kind not in (PEAK, OPENS)]
+        before: Row | None = None
+        for row in self.rows:
+            between = [mark for mark in marks if before is not None and before.arc < mark.arc < row.arc]
+            was = before is not None and before.verdict == "unstable"
+            if row.verdict == "unstable":
+                first = out.pop()[0] if was else (between or [row])[0]
+                out.append((first, row))
+            elif was and between:
+                out[-1] = (out[-1][0], between[-1])
+            before = row
+        return out
+
+    def to_dict(self) -> Tables:
+        """Everything, as plain tables for JSON."""
+        return {
+            "title": self.title,
+            "key": self.key,
+            "first": self.first,
+            "last": self.last,
+            "span_deg": self.span_deg,
+            "columns": {name: {"unit": unit, "what": words} for name, (unit, words) in COLUMNS.items()},
+            "rows": [row.to_dict() for row in self.rows],
+            "labels": [label.to_dict() for label in self.labels],
+            "unstable": [[one.parameter, two.parameter] for one, two in self.unstable],
+            "end": self.end,
+            "notes": self.notes,
+        }
+
+    def write(self, folder: str | Path, picture: bool = True) -> list[Path]:
+        """Write follow.json, follow.csv and follow.png; the folder is made when it is missing.
+
+        Raises
+        ------
+        RacewayError
+            The folder cannot be written, or matplotlib is missing.
+        """
+        folder, content = Path(folder), self.to_dict()
+        text = io.StringIO()
+        table = csv.DictWriter(text, list(content["rows"][0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows(content["rows"])
+        files = [
+            write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), folder / "follow.json"),
+            write_whole(text.getvalue().encode(), folder / "follow.csv"),
+        ]
+        if picture:
+            from raceway.plugins.reports.pictures import save_figure
+            from raceway.studies.follow.picture import draw
+
+            files.append(save_figure(draw(content), folder / "follow.png", 110))
+        return files

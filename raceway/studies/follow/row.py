@@ -1,0 +1,145 @@
+"""One orbit of a branch in numbers."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+
+from raceway.core.periodic.arrays import Change
+from raceway.core.periodic.branch import Branch, Point
+from raceway.core.periodic.collocation import Solved
+from raceway.core.periodic.sampling import displacements, states
+from raceway.core.periodic.sweep import contacts, forces, spread
+from raceway.core.ring.orbit import States
+from raceway.core.signals.identification import stiffness
+from raceway.errors import ConvergenceError
+from raceway.storage.tables import Tables
+
+#: Samples a turn: harmonics up to this order alias nothing.
+_SAMPLES = 360
+#: Samples of a span at which contacts are looked at.
+_CONTACTS = 72
+#: Step of the difference quotient along the branch, over the motion's size.
+_ALONG = 1e-4
+
+#: Name of a number -> (unit, words).
+COLUMNS: dict[str, tuple[str, str]] = {
+    "parameter": ("", "value of the key"),
+    "arc": ("1", "length along the branch, in tenths of the range and sizes of the first orbit"),
+    "speed": ("rad/s", "of the force"),
+    "z_real": ("N/m", "real part of Z = F/x of the 1x line"),
+    "z_imag": ("N/m", "imaginary part of Z"),
+    "stiffness": ("N/m", "K = Re Z + m w^2"),
+    "damping": ("N s/m", "C = Im Z / w"),
+    "amplitude": ("m", "major semi-axis of the 1x orbit"),
+    "phase_deg": ("deg", "lag of the displacement behind the force"),
+    "swing": ("m", "sqrt 2 times the rms of the displacement about its mean: the amplitude of all harmonics together"),
+    "multiplier": ("1", "growth of the most persistent disturbance in a turn"),
+    "unstable": ("1", "number of multipliers outside the unit circle"),
+    "lost": ("1", "most inner contacts that are open at once"),
+    "error": ("1", "estimated error of the orbit over its size"),
+}
+
+
+@attrs.frozen
+class Row:
+    """Numbers of ``COLUMNS``, the verdict "stable", "neutral" or "unstable", and how the orbit is left: "", "+1", "-1", "pair"."""
+
+    parameter: float
+    arc: float
+    speed: float
+    z: complex
+    mass: float
+    amplitude: float
+    swing: float
+    multiplier: float
+    unstable: int
+    lost: int
+    error: float
+    verdict: str
+    leaves_by: str
+
+    @property
+    def stiffness(self) -> float:
+        """K [N/m]."""
+        return self.z.real + self.mass * self.speed**2
+
+    @property
+    def damping(self) -> float:
+        """C [N s/m]."""
+        return self.z.imag / self.speed
+
+    def to_dict(self) -> Tables:
+        own = attrs.asdict(self, filter=lambda field, _: field.name not in ("z", "mass"))
+        phase = float(np.degrees(np.angle(self.z)))
+        derived = {"z_real": self.z.real, "z_imag": self.z.imag, "stiffness": self.stiffness, "damping": self.damping}
+        whole = {**own, **derived, "phase_deg": phase}
+        return {name: whole[name] for name in (*COLUMNS, "verdict", "leaves_by")}
+
+
+def row_of(point: Point, arc: float, mass: float) -> Row:
+    """Numbers of one point; ``mass`` m of K = Re Z + m w^2 [kg]."""
+    solved, fate = point.solved, point.floquet
+    z, amplitude = line(solved)
+    outside = int((np.abs(fate.multipliers) > 1.0 + 1e-6).sum())
+    return Row(
+        point.parameter, arc, solved.problem.speed, z, mass, amplitude, swing(solved), fate.largest, outside, openness(solved)[1], point.error,
+        fate.verdict, fate.leaves_by,
+    )  # fmt: skip
+
+
+def line(solved: Solved) -> tuple[complex, float]:
+    """Z [N/m] along the force and major semi-axis [m] of the 1x line, over all turns of the span."""
+    problem, angles = solved.problem, _angles(solved)
+    push = np.empty((len(angles), 5))
+    forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
+    turned = 2.0 / len(angles) * np.exp(-1j * angles)
+    x, force = turned @ displacements(solved, angles), turned @ push
+    forward, backward = 0.5 * abs(x[1] - 1j * x[2]), 0.5 * abs(x[1] + 1j * x[2])
+    return complex(stiffness(force, x)), float(forward + backward)
+
+
+def swing(solved: Solved) -> float:
+    """sqrt 2 times the rms of the displacement about its mean [m], over all turns of the span."""
+    q = displacements(solved, _angles(solved))[:, :3]
+    return float(np.sqrt(2.0 * ((q - q.mean(axis=0)) ** 2).sum(axis=1).mean()))
+
+
+def growth_of_swing(branch: Branch, point: Point) -> float:
+    """Derivative of the swing along the branch [m], by a difference quotient along its tangent."""
+    solved = point.solved
+    path, problem = solved.path, solved.problem
+    change = Change(*(np.zeros_like(part) for part in (path.q, path.v, path.a)))
+    spread(problem.free, solved.eliminated, branch.displacement(point), branch.unit * point.tangent[-1], change)
+    step = _ALONG * solved.size / max(float(np.abs(change.q / problem.weight).max()), 1e-300)
+    low, high = (
+        swing(
+            attrs.evolve(
+                solved, path=attrs.evolve(path, q=path.q + h * change.q, v=path.v + h * change.v, a=path.a + h * change.a)
+            )
+        )
+        for h in (-step, step)
+    )
+    return (high - low) / (2.0 * step)
+
+
+def turns_of(solved: Solved) -> int:
+    """Whole turns of the force in a span that is longer than one, else 1."""
+    return max(1, round(solved.problem.symmetry.span / (2.0 * np.pi)))
+
+
+def _angles(solved: Solved) -> np.ndarray:
+    return 2.0 * np.pi * np.arange(_SAMPLES * turns_of(solved)) / _SAMPLES
+
+
+def openness(solved: Solved) -> tuple[float, int]:
+    """Largest gap of an inner contact [m], negative where all carry at all times, and most of them that are open at once."""
+    problem, system = solved.problem, solved.problem.system
+    angles = problem.symmetry.span * np.arange(_CONTACTS) / _CONTACTS
+    q, v, _, ball, rate = states(solved, angles)
+    gap, force = np.empty((2, len(angles), 2 * system.ball_count))
+    at = States(angles / problem.speed, np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed), ball, rate)
+    if contacts(system.compiled_forces, system.law_state, at, gap, force) < len(angles):
+        raise ConvergenceError("the balls find no place between the races")
+    inner = gap[:, : system.ball_count]
+    return float(inner.max()), int((inner >= 0.0).sum(axis=1).max())

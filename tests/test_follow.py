@@ -1,0 +1,184 @@
+"""Branches of steady orbits: folds and backbones in closed form, harmonic balance, monodromy, special points, the command."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.core.periodic.branch import Branch
+from raceway.core.periodic.sampling import displacements
+from raceway.core.periodic.special import FOLD, PAIR, special_points
+from raceway.errors import SceneError
+from validation.command_line import invoke
+from validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
+from validation.oscillators import Oscillator, natural_frequency
+from validation.reference.harmonic_balance import harmonic_balance
+
+
+def walked(branch, first, start, until, size=0.1, sense=1.0):
+    """Points and special points of a branch until a condition of the point holds."""
+    here, points, found = branch.start(first, start, sense), [], []
+    for _ in range(600):
+        there = branch.step(here, size)
+        found += special_points(branch, here, there, size)
+        size *= branch.growth(there)
+        here = there
+        points.append(here)
+        if until(here):
+            return points, found
+    raise AssertionError("the branch does not come to its end")
+
+
+def test_folds_of_a_weak_duffing_oscillator():
+    """Its first harmonic alone is the closed form: what that leaves out is (b A^2)^2 3/128 = 2e-8 of w."""
+    one = Oscillator(damping=2e-4, factor=1e-3, force=2e-4)
+    start = 0.995
+    branch = Branch(one.problem, 1e-3, 1.0, 1e-10, 512, aim=1e-3)
+    _, found = walked(branch, one.orbit(start, one.force / (1.0 - start**2)), start, lambda p: p.parameter > 1.002)
+    assert [special.kind for special in found] == [FOLD, FOLD]
+    sizes = [np.abs(special.point.solved.path.q[:, 0]).max() for special in found]
+    wanted = one.folds([(special.point.parameter, size) for special, size in zip(found, sizes, strict=True)])
+    for special, size, (w, amplitude) in zip(found, sizes, wanted, strict=True):
+        assert special.point.parameter == pytest.approx(w, rel=1e-6)
+        # The amplitude stands still across neither fold: 1e-8 of w is 1e-4 of the detuning that it follows.
+        assert size == pytest.approx(amplitude, rel=1e-3)
+
+
+def test_backbone_of_a_mass_on_a_hertzian_spring():
+    """A force of 1e-8 keeps the orbit within 1e-8 of the free vibration: w = c A^(1/4), its constant by the energy."""
+    one = Oscillator(stiffness=0.0, factor=2.0, exponent=1.5, force=1e-8)
+    start = float(natural_frequency(2.0, 1.5, 1.0, np.array(1.0)))
+    # On one mesh: nothing but the force holds the phase, so that errors along it cannot be told.
+    branch = Branch(one.problem, start, 1.0, 1e-6, 8, aim=1e-3)
+    amplitude = lambda point: float(np.abs(displacements(point.solved, np.array([0.0, np.pi]))[:, 0]).max())  # noqa: E731
+    points, _ = walked(branch, one.orbit(start, 1.0, 80), start, lambda p: amplitude(p) > 10.0, 0.01)
+    sizes = np.array([amplitude(point) for point in points])
+    assert sizes[-1] > 10.0 * 0.99 and sizes[0] < 1.1
+    assert np.array([p.parameter for p in points]) == pytest.approx(natural_frequency(2.0, 1.5, 1.0, sizes), rel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def strong():
+    """A Duffing oscillator far from linear, through both folds."""
+    one = Oscillator(damping=0.1, factor=1.0, force=0.5)
+    branch = Branch(one.problem, 0.5, 1.0, 1e-8, 512, aim=1e-3)
+    return one, branch, *walked(branch, one.orbit(0.3, one.force / (1.0 - 0.09)), 0.3, lambda p: p.parameter > 3.0)
+
+
+def test_orbits_between_folds_by_harmonic_balance(strong):
+    one, _, points, found = strong
+    assert [special.kind for special in found if special.kind == FOLD] == [FOLD, FOLD]
+    unstable = [point for point in points if point.floquet.verdict == "unstable"]
+    assert unstable and all(point.floquet.leaves_by == "+1" for point in unstable)
+    angles = 2.0 * np.pi * np.arange(128) / 128
+    for point in (*unstable[:: max(1, len(unstable) // 3)], points[5], points[-1]):
+        q = displacements(point.solved, angles)[:, :1]
+        wanted = harmonic_balance(
+            lambda x: (x + x**3, np.array([[1.0 + 3.0 * x[0] ** 2]])), np.eye(1), 0.1 * np.eye(1), 0.5 * np.cos(angles)[:, None],
+            point.parameter, 1.01 * q, 40, 1.0,
+        )  # fmt: skip
+        assert np.abs(q - wanted).max() < 1e-6 * np.abs(q).max()
+
+
+def test_every_fold_is_between_stable_and_unstable(strong):
+    _, branch, _, found = strong
+    for special in found:
+        one = special.point
+        near = [branch.step(one, sign * 1e-3) for sign in (-1.0, 1.0)]
+        assert abs(one.tangent[-1]) < 1e-6
+        assert {point.floquet.verdict for point in near} == {"stable", "unstable"}
+        assert (near[0].parameter - one.parameter) * (near[1].parameter - one.parameter) > 0.0
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return rw.follow(SCENE, OVER)
+
+
+def test_the_article_s_bearing_through_its_folds(curve):
+    assert curve.end == "" and curve.rows[-1].parameter == pytest.approx(30000.0)
+    kinds = [label.kind for label in curve.labels]
+    assert kinds.count(FOLD) == 2 and kinds.count(PAIR) == 4
+    for label in curve.labels:
+        if label.kind == PAIR:
+            assert label.row.multiplier == pytest.approx(1.0, abs=2e-6)
+            assert 0.0 < label.angle < np.pi
+    assert len(curve.unstable) == 3
+    folds = [label.row.parameter for label in curve.labels if label.kind == FOLD]
+    assert [row.parameter for row in curve.unstable[0]] == folds
+
+
+def test_k_and_multipliers_by_other_methods(curve):
+    """The reference ring's forces in harmonic balance, and a turn of DOP853 with its variational equations."""
+    fold = next(label.point for label in curve.labels if label.kind == FOLD)
+    points = [*beside(fold), *(label.point for label in curve.labels if label.kind == PAIR)]
+    assert {point.floquet.verdict for point in points[:2]} == {"stable", "unstable"}
+    for point in points:
+        z = z_of(point)
+        assert abs(by_harmonic_balance(point) - z) < 1e-6 * abs(z)
+        by_turn, flow, gap = by_integration(point)
+        assert abs(by_turn - z) < 1e-6 * abs(z)
+        assert np.abs(gap[:3]).max() < 1e-6 * point.solved.size
+        own = point.floquet.multipliers
+        for multiplier in flow:
+            assert np.abs(own - multiplier).min() < 1e-5
+
+
+def test_files_hold_every_number(curve, tmp_path):
+    curve.write(tmp_path, picture=False)
+    content = json.loads((tmp_path / "follow.json").read_text())
+    rows = list(csv.DictReader((tmp_path / "follow.csv").open()))
+    assert len(rows) == len(content["rows"]) == len(curve.rows)
+    for row, known in zip(rows, curve.rows, strict=True):
+        assert float(row["stiffness"]) == known.stiffness and float(row["parameter"]) == known.parameter
+        z, w = complex(float(row["z_real"]), float(row["z_imag"])), float(row["speed"])
+        assert known.damping == pytest.approx(z.imag / w)
+        assert known.stiffness == pytest.approx(z.real + known.mass * w**2)
+    assert set(content["columns"]) <= set(rows[0])
+
+
+@pytest.mark.parametrize(
+    ("over", "words"),
+    [
+        ("bearing.ball_count=8:12", "whole number"),
+        ("integrator.turns=2:3", "setting of the method"),
+        ("excitation.ramp_turns=1:2", "changes nothing"),
+        ("excitation.speed_rpm=-500:3000", "greater than 0"),
+        ("excitation.speed_rpm=3000:3000", "begins where it ends"),
+        ("bearing.conformity_inner=0.52:1.2", "conformity_inner"),
+        ("contact.kind=hertz:penalty", "no number"),
+        ("speed", "must have the form"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(over, words):
+    with pytest.raises(SceneError, match=words):
+        rw.follow(SCENE, over)
+
+
+def test_the_command_writes_and_tells(tmp_path):
+    (tmp_path / "s.toml").write_text(
+        'title = "t"\n[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[rotor]\nmass = 2.0\ndamping = 1000.0\n[excitation]\n'
+        'kind = "bidirectional"\nspeed_rpm = 6000.0\namplitude = "constant"\nforce = 50.0\n'
+    )
+    found = invoke("follow", str(tmp_path / "s.toml"), "--over", "load.axial=1000:600", "--out", str(tmp_path / "out"))
+    assert found.exit_code == 0, found.output
+    assert "steady orbits over load.axial" in found.output
+    content = json.loads((tmp_path / "out" / "follow.json").read_text())
+    stiffness = [row["stiffness"] for row in content["rows"]]
+    assert stiffness[0] > 1.1 * stiffness[-1]  # a lighter preload makes a softer bearing
+    direct = rw.run({**content_scene(), "load": {"axial": 600.0}})
+    assert stiffness[-1] == pytest.approx(direct.equivalent_stiffness, rel=1e-6)
+    assert (tmp_path / "out" / "follow.png").stat().st_size > 10_000
+
+
+def content_scene():
+    return {
+        "bearing": {"preset": "B7206C"},
+        "rotor": {"mass": 2.0, "damping": 1000.0},
+        "excitation": {"kind": "bidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": 50.0},
+        "integrator": {"kind": "periodic", "tolerance": 1e-9},
+    }
