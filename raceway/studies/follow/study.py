@@ -119,7 +119,7 @@ class _Walk:
                 end for end in (parameter.first, parameter.last) if (there.parameter - end) * (here.parameter - end) < 0.0
             ]
             if beyond:
-                there, size = located(self.branch, here, there, size, lambda point, end=beyond[-1]: point.parameter - end)
+                there, size = located(self.branch, here, there, size, _reached(beyond[-1]))
             self._between(here, there, size)
             self.arc += size
             self._tell(there)
@@ -173,3 +173,7 @@ class _Walk:
             if float(again.tangent @ point.tangent) > 0.9:
                 return again
         return point
+
+
+def _reached(end: float) -> Callable[[Point], float]:
+    return lambda point: float(point.parameter - end)
