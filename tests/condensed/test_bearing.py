@@ -211,3 +211,16 @@ def test_rings_that_lag_by_more_than_the_stated_error_are_told(speed_rpm, told):
     lag = result.to_dict()["model"]["inertia"]["inner_supported_error"]
     assert lag == pytest.approx((speed_rpm / 60.0 / 2140.0) ** 2, rel=0.05) and result.error["total"] < 2e-3
     assert any("inner ring follows at once" in text for text in result.warnings) is told
+
+
+@pytest.mark.slow
+def test_the_damping_of_an_equilibrium_is_that_of_its_motion():
+    """Balls and elastic rings move with the ring, slowly: C of a motion of 1 N at 10 Hz, which knows nothing of the matrix."""
+    tables = {
+        "bearing": {"preset": "B7206C"}, "bodies": {"kind": "condensed"}, "contact": {"damping": 300.0}, "load": {"axial": 1000.0},
+        "kinematics": {"spin_speed_rpm": 20000.0}, "rotor": {"mass": 2.0}, "integrator": {"kind": "periodic"},
+        "supports": {"tilt": "locked", "axial": "displacement"},
+        "excitation": {"kind": "bidirectional", "speed_rpm": 600.0, "amplitude": "constant", "force": 1.0},
+    }  # fmt: skip
+    result = run(scene_from_dict(tables))
+    assert result.identification.equivalent_damping == pytest.approx(result.equilibrium.damping[1, 1], rel=1e-5)
