@@ -10,12 +10,15 @@ import pytest
 
 import raceway as rw
 from raceway.core.periodic.branch import Branch
+from raceway.core.periodic.direct import directly
+from raceway.core.periodic.doubling import doubled
 from raceway.core.periodic.sampling import displacements
-from raceway.core.periodic.special import FOLD, PAIR, special_points
+from raceway.core.periodic.special import DOUBLING, FOLD, PAIR, special_points
 from raceway.errors import SceneError
+from raceway.studies.follow.instead import QUASI, REPEATS, WANDERS, judged
 from validation.command_line import invoke
 from validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
-from validation.oscillators import Oscillator, natural_frequency
+from validation.oscillators import Oscillator, Pressed, natural_frequency
 from validation.reference.harmonic_balance import harmonic_balance
 
 
@@ -92,6 +95,79 @@ def test_every_fold_is_between_stable_and_unstable(strong):
         assert abs(one.tangent[-1]) < 1e-6
         assert {point.floquet.verdict for point in near} == {"stable", "unstable"}
         assert (near[0].parameter - one.parameter) * (near[1].parameter - one.parameter) > 0.0
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    """A mass on a Hertzian contact under a force near twice its natural frequency: the period doubles."""
+    one = Pressed()
+    q = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+    first = directly(one.problem(2.3), q, one.problem(2.3).system.evaluate(q).stiffness, 1e-8).solved
+    branch = Branch(one.problem, 0.1, first.size, 1e-7, 512, aim=1e-3)
+    _, found = walked(branch, first, 2.3, lambda p: p.parameter < 1.7, 0.1, -1.0)
+    return one, branch, found
+
+
+def test_period_doublings_of_a_hertzian_contact(pressed):
+    """Either side of twice the natural frequency, which the mean softening takes down; one multiplier is -1 there."""
+    _, _, found = pressed
+    assert [special.kind for special in found] == [DOUBLING, DOUBLING]
+    assert found[0].point.parameter > 2.0 > found[1].point.parameter
+    for special in found:
+        assert np.abs(special.point.floquet.of_span + 1.0).min() < 1e-6
+
+
+def test_the_doubled_orbit_by_a_poincare_section(pressed):
+    """2000 turns of DOP853 that begin 1 % off the orbit, whose disturbances decay by e^-30 meanwhile."""
+    one, branch, found = pressed
+    longer, here = doubled(branch, found[0].point)
+    size = 0.05
+    for _ in range(100):
+        here = longer.step(here, size)
+        size *= longer.growth(here)
+        if abs(here.parameter - found[0].point.parameter) > 0.05:
+            break
+    assert here.floquet.verdict == "stable"
+    path, w = here.solved.path, here.solved.problem.speed
+    section = one.section(here.parameter, (1.01 * path.q[0, 0], 1.01 * w * path.v[0, 0]), 2000)
+    amplitude = here.solved.size
+    # Which of the two spans comes first depends on where the integration begins.
+    last = section[-2:] if np.abs(section[-1, 0] - path.q[0, 0]) > np.abs(section[-2, 0] - path.q[0, 0]) else section[-3:-1]
+    states = np.array([displacements(here.solved, np.array([0.0, 2.0 * np.pi]))[:, 0]])[0]
+    assert abs(states[0] - states[1]) > 0.1 * amplitude  # the period is two turns, not one
+    assert np.abs(last[:, 0] - states).max() < 1e-5 * amplitude
+
+
+@pytest.mark.parametrize(
+    ("kind", "period", "second"), [(REPEATS, 1, None), (REPEATS, 3, None), (QUASI, None, 0.1234567), (WANDERS, None, None)]
+)
+def test_sections_are_told_apart(kind, period, second):
+    """A point, three points, a closed curve with harmonics, and the logistic map at 3.9."""
+    k = np.arange(512)
+    if kind == REPEATS:
+        section = np.stack([(k % period) * 0.3, np.ones(len(k))], axis=1)
+    elif kind == QUASI:
+        angle = 2.0 * np.pi * second * k
+        section = np.stack([np.cos(angle) + 0.3 * np.cos(2.0 * angle), np.sin(angle) + 0.1 * np.sin(3.0 * angle)], axis=1)
+    else:
+        x = [0.3]
+        while len(x) < 513:
+            x.append(3.9 * x[-1] * (1.0 - x[-1]))
+        section = np.stack([x[:-1], x[1:]], axis=1)
+    told = judged(section, 1.0)
+    assert told[:2] == (kind, period)
+    if second is not None:
+        assert told[2] == pytest.approx(second, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_beyond_a_neimark_sacker_point_the_motion_is_quasi_periodic():
+    """At its beginning the second frequency is the angle of the pair that crossed; by another second-order method."""
+    found = rw.follow(SCENE, "excitation.speed_rpm=21000:22500", turns=1500)
+    (one,) = found.instead
+    pairs = [label.angle for label in found.labels if label.kind == PAIR]
+    assert one.kind == QUASI
+    assert min(pairs) < 2.0 * np.pi * one.second < max(pairs)
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,11 @@ of x, beside a linear spring and a dashpot, under F cos(w t).
 
 from __future__ import annotations
 
+import math
+
 import attrs
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 from scipy.special import beta
 
@@ -108,3 +111,43 @@ def natural_frequency(factor: float, exponent: float, mass: float, amplitude: np
         / (n + 1.0)
     )
     return np.asarray(2.0 * np.pi / period)
+
+
+@attrs.frozen
+class Pressed:
+    """A mass pressed on a Hertzian contact: m x'' + c x' + b max(x, 0)^1.5 = P (1 + part cos(w t)), b = 1, m = 1, P = 1.
+
+    Attributes
+    ----------
+    damping : ratio to critical damping of small vibrations;  part : amplitude of the force over the load
+    """
+
+    damping: float = 0.005
+    part: float = 0.4
+
+    @property
+    def natural(self) -> float:
+        """w of small vibrations about x = 1: m w^2 = 3/2."""
+        return float(np.sqrt(1.5))
+
+    def problem(self, ratio: float) -> Problem:
+        """Under a force at ``ratio`` times the natural frequency."""
+        one, w = np.zeros((5, 5)), ratio * self.natural
+        one[0, 0] = 2.0 * self.damping * self.natural
+        made = attrs.evolve(
+            contact_system(1.0), law_params=np.full((2, 1), 1.0), mass=np.eye(5), damping=one, force=along_x,
+            force_params=np.array([self.part, w]),
+        )  # fmt: skip
+        system = by_address(made)
+        return Problem(system, w, one_turn(system))
+
+    def section(self, ratio: float, first: tuple[float, float], turns: int) -> np.ndarray:
+        """(turns + 1, 2) x and x' once a turn, by DOP853, from a state at the force's maximum."""
+        w, c, part = ratio * self.natural, 2.0 * self.damping * self.natural, self.part
+
+        def rate(t: float, state: np.ndarray) -> tuple[float, float]:
+            x, v = float(state[0]), float(state[1])
+            return v, 1.0 + part * math.cos(w * t) - c * v - (x**1.5 if x > 0.0 else 0.0)
+
+        times = 2.0 * np.pi / w * np.arange(turns + 1)
+        return np.asarray(solve_ivp(rate, (0.0, times[-1]), first, "DOP853", times, rtol=1e-9, atol=1e-11).y.T)

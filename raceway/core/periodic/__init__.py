@@ -15,6 +15,7 @@ neighbour       a first guess from the motion of a similar problem
 refinement      meshes halved where the error is made; the error that is left
 branch          pseudo-arclength continuation over any parameter, with folds
 special         folds, branch points, period doublings and Neimark-Sacker points of a branch, located
+doubling        the branch of twice the period at a period doubling
 direct          a motion from a first guess, at once or under a growing force
 from_rest       the branch that grows out of rest with the force
 detour          a motion reached from another speed

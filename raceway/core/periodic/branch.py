@@ -47,6 +47,7 @@ class Point:
     tangent : (2 n + 1,) direction of the branch in scaled state and parameter;  folded : the parameter turned back since
         the point before
     deviation : of the state at the start from its prediction, over the motion's size
+    strayed : length from the prediction to the point, in units of the arc
     highest : order of the fastest vibration, which ``transfer`` is fit for; 0: as exact as the mesh
     """
 
@@ -56,6 +57,7 @@ class Point:
     tangent: np.ndarray
     folded: bool
     deviation: float = 0.0
+    strayed: float = 0.0
     highest: float = 0.0
 
     @cached_property
@@ -97,7 +99,22 @@ class Branch:
         across = np.zeros(n2 + 1)
         across[-1] = sense
         _, _, tangent, linear = self._correct(solved.path, parameter, across, None)
-        return Point(parameter, linear, self._estimate(linear, tangent).error, tangent, False, 0.0, self._order(linear))
+        return Point(parameter, linear, self._estimate(linear, tangent).error, tangent, False, highest=self._order(linear))
+
+    def along(self, path: Path, parameter: float, tangent: np.ndarray) -> Point:
+        """The point of an orbit that is known, with a direction to leave it by.
+
+        Raises
+        ------
+        ConvergenceError
+            The path is none of forces that have values.
+        """
+        problem = self.problem_at(parameter)
+        linearised = self._linearise(problem, path, parameter)
+        if linearised is None:
+            raise ConvergenceError("the balls find no place between the races")
+        solved = Solved(problem, path, linearised[0], float(np.abs(path.v / problem.weight).max()), True, 0, 0.0)
+        return Point(parameter, solved, 0.0, tangent, False, highest=self._order(solved))
 
     def follow(self, first: Point, step: float, longest: float | None = None) -> Iterator[Point]:
         """Points from ``first`` on, one by one, for as long as they are asked for.
@@ -165,7 +182,10 @@ class Branch:
         folded = tangent[-1] * here.tangent[-1] < 0.0
         off = np.abs([path.q[0] - moved.q[0], path.v[0] - moved.v[0]]) / last.problem.weight
         deviation = float(off.max()) / max(last.size, 1e-300)
-        return Point(parameter, last, found.error, tangent, folded, deviation, self._order(last))
+        free = last.problem.free
+        state = np.concatenate([(path.q[0] - moved.q[0])[free], (path.v[0] - moved.v[0])[free]]) / self.length
+        strayed = float(np.hypot(np.linalg.norm(state), (parameter - at) / self.unit))
+        return Point(parameter, last, found.error, tangent, folded, deviation, strayed, self._order(last))
 
     def crossing(self, point: Point) -> float:
         """Determinant of the bordered problem, which changes its sign where another branch crosses, and not at a fold."""

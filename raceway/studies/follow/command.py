@@ -31,6 +31,8 @@ class FollowOptions(NamedTuple):
     over: str
     points: int
     aim: float
+    doubled: bool
+    turns: int
     changes: tuple[str, ...]
     out: Path | None
     pictures: bool
@@ -47,6 +49,11 @@ class FollowOptions(NamedTuple):
 @click.option(
     "--aim", type=click.FloatRange(1e-6, 0.1), default=1e-3, show_default=True, metavar="PART",
     help="Deviation from the tangent over the orbit's size that steps are chosen for.",
+)  # fmt: skip
+@click.option("--doubled", is_flag=True, help="Follow the branches of twice the period at period doublings, too.")
+@click.option(
+    "--turns", type=click.IntRange(0, 1_000_000), default=0, show_default=True, metavar="N",
+    help="Integrate so many turns from beside the most unstable orbit of each unstable stretch: what happens instead.",
 )  # fmt: skip
 @out_option(f"{RESULTS}/TITLE-follow")
 @click.option("--pictures/--no-pictures", default=True, help="Draw amplitude and K over the key as PNG (default).")
@@ -76,7 +83,7 @@ def follow(given: FollowOptions) -> int:
         from raceway.studies.follow.front import follow as study
 
         found = study(
-            tables, given.over, points=given.points, aim=given.aim, plugins=given.plugins, progress=progress,
+            tables, given.over, points=given.points, aim=given.aim, doubled=given.doubled, turns=given.turns, plugins=given.plugins, progress=progress,
         )  # fmt: skip
     content, files = found.to_dict(), list[str]()
     failed = attempt(lambda: found.write(folder, pictures), files)

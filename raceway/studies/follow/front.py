@@ -29,6 +29,8 @@ def follow(
     *changes: Change,
     points: int = POINTS,
     aim: float = AIM,
+    doubled: bool = False,
+    turns: int = 0,
     out: str | Path | None = None,
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
@@ -42,6 +44,8 @@ def follow(
     changes : of the scene, as ``raceway.evolve`` takes them
     points : orbits at most
     aim : deviation of an orbit from its prediction along the tangent, over its size, that steps are chosen for
+    doubled : follow the branches of twice the period that leave it at period doublings, too
+    turns : of a time integration from beside the most unstable orbit of each unstable stretch; 0: none
     out : folder for follow.json, follow.csv and follow.png; None: nothing is written
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
@@ -50,7 +54,8 @@ def follow(
     -------
     Followed
         ``rows`` with K [N/m], C [N s/m], amplitude [m] and verdict; ``labels``: folds, period doublings, Neimark-Sacker points,
-        branch points and peaks; ``unstable`` stretches; ``end``: why the branch ends before the last value, "" where it does not
+        branch points and peaks; ``unstable`` stretches, ``instead``: what
+        happens there; ``doubled`` branches; ``end``: why the branch ends before the last value, "" where it does not
 
     Raises
     ------
@@ -80,7 +85,7 @@ def follow(
     tables = plain_tables(scene, *changes, registry=registry)
     parameter = parameter_of(tables, over, registry)
     with telling(progress) as told:
-        found = study(parameter, Rule(points, aim), told)
+        found = study(parameter, Rule(points, aim, doubled, turns), told)
     if out is not None:
         found.write(out)
     return found

@@ -13,22 +13,31 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_STABLE, _UNSTABLE, _OTHER, _INSTEAD = "#0b5fa5", "#c8501e", "#2a8f5b", "#555f6b"
+_STABLE, _UNSTABLE, _OTHER, _FAINT = "#0b5fa5", "#c8501e", "#2a8f5b", "#b58a00"
 #: Kind of a label -> mark.
 _MARKS = {"fold": "s", "branch point": "D", "period doubling": "^", "Neimark-Sacker": "o", "contact opens": "x", "peak": "+"}
 #: Quantities: column, factor, words.
 _PANELS = (("swing", 1e6, "amplitude of all harmonics  [µm]"), ("stiffness", 1e-6, "K  [N/µm]"))
+#: Poincaré sections at most.
+_SECTIONS = 4
 #: Peaks that are labelled at most, the highest.
 _PEAKS = 6
 
 
 def draw(content: ReadTables) -> Figure:
     """Two panels over the key, of the tables of ``raceway follow --json``."""
-    figure = new_figure(9.6, 8.0)
-    panels = figure.subplots(2, 1, sharex=True)
+    shown = [x for one in (content, *content["doubled"]) for x in one["instead"] if x["section"]][:_SECTIONS]
+    figure = new_figure(9.6, 8.0 if not shown else 10.6)
+    places = figure.add_gridspec(3 if shown else 2, max(len(shown), 1))
+    panels = [figure.add_subplot(places[0, :])]
+    panels.append(figure.add_subplot(places[1, :], sharex=panels[0]))
+    for k, one in enumerate(shown):
+        _section(figure.add_subplot(places[2, k]), one)
     for panel, (column, factor, words) in zip(panels, _PANELS, strict=True):
+        for one in content["doubled"]:
+            _curve(panel, one["rows"], column, factor, ", twice the period")
         _curve(panel, content["rows"], column, factor, "")
-        _marks(panel, content["labels"], column, factor)
+        _marks(panel, [x for one in (content, *content["doubled"]) for x in one["labels"]], column, factor)
         panel.set_ylabel(words)
         panel.grid(True, color="#e3e7eb", linewidth=0.8)
         panel.set_axisbelow(True)
@@ -55,7 +64,7 @@ def _curve(panel: Axes, rows: Sequence[ReadTables], column: str, factor: float, 
         bad = _unstable(rows[first])
         panel.plot(
             [row["parameter"] for row in piece], [factor * row[column] for row in piece],
-            color=_UNSTABLE if bad else _STABLE, linestyle="--" if bad else "-", linewidth=1.4,
+            color=(_FAINT if bad else _OTHER) if words else (_UNSTABLE if bad else _STABLE), linestyle="--" if bad else "-", linewidth=1.4,
             label=("unstable" if bad else "stable") + words,
         )  # fmt: skip
         first = k
@@ -73,3 +82,12 @@ def _marks(panel: Axes, labels: Sequence[ReadTables], column: str, factor: float
                 [x["parameter"] for x in chosen], [factor * x[column] for x in chosen], linestyle="", marker=mark,
                 markersize=6, color="black", markerfacecolor="white", label=kind,
             )  # fmt: skip
+
+
+def _section(panel: Axes, one: ReadTables) -> None:
+    """Once a turn: y and its velocity over w."""
+    panel.plot([1e6 * y for y, _ in one["section"]], [1e6 * v for _, v in one["section"]], ".", markersize=3, color=_OTHER)
+    panel.set_title(f"{one['parameter']:.6g}: {one['kind']}", fontsize=9)
+    panel.set_xlabel("y once a turn  [µm]", fontsize=8)
+    panel.set_ylabel("velocity / w  [µm]", fontsize=8)
+    panel.tick_params(labelsize=8)

@@ -12,6 +12,7 @@ import attrs
 from raceway.core.periodic.branch import Point
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
+from raceway.studies.follow.instead import Instead
 from raceway.studies.follow.row import COLUMNS, Row
 
 #: Kinds of labels beside the special points: a local maximum of the swing, a first contact that opens on the way.
@@ -46,7 +47,8 @@ class Followed:
     key : of the scene, followed from ``first`` towards ``last``;  span_deg : that the orbits repeat themselves after
     rows : orbits in the order of the branch;  labels : special points and peaks
     end : why it ends before ``last``; "" where it reaches it
-    notes : what a user should know
+    notes : what a user should know;  worst : the most unstable orbit of each unstable stretch
+    doubled : branches of twice the period;  instead : what happens beside the orbits ``worst``
     """
 
     key: str
@@ -58,6 +60,9 @@ class Followed:
     labels: list[Label] = attrs.field(factory=list)
     end: str = ""
     notes: list[str] = attrs.field(factory=list)
+    worst: list[Point] = attrs.field(factory=list, repr=False)
+    doubled: list[Followed] = attrs.field(factory=list)
+    instead: list[Instead] = attrs.field(factory=list)
 
     @property
     def unstable(self) -> list[tuple[Row, Row]]:
@@ -90,6 +95,8 @@ class Followed:
             "unstable": [[one.parameter, two.parameter] for one, two in self.unstable],
             "end": self.end,
             "notes": self.notes,
+            "instead": [one.to_dict() for one in self.instead],
+            "doubled": [one.to_dict() for one in self.doubled],
         }
 
     def write(self, folder: str | Path, picture: bool = True) -> list[Path]:
@@ -102,9 +109,10 @@ class Followed:
         """
         folder, content = Path(folder), self.to_dict()
         text = io.StringIO()
-        table = csv.DictWriter(text, list(content["rows"][0]), lineterminator="\n")
+        rows = [{"branch": k, **row} for k, one in enumerate((content, *content["doubled"])) for row in one["rows"]]
+        table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         table.writeheader()
-        table.writerows(content["rows"])
+        table.writerows(rows)
         files = [
             write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), folder / "follow.json"),
             write_whole(text.getvalue().encode(), folder / "follow.csv"),

@@ -25,6 +25,11 @@ def follow_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
         parts.append(Words(f"{len(labels) - _SHOWN} more special points and peaks are in the file", "dim"))
     for one, two in content["unstable"]:
         parts.append(Words(f"unstable from {one:.6g} to {two:.6g} along the branch"))
+    for k, other in enumerate(content["doubled"], 1):
+        ends = [row["parameter"] for row in (other["rows"][0], other["rows"][-1])]
+        parts.append(Words(f"branch {k} of twice the period: {len(other['rows'])} orbits, {ends[0]:.6g} to {ends[1]:.6g}"))
+    for one in (x for branch in (content, *content["doubled"]) for x in branch["instead"]):
+        parts.append(Words(f"beside the unstable orbit at {one['parameter']:.6g}: {one['words']}"))
     parts += [Words(text) for text in content["notes"]]
     if content["end"]:
         parts.append(Words(content["end"], "bold"))

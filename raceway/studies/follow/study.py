@@ -1,31 +1,27 @@
-"""The branch of steady orbits over a key: points, special points, peaks, where contacts are lost, how it ends."""
+"""The branch of steady orbits over a key, with the branches of twice the period that leave it, and what happens where it is unstable."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import attrs
 import numpy as np
 
 from raceway.core.periodic.branch import Branch, Point
-from raceway.core.periodic.collocation import Solved, solve
-from raceway.core.periodic.direct import MOST, directly, highest_order, mesh_of
-from raceway.core.periodic.problem import Path, Problem
-from raceway.core.periodic.sampling import motion_at
+from raceway.core.periodic.collocation import Solved
+from raceway.core.periodic.direct import MOST, directly, highest_order
+from raceway.core.periodic.doubling import apart, doubled
+from raceway.core.periodic.problem import Problem
 from raceway.core.periodic.search import find
-from raceway.core.periodic.special import located, special_points
+from raceway.core.periodic.special import DOUBLING
 from raceway.errors import ConvergenceError
+from raceway.studies.follow.instead import instead
 from raceway.studies.follow.parameter import Parameter
-from raceway.studies.follow.result import OPENS, PEAK, Followed, Label
-from raceway.studies.follow.row import growth_of_swing, openness, row_of
+from raceway.studies.follow.result import Followed
+from raceway.studies.follow.walk import ERROR, OnProgress, Walk
 
-#: Error of the first orbit over its size, and of all others.
-_TOLERANCE, _ERROR = 1e-8, 1e-6
-#: Error of an orbit over its size at which the branch is left.
-_LOST = 1e-3
-#: First step, and most change of the key in a step, in tenths of the range.
-_FIRST, _MOST = 0.02, 0.5
-OnProgress = Callable[[str, int, int], None]
+#: Error of the first orbit over its size.
+_TOLERANCE = 1e-8
+#: First step, in tenths of the range and sizes of the first orbit.
+_FIRST = 0.02
 
 
 @attrs.frozen
@@ -36,10 +32,14 @@ class Rule:
     ----------
     points : that it may have at most
     aim : deviation of an orbit's start from the prediction along the tangent, over the orbit's size: steps are chosen for it
+    doubled : whether branches of twice the period are followed, too
+    turns : of the time integration from the most unstable orbit of each unstable stretch; 0: none
     """
 
     points: int = 1000
-    aim: float = 0.02
+    aim: float = 1e-3
+    doubled: bool = False
+    turns: int = 0
 
 
 def follow(parameter: Parameter, rule: Rule, on_progress: OnProgress | None = None) -> Followed:
@@ -63,11 +63,54 @@ def follow(parameter: Parameter, rule: Rule, on_progress: OnProgress | None = No
     first = _first(problem, q, tangent)
     unit = abs(parameter.last - parameter.first) / 10.0
     fastest = highest_order(problem, tangent) * problem.speed
-    branch = Branch(lambda p: parameter.problem_at(p, symmetry), unit, first.size, _ERROR, MOST, None, fastest, rule.aim)
+    branch = Branch(lambda p: parameter.problem_at(p, symmetry), unit, first.size, ERROR, MOST, None, fastest, rule.aim)
     curve = Followed(parameter.key, parameter.first, parameter.last, float(np.degrees(symmetry.span)), model.scene.title)
-    walk = _Walk(branch, curve, parameter, mass)
-    walk.go(first, rule, on_progress)
+    sense = 1.0 if parameter.last > parameter.first else -1.0
+    Walk(branch, curve, parameter, mass, rule.points).go(branch.start(first, parameter.first, sense), _FIRST, on_progress)
+    if rule.doubled:
+        _doubled(branch, curve, parameter, mass, rule, on_progress)
+    if rule.turns:
+        for one in (curve, *curve.doubled):
+            one.instead += [instead(point, rule.turns, on_progress) for point in one.worst]
     return curve
+
+
+def _doubled(
+    branch: Branch, curve: Followed, parameter: Parameter, mass: float, rule: Rule, on_progress: OnProgress | None
+) -> None:
+    """The branches of twice the period; one that ends at another period doubling is that one's, too."""
+    met: list[float] = []
+    for label in curve.labels:
+        point = label.point
+        if label.kind != DOUBLING or point is None or any(abs(point.parameter - p) < 1e-6 * branch.unit for p in met):
+            continue
+        met.append(point.parameter)
+        one = attrs.evolve(
+            curve, span_deg=2.0 * curve.span_deg, rows=[], labels=[], notes=[], worst=[], doubled=[], instead=[]
+        )
+        curve.doubled.append(one)
+        longer, first = doubled(branch, point)
+        halves = _Halves()
+        Walk(longer, one, parameter, mass, rule.points).go(first, _FIRST, on_progress, halves.together)
+        if halves.met:
+            one.end = ""
+            others = [other.row.parameter for other in curve.labels if other.kind == DOUBLING]
+            met.append(min(others, key=lambda p: abs(p - one.rows[-1].parameter)))
+
+
+@attrs.define
+class _Halves:
+    """Whether the two halves of a doubled orbit have come together again, which they do at another period doubling."""
+
+    first: np.ndarray | None = None
+    met: bool = False
+
+    def together(self, point: Point) -> bool:
+        """Asked for each point of the branch in its order."""
+        here = apart(point)
+        self.first = here if self.first is None else self.first
+        self.met = float(here @ self.first) <= 0.0
+        return self.met
 
 
 def _first(problem: Problem, q: np.ndarray, tangent: np.ndarray) -> Solved:
@@ -76,104 +119,3 @@ def _first(problem: Problem, q: np.ndarray, tangent: np.ndarray) -> Solved:
         return directly(problem, q, tangent, _TOLERANCE).solved
     except ConvergenceError:
         return find(problem, q, tangent, _TOLERANCE).refined.solved
-
-
-@attrs.define(eq=False)
-class _Walk:
-    """Follows a branch and writes down what it meets.
-
-    Attributes
-    ----------
-    mass : m of K [kg]
-    """
-
-    branch: Branch
-    curve: Followed
-    parameter: Parameter
-    mass: float
-    arc: float = 0.0
-
-    def go(self, first: Solved, rule: Rule, on_progress: OnProgress | None) -> None:
-        """Points one by one, until the range or the number of points is left, or the branch ends."""
-        self._go(first, rule, on_progress)
-        self.curve.labels.sort(key=lambda label: label.row.arc)
-
-    def _go(self, first: Solved, rule: Rule, on_progress: OnProgress | None) -> None:
-        curve, parameter = self.curve, self.parameter
-        sense = 1.0 if parameter.last > parameter.first else -1.0
-        here = self.branch.start(first, parameter.first, sense)
-        self._tell(here)
-        size, least = _FIRST, 1e-6 * _FIRST
-        while len(curve.rows) < rule.points:
-            if on_progress is not None:
-                on_progress("orbits", len(curve.rows), rule.points)
-            try:
-                there = self.branch.step(here, size)
-            except ConvergenceError as why:
-                size *= 0.5
-                if size < least:
-                    curve.end = f"the branch ends at {here.parameter:.6g}: {why}"
-                    return
-                continue
-            beyond = [
-                end for end in (parameter.first, parameter.last) if (there.parameter - end) * (here.parameter - end) < 0.0
-            ]
-            if beyond:
-                there, size = located(self.branch, here, there, size, _reached(beyond[-1]))
-            self._between(here, there, size)
-            self.arc += size
-            self._tell(there)
-            if there.error > _LOST:
-                curve.end = (
-                    f"left at {there.parameter:.6g}: no mesh follows the orbit closer than {there.error:.1e} of its size"
-                )
-                if curve.rows[-1].lost:
-                    curve.end += f" where up to {curve.rows[-1].lost} balls lose their inner race at once"
-                return
-            if beyond:
-                curve.end = "" if beyond[-1] == parameter.last else f"the branch comes back to {parameter.first:.6g}"
-                return
-            size = min(size * self.branch.growth(there), _MOST / max(abs(there.tangent[-1]), 1e-300))
-            here = self._meshed(there)
-        curve.end = f"left after {rule.points} orbits at {here.parameter:.6g} (--points)"
-
-    def _tell(self, point: Point) -> None:
-        self.curve.rows.append(row_of(point, self.arc, self.mass))
-
-    def _between(self, one: Point, two: Point, size: float) -> None:
-        """Special points, peaks and the loss of contacts between two neighbours."""
-        curve, branch = self.curve, self.branch
-        try:
-            for special in special_points(branch, one, two, size):
-                row = row_of(special.point, self.arc + special.length, self.mass)
-                curve.labels.append(Label(special.kind, row, special.angle, special.point))
-            if growth_of_swing(branch, one) > 0.0 >= growth_of_swing(branch, two):
-                peak, length = located(branch, one, two, size, lambda point: growth_of_swing(branch, point))
-                curve.labels.append(Label(PEAK, row_of(peak, self.arc + length, self.mass)))
-            if (openness(one.solved)[0] < 0.0) != (openness(two.solved)[0] < 0.0):
-                opens, length = located(branch, one, two, size, lambda point: openness(point.solved)[0])
-                curve.labels.append(Label(OPENS, row_of(opens, self.arc + length, self.mass)))
-        except (ConvergenceError, ValueError) as why:
-            curve.notes.append(f"between {one.parameter:.6g} and {two.parameter:.6g}: not located ({why})")
-
-    def _meshed(self, point: Point) -> Point:
-        """The same orbit on a mesh that is fit for the fastest vibration at the present speed."""
-        problem, path = point.solved.problem, point.solved.path
-        nodes = mesh_of(problem, point.highest)
-        wanted, there = len(nodes) - 1, path.intervals
-        if wanted > there or 2 * wanted < there and point.error < 1e-2 * _ERROR:
-            q, v, *_ = motion_at(problem, path, nodes)
-            *_, a, ball, rate = motion_at(problem, path, problem.angles(nodes))
-            parts = (np.ascontiguousarray(part) for part in (q, v, a, ball, rate))
-            try:
-                solved = solve(problem, Path(nodes, *parts), 1e-2 * _ERROR)
-                again = self.branch.start(solved, point.parameter, float(np.sign(point.tangent[-1])))
-            except ConvergenceError:
-                return point
-            if float(again.tangent @ point.tangent) > 0.9:
-                return again
-        return point
-
-
-def _reached(end: float) -> Callable[[Point], float]:
-    return lambda point: float(point.parameter - end)

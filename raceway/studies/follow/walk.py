@@ -1,0 +1,138 @@
+"""Follows one branch and writes down what it meets: points, special points, peaks, contacts that open, how it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import attrs
+import numpy as np
+
+from raceway.core.periodic.branch import Branch, Point
+from raceway.core.periodic.collocation import solve
+from raceway.core.periodic.direct import mesh_of
+from raceway.core.periodic.problem import Path
+from raceway.core.periodic.sampling import motion_at
+from raceway.core.periodic.special import located, special_points
+from raceway.errors import ConvergenceError
+from raceway.studies.follow.parameter import Parameter
+from raceway.studies.follow.result import OPENS, PEAK, Followed, Label
+from raceway.studies.follow.row import growth_of_swing, openness, row_of
+
+#: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
+ERROR, _LOST = 1e-6, 1e-3
+#: Length from the prediction to a point over the step, from which it may be another branch's.
+_STRAYED = 0.2
+#: Most change of the key in a step, in tenths of the range.
+_MOST = 0.5
+OnProgress = Callable[[str, int, int], None]
+
+
+@attrs.define(eq=False)
+class Walk:
+    """Follows a branch and writes down what it meets.
+
+    Attributes
+    ----------
+    mass : m of K [kg];  points : orbits at most
+    """
+
+    branch: Branch
+    curve: Followed
+    parameter: Parameter
+    mass: float
+    points: int
+    arc: float = 0.0
+
+    def go(
+        self, here: Point, size: float, on_progress: OnProgress | None, closed: Callable[[Point], bool] | None = None
+    ) -> None:
+        """Points one by one, until the range or the number of points is left, the branch ends, or ``closed`` says so."""
+        self._go(here, size, on_progress, closed)
+        self.curve.labels.sort(key=lambda label: label.row.arc)
+
+    def _go(self, here: Point, size: float, on_progress: OnProgress | None, closed: Callable[[Point], bool] | None) -> None:
+        curve, least = self.curve, 1e-6 * size
+        self._tell(here)
+        while len(curve.rows) < self.points:
+            if on_progress is not None:
+                on_progress("orbits", len(curve.rows), self.points)
+            try:
+                there = self.branch.step(here, size)
+                if there.strayed > _STRAYED * size:
+                    raise ConvergenceError("the branch bends too much for the step")
+                there, size, end = self._within(here, there, size)
+            except ConvergenceError as why:
+                size *= 0.5
+                if size < least:
+                    curve.end = f"the branch ends at {here.parameter:.6g}: {why}"
+                    return
+                continue
+            if closed is not None and closed(there):
+                return
+            self._between(here, there, size)
+            self.arc += size
+            self._tell(there)
+            if there.error > _LOST:
+                curve.end = (
+                    f"left at {there.parameter:.6g}: no mesh follows the orbit closer than {there.error:.1e} of its size"
+                )
+                if curve.rows[-1].lost:
+                    curve.end += f" where up to {curve.rows[-1].lost} balls lose their inner race at once"
+                return
+            if end is not None:
+                curve.end = "" if end == self.parameter.last else f"the branch comes back to {end:.6g}"
+                return
+            size = min(size * self.branch.growth(there), _MOST / max(abs(there.tangent[-1]), 1e-300))
+            here = self._meshed(there)
+        curve.end = f"left after {self.points} orbits at {here.parameter:.6g} (--points)"
+
+    def _within(self, one: Point, two: Point, size: float) -> tuple[Point, float, float | None]:
+        """The second point, or that at the end of the range between the two; the step's length, and that end."""
+        for end in (self.parameter.last, self.parameter.first):
+            if (two.parameter - end) * (one.parameter - end) < 0.0:
+                return *located(self.branch, one, two, size, lambda point, end=end: point.parameter - end), end
+        return two, size, None
+
+    def _tell(self, point: Point) -> None:
+        row, before = row_of(point, self.arc, self.mass), self.curve.rows[-1] if self.curve.rows else None
+        self.curve.rows.append(row)
+        if row.verdict == "unstable":
+            worst = self.curve.worst
+            if before is None or before.verdict != "unstable":
+                worst.append(point)
+            elif row.multiplier > worst[-1].floquet.largest:
+                worst[-1] = point
+
+    def _between(self, one: Point, two: Point, size: float) -> None:
+        """Special points, peaks and the loss of contacts between two neighbours."""
+        curve, branch = self.curve, self.branch
+        try:
+            for special in special_points(branch, one, two, size):
+                row = row_of(special.point, self.arc + special.length, self.mass)
+                curve.labels.append(Label(special.kind, row, special.angle, special.point))
+            if growth_of_swing(branch, one) > 0.0 >= growth_of_swing(branch, two):
+                peak, length = located(branch, one, two, size, lambda point: growth_of_swing(branch, point))
+                curve.labels.append(Label(PEAK, row_of(peak, self.arc + length, self.mass)))
+            if (openness(one.solved)[0] < 0.0) != (openness(two.solved)[0] < 0.0):
+                opens, length = located(branch, one, two, size, lambda point: openness(point.solved)[0])
+                curve.labels.append(Label(OPENS, row_of(opens, self.arc + length, self.mass)))
+        except (ConvergenceError, ValueError) as why:
+            curve.notes.append(f"between {one.parameter:.6g} and {two.parameter:.6g}: not located ({why})")
+
+    def _meshed(self, point: Point) -> Point:
+        """The same orbit on a mesh that is fit for the fastest vibration at the present speed."""
+        problem, path = point.solved.problem, point.solved.path
+        nodes = mesh_of(problem, point.highest)
+        wanted, there = len(nodes) - 1, path.intervals
+        if wanted > there or 2 * wanted < there and point.error < 1e-2 * ERROR:
+            q, v, *_ = motion_at(problem, path, nodes)
+            *_, a, ball, rate = motion_at(problem, path, problem.angles(nodes))
+            parts = (np.ascontiguousarray(part) for part in (q, v, a, ball, rate))
+            try:
+                solved = solve(problem, Path(nodes, *parts), 1e-2 * ERROR)
+                again = self.branch.start(solved, point.parameter, float(np.sign(point.tangent[-1])))
+            except ConvergenceError:
+                return point
+            if float(again.tangent @ point.tangent) > 0.9:
+                return again
+        return point
