@@ -177,7 +177,10 @@ def of_a_branch() -> list[Figure]:
         for k, p in enumerate((1.0, 2.0, 3.0, 4.0, 3.8, 3.6, 4.2, 5.0))
     ]
     labels = [{**rows[k], "kind": kind} for k, kind in enumerate(followed._MARKS)]
-    return [followed.draw({"title": "made up", "key": "excitation.speed_rpm", "rows": rows, "labels": labels})]
+    section = {"parameter": 3.8, "kind": "quasi-periodic", "section": [[np.cos(k), np.sin(k)] for k in range(50)]}
+    twice = {"rows": [{**row, "swing": row["swing"] + 1e-6} for row in rows], "labels": labels[:2], "instead": []}
+    title = {"title": "made up", "key": "excitation.speed_rpm"}
+    return [followed.draw({**title, "rows": rows, "labels": labels, "instead": [section] * 2, "doubled": [twice]})]
 
 
 DRAWN: dict[object, Callable[[], list[Figure]]] = {

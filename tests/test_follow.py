@@ -204,6 +204,14 @@ def test_k_and_multipliers_by_other_methods(curve):
             assert np.abs(own - multiplier).min() < 1e-5
 
 
+def test_a_branch_does_not_jump_to_its_neighbour():
+    """Two sheets that differ by 0.1 % of the amplitude beside a fold: a branch that falls from one to the other meets its folds again."""
+    tables = {**SCENE, "rotor": {"mass": 2.0, "damping": 100.0}, "excitation": {**SCENE["excitation"], "force": 100.0}}
+    found = rw.follow(tables, "excitation.speed_rpm=30000:60000", points=120)
+    folds = [round(label.row.parameter, 2) for label in found.labels if label.kind == FOLD]
+    assert len(folds) == len(set(folds))
+
+
 def test_files_hold_every_number(curve, tmp_path):
     curve.write(tmp_path, picture=False)
     content = json.loads((tmp_path / "follow.json").read_text())

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.branch import Branch, Point
+from raceway.core.periodic.direct import directly, highest_order
 from raceway.core.periodic.sampling import displacements
 from raceway.core.ring.system import System
 from raceway.framework.registry import default_registry
@@ -97,8 +98,21 @@ def by_integration(point: Point, turns: int = 1) -> tuple[complex, np.ndarray, n
     return complex(FORCE / y), np.linalg.eigvals(flow), last[-1] - last[0]
 
 
-def beside(fold: Point, steps: tuple[float, ...] = (-3.0, 3.0)) -> list[Point]:
-    """Orbits on either side of a fold of ``SCENE``, some steps of the arc away."""
+def on_the_way(speed_rpm: float) -> Point:
+    """The orbit of ``SCENE`` that the linear response leads to at a speed."""
+    parameter = parameter_of({**SCENE}, OVER, default_registry())
+    _, equilibrium = parameter.settled(speed_rpm)
+    symmetry = parameter.symmetry(equilibrium.displacement)
+    problem = parameter.problem_at(speed_rpm, symmetry)
+    solved = directly(problem, equilibrium.displacement, equilibrium.stiffness, 1e-9).solved
+    fastest = highest_order(problem, equilibrium.stiffness) * problem.speed
+    return Branch(lambda p: parameter.problem_at(p, symmetry), 2950.0, solved.size, 1e-8, fastest=fastest).start(
+        solved, speed_rpm
+    )
+
+
+def beside(fold: Point, count: int = 1) -> list[Point]:
+    """Orbits on either side of a fold of ``SCENE``, some steps of 3 units of the arc away."""
     parameter = parameter_of({**SCENE}, OVER, default_registry())
     symmetry = fold.solved.problem.symmetry
     branch = Branch(
@@ -109,7 +123,10 @@ def beside(fold: Point, steps: tuple[float, ...] = (-3.0, 3.0)) -> list[Point]:
         fastest=fold.highest * fold.solved.problem.speed,
     )
     begin = attrs.evolve(fold, tangent=_again(branch, fold))
-    return [branch.step(begin, step) for step in steps]
+    found = [begin, begin]
+    for _ in range(count):
+        found = [branch.step(one, step) for one, step in zip(found, (-3.0, 3.0), strict=True)]
+    return found
 
 
 def _again(branch: Branch, fold: Point) -> np.ndarray:
