@@ -90,7 +90,7 @@ class Walk:
         """The second point, or that at the end of the range between the two; the step's length, and that end."""
         for end in (self.parameter.last, self.parameter.first):
             if (two.parameter - end) * (one.parameter - end) < 0.0:
-                return *located(self.branch, one, two, size, lambda point, end=end: point.parameter - end), end
+                return *located(self.branch, one, two, size, _reached(end)), end
         return two, size, None
 
     def _tell(self, point: Point) -> None:
@@ -136,3 +136,7 @@ class Walk:
             if float(again.tangent @ point.tangent) > 0.9:
                 return again
         return point
+
+
+def _reached(end: float) -> Callable[[Point], float]:
+    return lambda point: float(point.parameter - end)
