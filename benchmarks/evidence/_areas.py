@@ -19,7 +19,7 @@ AREAS = {
         core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__
         pipeline/motion pipeline/run pipeline/simulate pipeline/starting plugins/excitations plugins/identifiers""",
     "periodic": "core/periodic integrators/periodic pipeline/error/steady_motion",
-    "follow": "studies/follow core/periodic/branch core/periodic/special",
+    "follow": "studies/follow core/periodic/branch core/periodic/doubling core/periodic/special",
     "errors": "pipeline/error pipeline/plausibility",
     "condensed": """
         bodies/condensed bodies/patches core/condensed core/contact/half_space core/contact/sphere core/patches core/revolution/grooves
@@ -94,6 +94,7 @@ MEASURES = {
     "error_starts": "rigid motion errors",
     "expected_values": "rigid motion",
     "film": "film rigid motion",
+    "follow": "rigid motion periodic follow",
     "fuzz": "rigid motion periodic errors mesh plan scene",
     "hexahedron": "solids",
     "identified_stiffness": "rigid motion",
