@@ -26,7 +26,7 @@ class Block:
     mass : of the whole block [kg]
     """
 
-    ball_count, conservative = 0, False
+    ball_count, conservative, smooth = 0, False, False
 
     def __init__(
         self,

@@ -42,6 +42,7 @@ class SteppedElastic:
         contact = system.contact
         self.ball_count = ball_count
         self.conservative = contact is None or contact.friction is None
+        self.smooth = system.condensed is not None
         self.size: int = system.size
         self.threads = system.assembly.threads
         if look is None and contact is not None:

@@ -32,7 +32,7 @@ class SteppedBearing:
     ball_gain * p1 + ball_rate.
     """
 
-    size = 5
+    size, smooth = 5, False
 
     def __init__(self, system: Any) -> None:
         self.system = system

@@ -55,8 +55,10 @@ class Observation:
 class SteppedSystem(Protocol):
     """M a + C v + f(u, v) = load + excitation(t), with C constant and f anything.
 
-    1. ``size``: unknowns, vectors are (size,); ``ball_count``: Z; ``conservative``: forces have a potential.  Entries of
-       coordinates that are held may be anything in forces; ``solve`` and ``accelerations`` give zero there.
+    1. ``size``: unknowns, vectors are (size,); ``ball_count``: Z; ``conservative``: forces have a potential; ``smooth``: Newton's
+       method begins a step on the parabola through the displacements before, not at constant acceleration: for many modes that
+       steps do not resolve, whose accelerations alternate.  Entries of coordinates that are held may be anything in forces; ``solve``
+       and ``accelerations`` give zero there.
     2. ``begin(motion)``: the state that a motion stands for, with ``rest``, and all memory set to it; also for a motion that another run
        of the same system ended with, of which nothing may be lost.  ``motion(state)``: the way back, after ``commit``.
     3. ``outer_force(t)``: the excitation (5,) on the ring; ``external(t, scale)``: (size,) constant load + scale * excitation.
@@ -85,6 +87,8 @@ class SteppedSystem(Protocol):
     def ball_count(self) -> int: ...
     @property
     def conservative(self) -> bool: ...
+    @property
+    def smooth(self) -> bool: ...
     @property
     def threads(self) -> ThreadPool: ...
     def begin(self, motion: Motion) -> State: ...

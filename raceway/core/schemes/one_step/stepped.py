@@ -25,7 +25,7 @@ def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolera
     before: deque[np.ndarray] = deque(maxlen=3)
     for step in range(1, recorder.schedule.steps + 1):
         before.append(recorder.state.u)
-        start = 3.0 * (before[2] - before[1]) + before[0] if len(before) == 3 else None
+        start = 3.0 * (before[2] - before[1]) + before[0] if system.smooth and len(before) == 3 else None
         recorder.accept(_step(system, recorder, recorder.time_of(step), numbers, tolerance, start))
 
 
@@ -36,8 +36,7 @@ def _step(
 
     Parameters
     ----------
-    start : where Newton's method begins: the parabola through the displacements before.  Accelerations are no guide: those of modes
-        which the step does not resolve alternate.  None, in the first steps: constant acceleration.
+    start : where Newton's method begins; None: at constant acceleration
     """
     am, af, beta, gamma = numbers
     before, dt = recorder.state, recorder.schedule.dt
