@@ -94,9 +94,18 @@ def renew(
         No equilibrium, or loads and parameters that do not meet.
     """
     law, q, before = scene.contact.law, guess, np.zeros(2 * system.ball_count)
-    for _ in range(_LIMIT):
-        q = q if place is None else place(system, q)
-        q, ball, _ = system.settle(q)
+    for trial in range(_LIMIT):
+        try:
+            q = q if place is None else place(system, q)
+            q, ball, _ = system.settle(q)
+        except ConvergenceError as why:
+            if trial == 0:  # at standstill
+                raise
+            raise ConvergenceError(
+                f"contact law '{scene.contact.kind}' at the running speed: {why}. Give more load or a lower "
+                "speed, or options of the law that move its contacts less from those at standstill",
+                why.state,
+            ) from why
         now = system.without(CAGE).evaluate(q, ball=ball)
         force = now.contact_force
         if np.abs(force - before).max() <= _TOLERANCE * max(force.max(), 1e-300):
