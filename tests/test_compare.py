@@ -158,9 +158,24 @@ def test_json_table_and_picture(small, tmp_path):
     answer = json.loads(json.dumps(small.to_dict(), allow_nan=False))
     assert [axis["key"] for axis in answer["axes"]] == ["excitation.kind", "supports.tilt"]
     assert len(answer["rows"]) == 4 and answer["rows"][0]["result"]["schema"] == 1
-    assert [list(row) for row in small.table()] == [["kind", "tilt", "K N/µm", "|Z| N/µm", "error %"]] * 4
+    assert [list(row) for row in small.table()] == [["kind", "tilt", "K N/µm", "|Z| N/µm", "C N s/m", "error %"]] * 4
     (path,) = small.picture(tmp_path)
     assert path.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_damping_is_a_column_and_is_not_told_where_it_is_not_resolved():
+    """c = tau k: C grows with tau at the same K; a dry bearing has none, and a band has two ends."""
+    tables = {**SCENE, "integrator": {"turns": 12, "steps_per_turn": 120}}
+    found = compare(tables, ["contact.time_constant=1e-5,2e-5"])
+    one, two = (row.damping for row in found.rows)
+    assert two / one == pytest.approx(2.0, rel=1e-3)
+    assert [row["C N s/m"] for row in found.table()] == [f"{value:.4g}" for value in (one, two)]
+    assert found.to_xarray().equivalent_damping.values == pytest.approx([one, two], rel=1e-12)
+    dry, band = compare(tables, ["contact.damping=0,band"]).rows
+    assert dry.damping is None and dry.damping_words == "not resolved"
+    assert dry.result["identification"]["equivalent_damping"] is not None
+    # Both ends in proportion to the time constants, 0.25e-5 and 2.5e-5 s.
+    assert float(band.damping_words.split(" to ")[1]) / band.damping == pytest.approx(10.0, rel=1e-2)
 
 
 def test_a_failed_point_is_kept_and_the_effects_hold_for_the_rest(monkeypatch):

@@ -163,3 +163,9 @@ def test_a_film_needs_a_speed_and_bodies_that_renew_laws():
 def test_boundary_lubrication_is_said():
     found = run(scene({**OIL, "roughness": 5e-6}))
     assert any("boundary lubrication" in one for one in found.warnings)
+
+
+def test_a_film_that_leaves_no_equilibrium_is_told_by_its_law():
+    """A film of 0.01 N on twelve balls, h ~ 1/Q^2, is thicker than there is room in the grooves."""
+    with pytest.raises(rw.RacewayError, match="contact law 'film' at the running speed: .*more load or a lower speed"):
+        run(scene(OIL, load={"axial": 0.01}, excitation={"force": 1e-3}))

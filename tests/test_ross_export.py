@@ -170,6 +170,14 @@ def test_damping_that_is_not_resolved_is_zero_or_what_is_given():
             coefficients(select(data, {}), unresolved=wrong)
 
 
+def test_damping_of_a_band_says_which_end_it_is():
+    tables = scene()
+    tables["contact"] = {**tables.get("contact", {}), "damping": "band"}
+    (told,) = [note for note in table(made({SPEED: SPEEDS}, tables)).notes if "band" in note]
+    assert "the low end, c = tau k with tau = 2.5e-06 s" in told and "contact.time_constant=2.5e-06,2.5e-05" in told
+    assert not [note for note in table(made({SPEED: SPEEDS})).notes if "band" in note]
+
+
 @pytest.mark.parametrize("error, hidden", [(1e-7, "nothing"), (1e-6, "cross terms"), (1e-5, "all")])
 def test_damping_along_directions_is_held_against_the_errors_of_their_receptances(error, hidden):
     w = 1e3

@@ -136,12 +136,12 @@ def _damping() -> list[Row]:
 
 _ROTOR = """
 import json, sys
-sys.path.insert(0, sys.argv[1])
-import ross_rotor
-ross = ross_rotor.import_ross()
+from benchmarks.evidence._ross_rotor import rig_rotor
+from raceway.studies.ross.installed import ross as installed
+ross = installed("this report")
 told = []
-for k, c in json.loads(sys.argv[2]):
-    rotor = ross_rotor.rig_rotor(ross, lambda node: ross.BearingElement(n=node, kxx=k, cxx=c, kzz=1e8))
+for k, c in json.loads(sys.argv[1]):
+    rotor = rig_rotor(ross, lambda node: ross.BearingElement(n=node, kxx=k, cxx=c, kzz=1e8))
     modal = rotor.run_modal(12000.0 * 3.141592653589793 / 30.0)
     told.append([float(one) for one in modal.log_dec[:2]])
 print(json.dumps(told))
@@ -158,7 +158,7 @@ def _decrement() -> list[Row]:
     assert band is not None, "asked for"
     ends = json.dumps(list(zip(band["equivalent_stiffness"], band["equivalent_damping"], strict=True)))
     done = subprocess.run(
-        [found[0], "-c", _ROTOR, str(ROOT / "examples"), ends],
+        [found[0], "-c", _ROTOR, ends],
         env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=True, timeout=600,
     )  # fmt: skip
     told: Any = json.loads(done.stdout.strip().splitlines()[-1])

@@ -30,7 +30,12 @@ _TOLERANCE, _LIMIT = 1e-11, 40
 
 
 def running_pairs(
-    scene: Scene, basis: Basis, force: np.ndarray, angles: tuple[np.ndarray, np.ndarray], speed: float | None = None
+    scene: Scene,
+    basis: Basis,
+    force: np.ndarray,
+    angles: tuple[np.ndarray, np.ndarray],
+    speed: float | None = None,
+    mounted: ContactPairs | None = None,
 ) -> ContactPairs:
     """The contacts as a law sees them in the running equilibrium.
 
@@ -38,6 +43,7 @@ def running_pairs(
     ----------
     force : (2 Z,) [N];  angles : of inner and outer contacts (Z,) [rad], nan where they are open
     speed : of the inner ring [rad/s], default: the scene's spin speed
+    mounted : the contacts at standstill, where they are known
     """
     z, load = len(basis.azimuth), np.array(force, dtype=float)
     alpha = np.array(angles, dtype=float)
@@ -56,7 +62,8 @@ def running_pairs(
     speeds = entraining_speed(scene.spin_speed if speed is None else speed, pitch, ball, *alpha)
     # A set of which no ball is loaded runs as one that is about to be.
     load = np.where(load > 0.0, load, _LEAST * basis.ball_load)
-    return attrs.evolve(contact_pairs(scene, basis), entraining_speed=np.concatenate(speeds), load=load)
+    known = contact_pairs(scene, basis) if mounted is None else mounted
+    return attrs.evolve(known, entraining_speed=np.concatenate(speeds), load=load)
 
 
 def report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
@@ -87,9 +94,18 @@ def renew(
         No equilibrium, or loads and parameters that do not meet.
     """
     law, q, before = scene.contact.law, guess, np.zeros(2 * system.ball_count)
-    for _ in range(_LIMIT):
-        q = q if place is None else place(system, q)
-        q, ball, _ = system.settle(q)
+    for trial in range(_LIMIT):
+        try:
+            q = q if place is None else place(system, q)
+            q, ball, _ = system.settle(q)
+        except ConvergenceError as why:
+            if trial == 0:  # at standstill
+                raise
+            raise ConvergenceError(
+                f"contact law '{scene.contact.kind}' at the running speed: {why}. Give more load or a lower "
+                "speed, or options of the law that move its contacts less from those at standstill",
+                why.state,
+            ) from why
         now = system.without(CAGE).evaluate(q, ball=ball)
         force = now.contact_force
         if np.abs(force - before).max() <= _TOLERANCE * max(force.max(), 1e-300):
@@ -114,11 +130,13 @@ def _following(
 ) -> Callable[[System, float], System]:
     """A system and another speed [rad/s] -> the system with its law there, at the loads and angles of the equilibrium."""
 
+    mounted = contact_pairs(scene, basis)
+
     def follow(system: System, speed: float) -> System:
         if speed <= 0.0:
             assert system.mounted_params is not None and system.reach is not None, "built in above"
             return system.running(system.mounted_params, np.zeros_like(system.reach))
-        pairs = running_pairs(scene, basis, force, angles, speed)
+        pairs = running_pairs(scene, basis, force, angles, speed, mounted)
         return system.running(law_params(scene, basis, pairs), reach_of(scene.contact.law, pairs))
 
     return follow

@@ -41,6 +41,7 @@ def _difference(log_chi: float) -> float:
     return float(1.0 - 2.0 / excess * (first / second - 1.0))
 
 
+@lru_cache(maxsize=1024)
 def ellipticity(curvature_difference: float) -> float:
     """chi = a/b of the contact ellipse for a curvature difference in [0, 1), by bisection and secant to rounding."""
     if not 0.0 <= curvature_difference < 1.0:

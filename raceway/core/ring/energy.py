@@ -69,7 +69,7 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
 
 def _lost_in_contacts(system: System, record: Record, speed: np.ndarray) -> np.ndarray:
     """(n,) power that a time constant takes [W]: what the contacts carry beyond their springs, times the approach's rate."""
-    elastic = np.empty_like(record.gap)
+    elastic = np.empty(record.gap.shape)
     work = np.empty((3, record.gap.shape[1]))
     for k, gap in enumerate(np.ascontiguousarray(record.gap)):
         system.law(gap, work[2], system.law_params, system.law_state, system.law_state.copy(), 0.0, elastic[k], *work[:2])

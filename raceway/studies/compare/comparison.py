@@ -71,7 +71,8 @@ class Comparison(Shown, Findings):
         Returns
         -------
         xarray.Dataset
-            equivalent_stiffness and its error, dynamic_stiffness |Z| [N/m] and status, a dimension for each key
+            equivalent_stiffness and its error, dynamic_stiffness |Z| [N/m], equivalent_damping [N s/m], NaN where it is not
+            resolved, and status, a dimension for each key
 
         Raises
         ------
@@ -150,6 +151,7 @@ def _screen_row(row: Row, names: dict[str, str], noted: bool) -> dict[str, str]:
     k, z = (row.value(quantity) for quantity in QUANTITIES)
     text["K N/µm"] = "" if k is None else f"{k / 1e6:.3f}"
     text["|Z| N/µm"] = "" if z is None else f"{z / 1e6:.3f}"
+    text["C N s/m"] = row.damping_words
     text["error %"] = "" if k is None else f"{100.0 * row.error:.2g}"
     if noted:
         text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""

@@ -44,6 +44,23 @@ class Row:
         return value
 
     @property
+    def damping(self) -> float | None:
+        """C [N s/m]; None where the run has none, and where it is below its error.  Of a band the low end."""
+        found = self.result.get("identification") or {}
+        value, error = found.get("equivalent_damping"), found.get("equivalent_damping_error")
+        return None if value is None or (error is not None and abs(value) <= error) else float(value)
+
+    @property
+    def damping_words(self) -> str:
+        """C [N s/m] in short: one number, both ends of a band, or that it is not resolved."""
+        found = self.result.get("identification") or {}
+        if found.get("equivalent_damping") is None:
+            return ""
+        if found.get("band"):
+            return " to ".join(f"{value:.4g}" for value in found["band"]["equivalent_damping"])
+        return "not resolved" if self.damping is None else f"{self.damping:.4g}"
+
+    @property
     def error(self) -> float:
         """Estimated relative error of Z, 0 where none was estimated."""
         return float((self.result.get("error") or {}).get("total") or 0.0)

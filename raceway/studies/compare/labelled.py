@@ -28,12 +28,12 @@ def labelled(found: Findings) -> Dataset:
         raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
     keys = [axis.key for axis in found.axes]
     shape = tuple(len(axis.values) for axis in found.axes)
-    numbers = {name: np.full(shape, np.nan) for name in (*QUANTITIES, "equivalent_stiffness_error")}
+    numbers = {name: np.full(shape, np.nan) for name in (*QUANTITIES, "equivalent_stiffness_error", "equivalent_damping")}
     status = np.full(shape, "waiting", dtype=object)
     for row in found.rows:
         place = tuple(axis.values.index(row.point[axis.key]) for axis in found.axes)
         status[place] = row.result["status"] if row.failed else "done"
-        values = {name: row.value(name) for name in QUANTITIES}
+        values = {name: row.value(name) for name in QUANTITIES} | {"equivalent_damping": row.damping}
         if row.estimated and values["dynamic_stiffness"] is not None:
             values["equivalent_stiffness_error"] = row.error * values["dynamic_stiffness"]
         for name, value in values.items():
@@ -42,7 +42,11 @@ def labelled(found: Findings) -> Dataset:
         "equivalent_stiffness": "K = Re Z + m w^2",
         "dynamic_stiffness": "size of Z = F/x",
         "equivalent_stiffness_error": "estimated error of K",
+        "equivalent_damping": "C = Im Z / w",
     }
-    variables = {name: (keys, values, {"units": "N/m", "long_name": words[name]}) for name, values in numbers.items()}
+    variables = {
+        name: (keys, values, {"units": "N s/m" if name == "equivalent_damping" else "N/m", "long_name": words[name]})
+        for name, values in numbers.items()
+    }
     coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in found.axes}
     return xarray.Dataset({**variables, "status": (keys, status)}, coordinates, {"title": found.title})

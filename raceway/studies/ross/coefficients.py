@@ -19,6 +19,7 @@ import numpy as np
 
 from raceway.commands.screen.damping import dry_damping_words
 from raceway.errors import Mistake, RacewayError, SceneError
+from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
 from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent, tilt_note
@@ -113,7 +114,7 @@ def coefficients(
         stiffness, damping, resolved, definition, notes = made(selection)
     known = resolved[..., 0, 0] & resolved[..., 1, 1]
     damping, told = _without_noise(damping, resolved, unresolved)
-    notes += [*told, *tilt_note(selection), *_dry(source, stiffness, damping, known, unresolved)]
+    notes += [*told, *_band(selection), *tilt_note(selection), *_dry(source, stiffness, damping, known, unresolved)]
     still, damper = _still(selection, "stiffness"), _still(selection, "damping")
     axial = _undirected(selection, reduced(selection)[..., 0, 0]) if "stiffness" in selection.dataset else still[..., 0, 0]
     speed, frequency, stiffness, damping, axial, still, damper = _table(selection, stiffness, damping, axial, still, damper)
@@ -149,6 +150,17 @@ def _without_noise(damping: np.ndarray, resolved: np.ndarray, instead: float) ->
         return out, []
     given = f"cyy = czz = {instead:g} N s/m stands there, as given" if instead else "0 stands there"
     return out, [f"damping is not resolved at {int((~known).sum())} of {known.size} points, smaller than its error: {given}"]
+
+
+def _band(selection: Selection) -> list[str]:
+    """That the damping of a band is that of one end."""
+    if selection.value("contact.damping") != "band":
+        return []
+    low, high = TIME_CONSTANTS
+    return [
+        f"contact.damping = 'band': the damping is that of the low end, c = tau k with tau = {low:g} s; for both ends sweep "
+        f"--grid contact.time_constant={low:g},{high:g} instead and export one at a time"
+    ]
 
 
 def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, known: np.ndarray, unresolved: float) -> list[str]:
