@@ -40,6 +40,8 @@ _LATER = {
     "verify": ("raceway.studies.verify.command", "Compute the reference cases."),
     "precision": ("raceway.studies.precision.command", "Error against run time: which setting is good enough."),
     "stability": ("raceway.studies.stability.command", "Stiff and extreme cases: what must hold, holds."),
+    "band": ("raceway.studies.band.command", "The range of an answer over the tolerances of its scene."),
+    "sensitivities": ("raceway.studies.sensitivities.command", "How much each number of a scene changes the answer."),
     "sweep": ("raceway.studies.sweep.command", "One scene at thousands of points, kept in a store; parallel, resumable."),
     "follow": (
         "raceway.studies.follow.command",

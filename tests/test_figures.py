@@ -32,6 +32,7 @@ from raceway.studies.measured.angle import turning
 from raceway.studies.measured.orders import order
 from raceway.studies.precision import picture as precision
 from raceway.studies.rig import figures as rig
+from raceway.studies.sensitivities import picture as bars
 from raceway.studies.sweep import picture as store_picture
 from raceway.studies.sweep.plotting import layout
 from raceway.studies.sweep.selection import select
@@ -92,6 +93,13 @@ def of_precision() -> list[Figure]:
     ]  # fmt: skip
     whole = {"title": "made up", "rows": rows, "front": [0, 3, 5]}
     return [precision.draw({**whole, "reference": {"error": bound}}) for bound in (1e-6, None)]
+
+
+def of_sensitivities() -> list[Figure]:
+    scene = b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]})
+    whole = raceway.sensitivities(scene).to_dict()
+    odd = [{**key, "influence": {name: share * 1e4 for name, share in key["influence"].items()}} for key in whole["keys"]]
+    return [bars.draw(whole), bars.draw({**whole, "keys": odd[:1]})]
 
 
 def of_a_map() -> list[Figure]:
@@ -186,7 +194,7 @@ def of_a_branch() -> list[Figure]:
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
-    contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch,
+    contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
 }  # fmt: skip
 
 

@@ -36,6 +36,8 @@ AREAS = {
     "scene": """
         framework/options planning/implausible scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
         scene/sets scene/tables scene/units scene/unused""",
+    "gradients": "pipeline/gradient scene/continuous studies/sensitivities",
+    "band": "scene/tolerance studies/band",
     "article": "studies/article data/article",
     "catalogue": """
         data/materials data/printed data/series pipeline/ball_pass scene/materials studies/catalogue studies/infer""",
@@ -54,14 +56,14 @@ AREAS = {
     "verify": "data/cases studies/many/reference studies/verify",
     "pages": """
         data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture
-        studies/precision/labels studies/precision/picture studies/stability/picture studies/sweep/picture studies/view""",
+        studies/precision/labels studies/precision/picture studies/sensitivities/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
         __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/higher_types framework/hookspecs framework/registry
         framework/shown framework/sources front pipeline/facts pipeline/result plugins/__init__ plugins/system_libraries ross scene/schema storage/__init__ storage/cache_folder
         storage/files storage/tables storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         data/article_elastic studies/article/command studies/article/elastic studies/article/screen studies/compare/command studies/compare/front studies/compare/labelled studies/compare/screen studies/map/command
         studies/law studies/limits/command studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
-        studies/precision/labelled studies/precision/screen studies/rig/command studies/rig/screen
+        studies/precision/labelled studies/precision/screen studies/band/command studies/band/front studies/sensitivities/command studies/sensitivities/front studies/sensitivities/screen studies/rig/command studies/rig/screen
         studies/ross/command studies/ross/front studies/ross/points studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
         studies/sweep/store_command studies/verify/command studies/verify/screen studies/view/command studies/view/front studies/view/view studies/view/mesh_command
         studies/view/mesh_screen""",
@@ -72,6 +74,7 @@ MEASURES = {
     "article": "rigid motion periodic article examples/b7206.toml",
     "article_mesh": "elastic solids mesh plan revolution condensed examples/b7206_article_mesh.toml",
     "article_motion": "elastic solids mesh rigid revolution condensed examples/b7206_article_mesh.toml",
+    "band": "band gradients rigid",
     "catalogue": "catalogue rigid",
     "compare": "rigid motion periodic compare",
     "compare_bodies": "rigid condensed revolution compare",
@@ -96,6 +99,7 @@ MEASURES = {
     "film": "film rigid motion",
     "follow": "rigid motion periodic follow",
     "fuzz": "rigid motion periodic errors mesh plan scene",
+    "gradients": "gradients rigid condensed periodic",
     "hexahedron": "solids",
     "identified_stiffness": "rigid motion",
     "identify": "measured rig shaft",

@@ -387,6 +387,8 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     9. The fields of the class are the keys of the table [bodies] beside ``kind``.
     10. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
         for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
+    11. ``same_bodies(scene, other)``, if it is there: whether nothing that is meshed differs between two scenes of this kind, so
+        that a difference of their results is a derivative; else [bearing] decides where there is a [mesh].
     """
 
     name: ClassVar[str]

@@ -53,6 +53,14 @@ def traits_of(scene: Any) -> Traits:
     return found
 
 
+def same_bodies(scene: Any, other: Any) -> bool:
+    """Whether two scenes whose bodies are of one kind have the same meshes; where bodies do not tell, unless [mesh] is there."""
+    if not hasattr(scene.bodies, "same_bodies"):
+        return scene.mesh is None or scene.bearing == other.bearing
+    with blamed(f"bodies '{scene.bodies.name}'", "same_bodies()"):
+        return bool(scene.bodies.same_bodies(scene, other))
+
+
 def renews(law: Any) -> bool:
     """Whether a contact law's parameters follow the running speed and the loads; not unless it says so."""
     return bool(getattr(law, "renewed", False))

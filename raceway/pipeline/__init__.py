@@ -10,6 +10,7 @@ motion         the table ``motion`` of a result
 ball_pass      frequencies of cage, ball passes and ball spin
 pressure       peak pressure and semi-axes of contacts
 plausibility   warnings: balls without load, ellipses over the groove's edge
+gradient       derivatives by the keys of the scene
 error          relative errors of Z
 result         the result: result.json
 facts          what it says in short

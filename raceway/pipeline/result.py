@@ -33,6 +33,8 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     import xarray
 
+    from raceway.pipeline.gradient.gradients import Gradient
+
 SCHEMA = 1
 
 
@@ -129,6 +131,37 @@ class Result(Shown):
         """Estimated absolute error of C [N s/m]; None where it is not estimated.  A smaller C is not resolved."""
         across, found = self._across(), self.identification
         return None if across is None or found is None else across * abs(found.dynamic_stiffness) / found.speed
+
+    def gradient(self, path: str) -> Gradient:
+        """Derivatives by the number at one key: of displacement, stiffness and ball loads, and of Z, K, C where there is an excitation.
+
+        Parameters
+        ----------
+        path : a continuous key of the scene, such as "load.axial" or "load.radial[0]"
+
+        Notes
+        -----
+        By the implicit function theorem: no equilibrium is solved again; the steady orbit of the excitation is, once a call.
+        ``raceway.sensitivities`` gives all keys at once.
+
+        Raises
+        ------
+        SceneError
+            No continuous key, one without a derivative, or bodies whose contacts have none.
+        ConvergenceError
+            No steady orbit was found.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> result = rw.run({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}})
+        >>> slope = result.gradient("load.axial").statics.stiffness[0, 0]  # d kxx / d axial load [1/m]
+        >>> round(float(slope * 1000.0 / result.stiffness[0, 0]), 2)  # one per cent more load, so many per cent more kxx
+        0.54
+        """
+        from raceway.pipeline.gradient.gradients import Gradients
+
+        return Gradients(self.model, self.equilibrium).by_path(path)
 
     @property
     def ball_pass(self) -> Tables:

@@ -6,8 +6,10 @@ file        TOML to scene, with ``--set`` changes
 structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit
 schema      JSON schema of a scene file
+continuous  keys whose numbers can change a little, and scenes where one has
 catalogue   bearing presets
 materials   materials of rings and balls by name
+tolerance   ranges of numbers: the table [tolerances], which ``raceway band`` reads
 requires    plug-ins that a scene needs
 rig         a test rig around the bearing
 unused      keys without effect, and those that a change makes so

@@ -24,6 +24,7 @@ from raceway.scene.rig import Rig
 from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
 from raceway.scene.tables import TABLES, Scene
+from raceway.scene.tolerance import check_tolerances
 from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of, why_unreadable
 
@@ -311,12 +312,15 @@ def scene_from_dict(
             structure(plain[name], cls, name, mistakes)
     if mistakes:
         raise SceneError(mistakes)
-    return Scene(title=title, source=plain, given=Given(said), **parts)
+    scene = Scene(title=title, source=plain, given=Given(said), **parts)
+    if faults := check_tolerances(scene):
+        raise SceneError(faults)
+    return scene
 
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
     """Title, and a copy of the known tables."""
-    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "requires", "title"]
+    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "tolerances", "requires", "title"]
     for name in tables:
         if name not in known:
             mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))

@@ -36,6 +36,8 @@ def scene_schema(registry: Registry | None = None) -> Tables:
         tables[name] = _plugin_table(name, kind, default, registry)
     for name, cls in STUDY_TABLES.items():
         tables[name] = _table(cls)
+    words = 'by how much numbers may differ, for raceway band: "load.axial" = "±10 %"'
+    tables["tolerances"] = {"type": "object", "description": words}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Raceway scene",

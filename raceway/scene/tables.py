@@ -6,7 +6,7 @@ chosen plug-in's own options in its last attribute.
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from math import acos, asin, cos, degrees, pi, radians, sin
 from typing import TYPE_CHECKING, Any
 
@@ -192,6 +192,8 @@ class Bearing:
     @property
     def equal_rows(self) -> bool:
         """Whether the rows differ in nothing but places, directions, preloads and azimuths."""
+        if not self.row:
+            return True
         alike = {attrs.evolve(one, first_ball_azimuth_deg=0.0) for one in self.of_rows}
         return len(alike) == 1
 
@@ -241,7 +243,7 @@ class Bearing:
         return radians(self.contact_angle_deg or 0.0)
 
 
-@cache
+@lru_cache(maxsize=256)
 def _of_rows(bearing: Bearing) -> tuple[Bearing, ...]:
     """The bearing of each row by itself; the same one for rows that have no table."""
     if not bearing.row:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import TYPE_CHECKING
+
+import attrs
 
 from raceway.bodies.basis import Basis, seat_of
 from raceway.core.condensed.calibration import calibrated
@@ -28,6 +31,16 @@ _KEPT = 8
 _BODIES: dict[Hashable, ElasticBodies] = {}
 
 
+def sections(scene: Scene, basis: Basis) -> Hashable:
+    """All that the compliances of the rings and their calibrations are computed from: loads and masses are not."""
+    b = scene.bearing
+    shape = b.ball_diameter, b.pitch_diameter, b.ball_count, b.conformity_inner, b.conformity_outer, b.contact_angle
+    sizes = b.bore, b.outer_diameter, b.width, b.shoulder_height, b.inner_profile, b.outer_profile
+    elastic = b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson
+    pairs = tuple((float(one.factor), *(float(axis) for axis in one.semi_axes(1.0))) for one in (basis.inner, basis.outer))
+    return shape, sizes, elastic, pairs, scene.supports.inner_seat, scene.supports.outer_seat, scene.mesh
+
+
 def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
     """Structural compliances of a scene's rings and balls; those of the last few scenes are kept.
 
@@ -35,16 +48,18 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
     ----------
     coarser : factor on all sizes of elements
     """
-    seats = scene.supports.inner_seat, scene.supports.outer_seat
-    key = (scene.bearing, seats, scene.mesh, basis.ball_load, coarser)
+    key = (sections(scene, basis), coarser)
     found = _BODIES.pop(key, None) or _elastic_bodies(scene, basis, coarser)
     _BODIES[key] = found  # the last in, and the last to go
     if len(_BODIES) > _KEPT:
         del _BODIES[next(iter(_BODIES))]
-    return found
+    b, (a, across) = scene.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
+    own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
+    return attrs.evolve(found, ball_own=own, ball_opposite=opposite)
 
 
 def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies:
+    """Rings and calibrations; the ball's own compliance, which follows the load, is filled in each time."""
     b = scene.bearing
     typical = typical_load(basis)
     rings, calibrations = [], []
@@ -73,9 +88,7 @@ def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies
         calibrations.append(
             calibrated(body, balls, both, typical, 0.5 * b.ball_diameter, b.ball_count, abs(b.contact_angle))
         )
-    a, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
-    own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
-    return ElasticBodies(rings[0], rings[1], own, opposite, (calibrations[0], calibrations[1]))
+    return ElasticBodies(rings[0], rings[1], nan, nan, (calibrations[0], calibrations[1]))
 
 
 def typical_load(basis: Basis) -> float:

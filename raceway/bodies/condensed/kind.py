@@ -126,6 +126,14 @@ class Condensed:
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0
         return Cost(START_S + seconds + _WITH_HALF * runs(scene, motion) * steps * patches.step_s)
 
+    def same_bodies(self, scene: Scene, other: Scene) -> bool:
+        """Whether sections, contacts and materials, which compliances are computed from, are the same."""
+        from raceway.bodies.basis import make_basis
+        from raceway.bodies.condensed.compliances import sections
+
+        one, two = (sections(each, make_basis(each)) for each in (scene, other))
+        return one == two
+
     def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
         """Kernels of the balls, and what reduces the bodies."""
         return of_balls(balls) | dict.fromkeys(REDUCED, "elastic rings and balls, reduced")

@@ -13,7 +13,7 @@ Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., sections 172
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -21,6 +21,7 @@ _TERMS = 400
 _POINTS = 16
 
 
+@lru_cache(maxsize=64)
 def ball_compliance(
     radius: float, young: float, poisson: float, semi_major: float, semi_minor: float
 ) -> tuple[float, float]:

@@ -1,0 +1,97 @@
+"""The band of an answer over tolerances: indices of a published function, a linear answer by hand, and bad input."""
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway import scene_from_dict
+from raceway.errors import SceneError
+from raceway.scene.tolerance import tolerances_of
+from raceway.studies.band.sobol import design, indices
+from validation.command_line import invoke
+from validation.tables import b7206c
+
+LOADED = b7206c(load={"axial": 500.0})
+
+
+def test_indices_of_ishigamis_function_are_the_closed_form():
+    """Ishigami, Homma (1990): a = 7, b = 0.1 on [-pi, pi]^3."""
+    a, b = 7.0, 0.1
+    x = np.pi * (2.0 * design(4096, 3, seed=3) - 1.0)
+    found = indices((np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0]))[None], 3)
+    v1, v2, v13 = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2, a**2 / 8.0, b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    whole = v1 + v2 + v13
+    assert np.abs(found.first[0] - np.array([v1, v2, 0.0]) / whole).max() < 0.02
+    assert np.abs(found.total[0] - np.array([v1 + v13, v2, v13]) / whole).max() < 0.02
+
+
+def test_a_small_band_is_that_of_the_derivatives():
+    """Even numbers in p +- h through a nearly straight line: 95 % of them lie within 0.95 h."""
+    given = {"load.axial": "±0.1 %", "bearing.contact_angle_deg": "± 0.01 deg"}
+    slopes = rw.sensitivities(LOADED, list(given))
+    for path, text, size in (("load.axial", "±0.1 %", 0.5), ("bearing.contact_angle_deg", "±0.01 deg", 0.01)):
+        band = rw.band(LOADED, {path: text}, count=256)
+        half = 0.5 * (band.high["kxx"] - band.low["kxx"])
+        assert half == pytest.approx(0.95 * size * abs(slopes[path].derivatives["kxx"]), rel=0.01)
+    both = rw.band(LOADED, given, count=256)
+    shares = np.array(
+        [
+            (slopes[path].derivatives["kxx"] * size) ** 2
+            for path, size in (("load.axial", 0.5), ("bearing.contact_angle_deg", 0.01))
+        ]
+    )
+    assert both.first["kxx"] == pytest.approx((shares / shares.sum()).tolist(), abs=0.01)
+
+
+def test_the_scenes_own_table_is_read_and_checked():
+    own = LOADED | {"tolerances": {"load.axial": "±10 %", "bearing": {"contact_angle_deg": "+1 deg -0.5 deg"}}}
+    band = rw.band(own, count=2)
+    ranges = {one.key.path: (one.low, one.high) for one in band.tolerances}
+    assert ranges["load.axial"] == pytest.approx((450.0, 550.0))
+    assert ranges["bearing.contact_angle_deg"] == pytest.approx((14.5, 16.0))
+    assert rw.run(own).stiffness[0, 0] == rw.run(LOADED).stiffness[0, 0]
+    wrong = rw.check(LOADED | {"tolerances": {"load.axail": "±10 %"}})
+    assert [one.path for one in wrong.mistakes] == ["tolerances.load.axail"] and "load.axial" in wrong.mistakes[0].message
+
+
+BAD = [
+    ({}, "none is given"),
+    (["load.axial"], "KEY=TEXT"),
+    ({"load.axial": "10"}, "must be text such as"),
+    ({"load.axial": "±0 N"}, "empty"),
+    ({"load.axial": "±1 m"}, "must be text such as"),
+    ({"bearing.ball_count": "±1"}, "no continuous key"),
+    ({"bearing.conformity_inner": "±0.1"}, "reaches 0.422"),
+    (["load.axial=±1 N", "load.axial=±2 N"], "two tolerances"),
+]
+
+
+@pytest.mark.parametrize(("given", "words"), BAD)
+def test_what_is_no_tolerance_is_refused_in_one_sentence(given, words):
+    with pytest.raises(SceneError, match=words):
+        tolerances_of(scene_from_dict(LOADED), given)
+
+
+def test_samples_without_an_answer_are_counted_and_no_indices_told():
+    """Large balls fit the pitch circle, and so do balls a smaller one; some samples have large balls on a small circle."""
+    band = rw.band(LOADED, {"bearing.ball_diameter": "+2.2 mm -0.1 mm", "bearing.pitch_diameter": "+0.1 mm -2 mm"}, count=16)
+    assert 0 < band.lost < band.samples == 64
+    assert "do not fit" in band.why and band.total == {} and band.low["kxx"] < band.high["kxx"]
+
+
+@pytest.mark.parametrize("count", [3, 1])
+def test_counts_are_powers_of_two(count):
+    with pytest.raises(SceneError, match="power of 2"):
+        rw.band(LOADED, {"load.axial": "±1 %"}, count=count)
+
+
+def test_the_command_goes_on_with_what_is_kept(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
+    words = ["band", str(file), "--out", str(tmp_path), "--count", "8", "--processes", "0"]
+    first = invoke(*words)
+    assert first.exit_code == 0, first.output
+    kept = (tmp_path / "band-rows.jsonl").read_text()
+    told = (tmp_path / "band.json").read_text()
+    assert invoke(*words).exit_code == 0
+    assert (tmp_path / "band-rows.jsonl").read_text() == kept and (tmp_path / "band.json").read_text() == told

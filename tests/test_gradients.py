@@ -1,0 +1,191 @@
+"""Derivatives by the implicit function theorem are those of whole runs."""
+
+import attrs
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway import scene_from_dict
+from raceway.bodies.model import build_model
+from raceway.errors import SceneError
+from raceway.pipeline.gradient.differences import derivative
+from raceway.pipeline.gradient.gradients import Gradients
+from raceway.pipeline.gradient.motion import SteadyOrbit
+from raceway.pipeline.gradient.statics import static_gradient
+from raceway.pipeline.gradient.variation import NoDerivative
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.continuous import continuous_keys, key_of, with_number
+from validation.command_line import invoke
+from validation.tables import b7206c
+
+LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})
+#: Whole runs are solved to 1e-11; a step of 1e-4 leaves 1e-7 of that in a difference.
+TOLERANCE = 1e-6
+
+
+def built(tables):
+    scene = scene_from_dict(tables)
+    model = build_model(scene, make_plan(scene))
+    return model, settle(model)
+
+
+def by_runs(model, path, step, of):
+    """The same derivative from equilibria that are solved for again."""
+    value = key_of(model.scene, path).value
+    found = {}
+    for k in (-2, -1, 1, 2):
+        one = build_model(with_number(model.scene, path, value + k * step), model.plan)
+        found[k] = of(one, settle(one))
+    return derivative(found, step)
+
+
+def test_differences_are_of_fourth_order():
+    errors = []
+    for step in (0.2, 0.1):
+        found = derivative({k: np.exp(np.array([k * step])) for k in (-2, -1, 1, 2)}, step)
+        errors.append(abs(float(found[0]) - 1.0))
+    assert errors[1] == pytest.approx(0.1**4 / 30.0, rel=0.05)  # h^4 f^(5) / 30
+    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.05)
+
+
+SCENES = {
+    "tilts free": LOADED,
+    "pair with preload and temperatures": LOADED
+    | {
+        "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 200.0},
+        "mounting": {"inner_temperature": 12.0, "outer_temperature": 5.0},
+    },
+    "fast, with gyroscopic moments": LOADED
+    | {"supports": {"tilt": 2e4}, "kinematics": {"spin_speed_rpm": 15000.0, "gyroscopic": "outer_race"}},
+    "held axially": LOADED | {"supports": {"axial": "displacement", "tilt": "free"}},
+    "friction": LOADED | {"contact": {"friction": 0.05}},
+    "spring": LOADED
+    | {
+        "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "preload_kind": "spring"},
+        "kinematics": {"spin_speed_rpm": 9000.0},
+    },
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_derivatives_of_an_equilibrium_are_those_of_whole_runs(name):
+    model, still = built(SCENES[name])
+    seen = 0
+    for key in continuous_keys(model.scene):
+        if key.value == 0.0:
+            continue  # of a symmetric scene most of these are 0 but for rounding
+        try:
+            found = static_gradient(model, still, key)
+        except NoDerivative:
+            continue
+        for what in ("displacement", "stiffness", "contact_force"):
+            if found.step == 0.0:
+                assert not getattr(found, what).any()
+                continue
+            runs = by_runs(model, key.path, found.step, lambda _, e, what=what: getattr(e, what))
+            scale = np.abs(runs).max() + np.abs(getattr(still, what)).max() / abs(key.value) * 1e-3
+            assert np.abs(getattr(found, what) - runs).max() <= TOLERANCE * scale, (key.path, what)
+            seen += 1
+    assert seen > 15
+
+
+def test_an_axial_load_on_hertz_contacts_has_the_slope_of_its_power():
+    """With contacts at 90 degrees kxx would grow as F^(1/3); at a small free angle the angle's growth adds to it."""
+    model, still = built(b7206c(bearing={"preset": "B7206C", "contact_angle_deg": 75.0}, load={"axial": 1.0}))
+    slope = static_gradient(model, still, key_of(model.scene, "load.axial")).stiffness[0, 0] / still.stiffness[0, 0]
+    assert slope == pytest.approx(1.0 / 3.0, rel=0.01)
+
+
+def test_a_held_displacement_moves_with_what_holds_it():
+    model, still = built(b7206c(supports={"axial": "displacement"}, load={"axial": 500.0}))
+    found = static_gradient(model, still, key_of(model.scene, "load.axial"))
+    assert found.displacement[0] * still.stiffness[0, 0] == pytest.approx(1.0, rel=1e-8)
+
+
+ORBIT = b7206c(
+    load={"axial": 400.0, "radial": [60.0, 0.0]},
+    supports={"tilt": "free"},
+    rotor={"mass": 2.0},
+    contact={"damping": 200.0},
+    excitation={"kind": "unidirectional", "speed_rpm": 9000.0, "unbalance": 2e-5},
+    integrator={"kind": "periodic", "tolerance": 1e-10},
+)
+
+
+@pytest.mark.parametrize(
+    "path", ["excitation.speed_rpm", "excitation.unbalance", "bearing.contact_angle_deg", "contact.damping", "rotor.mass"]
+)
+def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
+    model, still = built(ORBIT)
+    orbit = SteadyOrbit.of(model, still)
+    key = key_of(model.scene, path)
+    found = orbit.gradient(static_gradient(model, still, key))
+    runs = by_runs(model, path, 2e-4 * key.value, lambda one, e: SteadyOrbit.of(one, e).line)
+    # Orbits are solved to 1e-10 of their size, which a step of 2e-4 makes 5e-7 of |Z|; C is a small part of |Z|.
+    omega = orbit.solved.problem.speed
+    floor = 1e-6 * abs(orbit.line[0]) / key.value
+    assert found.equivalent_stiffness == pytest.approx(runs[2], rel=1e-5, abs=floor)
+    assert found.equivalent_damping * omega == pytest.approx(runs[1] * omega, rel=1e-5, abs=floor)
+    assert found.amplitude == pytest.approx(runs[3], rel=1e-5, abs=1e-6 * orbit.line[3] / key.value)
+
+
+def test_condensed_bodies_refuse_what_changes_their_meshes():
+    tables = LOADED | {"bodies": {"kind": "condensed"}}
+    scene = scene_from_dict(tables)
+    same, other = with_number(scene, "load.axial", 500.0), with_number(scene, "bearing.ball_diameter", 0.0096)
+    assert scene.bodies.same_bodies(scene, same)
+    assert not scene.bodies.same_bodies(scene, other)
+
+
+def test_keys_come_from_the_declarations():
+    paths = {key.path for key in continuous_keys(scene_from_dict(ORBIT))}
+    assert {"load.radial[1]", "bearing.rings.young", "excitation.unbalance", "contact.damping"} <= paths
+    assert not {path for path in paths if path.startswith(("integrator", "identifier", "mesh"))}
+    assert not {"bearing.ball_count", "kinematics.orbiting", "supports.tilt"} & paths
+
+
+def test_a_contact_at_the_edge_is_told():
+    """Balls about to lift off: the radial load at which the least loaded ball carries next to nothing."""
+    model, still = built(b7206c(load={"axial": 400.0}))
+    loads = []
+    low, high = 0.0, 2000.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        model, still = built(b7206c(load={"axial": 400.0, "radial": [middle, 0.0]}))
+        loads.append(still.contact_force[: model.system.ball_count].min())
+        low, high = (middle, high) if loads[-1] > 0.0 else (low, middle)
+    found = static_gradient(model, still, key_of(model.scene, "load.axial"))
+    assert "open or to close" in found.remark
+
+
+BAD = [
+    ("load.axail", LOADED, "did you mean 'load.axial'"),
+    ("bearing.ball_count", LOADED, "no continuous key"),
+    ("integrator.kind", LOADED, "setting of a method"),
+    ("contact.damping", LOADED, "end of its range"),
+]
+
+
+@pytest.mark.parametrize(("path", "tables", "words"), BAD)
+def test_what_has_no_derivative_is_refused_in_one_sentence(path, tables, words):
+    model, still = built(tables)
+    with pytest.raises(SceneError, match=words):
+        Gradients(model, still).by_path(path)
+
+
+def test_surface_points_have_no_derivative():
+    model, still = built(LOADED)
+    nodal = attrs.evolve(model, scene=scene_from_dict(LOADED | {"bodies": {"kind": "elastic"}, "contact": {"kind": "penalty", "discretisation": "nodal"}, "mesh": {"kind": "structured", "element_size": 2e-3}}))  # fmt: skip
+    with pytest.raises(SceneError, match="one by one"):
+        Gradients(nodal, still)
+
+
+def test_the_command_writes_what_it_shows(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n')
+    done = invoke("sensitivities", str(file), "--out", str(tmp_path), "--no-pictures", "--by", "load.axial")
+    assert done.exit_code == 0 and "load.axial" in done.output
+    found = rw.sensitivities(file, ["load.axial"])
+    line = (tmp_path / "sensitivities.csv").read_text().splitlines()[1].split(",")
+    assert line[0] == "load.axial" and float(line[3]) == pytest.approx(found["load.axial"].influence["kxx"], rel=1e-12)
