@@ -160,6 +160,38 @@ def test_sections_are_told_apart(kind, period, second):
         assert told[2] == pytest.approx(second, abs=1e-4)
 
 
+def test_an_orbit_of_two_turns_that_still_settles_is_no_quasi_periodic_motion():
+    k = np.arange(512)
+    x = (-1.0) ** k * (1.0 + 0.05 * 0.995**k)
+    assert judged(np.stack([x, 0.3 * x], axis=1), 1.0) == (REPEATS, 2, None)
+
+
+def test_the_bearing_s_period_doubles_under_a_radial_load(tmp_path):
+    """Near twice the radial natural frequency; the doubled orbit closes after two turns of the reference ring, not after one."""
+    tables = {
+        **SCENE,
+        "load": {"axial": 400.0, "radial": [200.0, 0.0]},
+        "rotor": {"mass": 2.0, "damping": 60.0},
+        "excitation": {**SCENE["excitation"], "force": 150.0},
+    }
+    found = rw.follow(tables, "excitation.speed_rpm=50000:48500", doubled=True)
+    (flip,) = [label for label in found.labels if label.kind == DOUBLING]
+    (branch,) = found.doubled
+    assert branch.span_deg == 720.0 and branch.rows[0].parameter == flip.row.parameter
+    assert branch.rows[0].stiffness == pytest.approx(flip.row.stiffness, rel=1e-9)
+    assert (
+        branch.rows[-1].verdict == "unstable" and found.rows[0].verdict == "stable"
+    )  # it goes back beside the stable orbit
+    point = branch.worst[-1]
+    size = point.solved.size
+    assert np.abs(by_integration(point, 2, 150.0)[2][:3]).max() < 1e-6 * size
+    assert np.abs(by_integration(point, 1, 150.0)[2][:3]).max() > 1e-2 * size
+    found.write(tmp_path)
+    rows = list(csv.DictReader((tmp_path / "follow.csv").open()))
+    assert [row["branch"] for row in rows] == ["0"] * len(found.rows) + ["1"] * len(branch.rows)
+    assert (tmp_path / "follow.png").is_file()
+
+
 @pytest.mark.slow
 def test_beyond_a_neimark_sacker_point_the_motion_is_quasi_periodic():
     """At its beginning the second frequency is the angle of the pair that crossed; by another second-order method."""

@@ -76,8 +76,8 @@ def by_harmonic_balance(point: Point, harmonics: int = 24) -> complex:
     return complex(FORCE / (2.0 / count * np.exp(-1j * angles) @ y))
 
 
-def by_integration(point: Point, turns: int = 1) -> tuple[complex, np.ndarray, np.ndarray]:
-    """Z [N/m] of the last of some turns that begin on an orbit, the monodromy's multipliers, and what the last turn lacks (5,)."""
+def by_integration(point: Point, turns: int = 1, force: float = FORCE) -> tuple[complex, np.ndarray, np.ndarray]:
+    """Z [N/m] of the last of some turns that begin on an orbit, the monodromy's multipliers, and what the turns lack (5,)."""
     problem, path = point.solved.problem, point.solved.path
     system, w = problem.system, problem.speed
     times = 2.0 * np.pi / w * np.arange(181 * turns - turns + 1) / 180
@@ -85,7 +85,7 @@ def by_integration(point: Point, turns: int = 1) -> tuple[complex, np.ndarray, n
         _ring(system),
         system.mass,
         system.load,
-        swinging(FORCE, w),
+        swinging(force, w),
         system.free,
         path.q[0],
         path.v[0] * w,
@@ -95,7 +95,7 @@ def by_integration(point: Point, turns: int = 1) -> tuple[complex, np.ndarray, n
     )
     last = q[-181:]
     y = 2.0 / 180 * np.exp(-1j * w * times[-181:-1]) @ last[:-1, 1]
-    return complex(FORCE / y), np.linalg.eigvals(flow), last[-1] - last[0]
+    return complex(force / y), np.linalg.eigvals(flow), q[-1] - q[0]
 
 
 def on_the_way(speed_rpm: float) -> Point:

@@ -135,6 +135,10 @@ def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | N
         bins = np.abs((second * np.arange(1, _HARMONICS + 1) + 0.5) % 1.0 - 0.5) * n
         near = (np.abs(np.arange(len(power))[:, None] - bins) <= 4.5).any(axis=1)
         if near.mean() < 0.7 and power[near].sum() >= _POWER * power.sum():
+            for period in range(1, _PERIODS + 1):
+                # A line at a fraction of the force's frequency: it comes back, but for a rest that dies out.
+                if abs(second * period - round(second * period)) * n < 1.0:
+                    return REPEATS, period, None
             return QUASI, None, float(second)
     return WANDERS, None, None
 
