@@ -5,7 +5,7 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from raceway import hookimpl
+from raceway import hookimpl, option, positive
 from raceway.core.jit import jit
 from raceway.core.signatures import LAW
 
@@ -26,8 +26,10 @@ class Cubic:
     state_size: ClassVar[int] = 0
     dissipative: ClassVar[bool] = False
 
+    factor: float = option(2e17, unit="N/m3", help="force over the cube of the approach", rule=positive())
+
     def build(self, pairs):
-        return np.full((len(pairs.curvature_a), 1), 2e17)
+        return np.full((len(pairs.curvature_a), 1), self.factor)
 
     def kernel(self):
         return cubic
