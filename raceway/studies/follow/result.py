@@ -49,6 +49,13 @@ class Followed:
     end : why it ends before ``last``; "" where it reaches it
     notes : what a user should know;  worst : the most unstable orbit of each unstable stretch
     doubled : branches of twice the period;  instead : what happens beside the orbits ``worst``
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.follow("examples/folds.toml", "excitation.speed_rpm=19000:20000")
+    >>> found.labels[0].kind, round(found.labels[0].row.parameter)
+    ('fold', 19574)
     """
 
     key: str
