@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable
 
 import attrs
@@ -26,8 +27,12 @@ TOLERANCE = 1e-10
 INCREMENT = 1e-6
 #: Relative error of a step of Newton's method: its own is no smaller.
 ENOUGH = 1e-6
+#: Rounding of a gap over the largest coordinate of a place.
+ROUNDING = 8.0 * float(np.finfo(float).eps)
 #: Relative change of tangents up to which Newton's method goes on with those before: so much of its error is left by an iteration.
 CLOSE = 1e-3
+#: What an iteration leaves of the residual from which tangents are made anew.
+SLOW = 0.1
 
 
 class CondensedSolver:
@@ -57,6 +62,7 @@ class CondensedSolver:
         """Superelements of K + mass * M, made at the first call; those of another mass go: they are as large as the rest of a run."""
         if self._interface is None or self._interface[0] != mass:
             self._interface = self.last = None
+            gc.collect()  # they know each other: without this they stay until Python looks
             self._interface = mass, interface_of(self.assembly, self._wanted, mass, self.on_progress)
             self.setups += 1
         return self._interface[1]
@@ -170,7 +176,10 @@ class _Step:
         force, frame = self._linearised().forces(self.alone)
         state = self._moved(force, frame)
         rest = unbalanced(state, force)
-        asked = INCREMENT * np.abs(force.nodes).max()
+        # Gaps are differences of places: their last digit is a force, too.
+        rounding = ROUNDING * np.abs(self.contact.place).max() * np.abs(self.contact.stiffness).max(initial=0.0)
+        asked = max(INCREMENT * np.abs(force.nodes).max(), rounding)
+        before, close = np.inf, CLOSE
         for _ in range(NEWTON_LIMIT):
             if locates and pressed.locate(state.nodes):
                 rest = unbalanced(state, force)
@@ -180,9 +189,12 @@ class _Step:
             if not np.isfinite(rest).all():
                 raise ConvergenceError("forces are not finite.")
             self.solver.iterations += 1
+            if np.abs(rest).max() > SLOW * before:  # what hardly anything holds feels small errors of tangents
+                close = 0.0
+            before = np.abs(rest).max()
             back = self.face.moved(Motions(rest, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
             driver = Motions(back.nodes, back.balls, self.face.on_frame(rest))
-            pressed_on, turned = self._linearised().forces(driver, ENOUGH)
+            pressed_on, turned = self._linearised(close).forces(driver, ENOUGH)
             change = Motions(pressed_on.nodes - rest, pressed_on.balls, turned)
             way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
             state, force, rest = self._along(state, way, force, change, unbalanced, rest)
