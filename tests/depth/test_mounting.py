@@ -156,7 +156,7 @@ def test_stiffness_of_a_sprung_pair_over_a_run_up_is_that_of_steady_runs(first, 
 def test_a_pair_that_has_lost_its_preload_says_what_took_it(bodies):
     """A DB pair at rest under 300 N: 2 um leave 120.7 N, 5 um nothing."""
     shrunk = pair(bodies={"kind": bodies}, kinematics={"radial_expansion": -5e-6})
-    lost = r"nothing holds .* x.*preload of 300 N is gone.*shrunk by 5 um \(kinematics\.radial_expansion = -5e-06 m\)"
+    lost = r"nothing holds .* x.*preload of 300 N is gone.*shrunk by 5 µm \(kinematics\.radial_expansion = -5e-06 m\)"
     with pytest.raises(ConvergenceError, match=lost):
         run(scene_from_dict(shrunk))
     run(scene_from_dict({**shrunk, "load": {"axial": 50.0}}))  # one row carries it

@@ -46,7 +46,7 @@ class BandOptions(NamedTuple):
 @click.command(short_help="The range of an answer over the tolerances of its scene.")
 @on_scene
 @click.option(
-    "--tolerance", "tolerances", multiple=True, metavar="A.B=TEXT", help="'±10 %', '±1 deg', '+2 um -1 um'; repeat for more [the scene's tolerances]."
+    "--tolerance", "tolerances", multiple=True, metavar="A.B=TEXT", help="'±10 %', '±1 deg', '+2 µm -1 µm'; repeat for more [the scene's tolerances]."
 )  # fmt: skip
 @click.option(
     "--count", "size", type=int, default=512, show_default=True, help="n, a power of 2: (d + 2) n samples for d tolerances."

@@ -55,7 +55,8 @@ def law(given: LawOptions) -> int:
     Example:
       raceway law hertz --set contact.damping=300
       raceway law penalty --picture penalty.png
-      raceway law film --set "contact.oil=VG 32" --set contact.temperature_c=40 --set kinematics.spin_speed_rpm=10000
+      raceway law film --set contact.viscosity=0.03 \\
+          --set kinematics.spin_speed_rpm=10000
     """
     from raceway.commands.inputs import require_matplotlib, tell_faults
     from raceway.framework.registry import registry_with

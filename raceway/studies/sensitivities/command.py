@@ -37,7 +37,7 @@ def sensitivities(
     \b
     Example:
       raceway sensitivities examples/b7206.toml
-      raceway sensitivities examples/b7206.toml --by load.axial --by bearing.contact_angle_deg
+      raceway sensitivities examples/b7206.toml --by bearing.contact_angle_deg
     """
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
 
 #: Influences below this part of the largest one are not shown, files have them.
 _SHOWN = 1e-6
-_SCALES = {"N/m": ("N/µm", 1e-6), "m": ("µm", 1e6)}
 
 
 def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableType:
@@ -23,8 +22,7 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
     quantities = content["quantities"]
     heads = []
     for name, one in quantities.items():
-        unit, scale = _SCALES.get(one["unit"], (one["unit"], 1.0))
-        heads.append(f"{name.replace('_', ' ')} {one['value'] * scale:.5g} {unit}")
+        heads.append(f"{name.replace('_', ' ')} {_in_units(one['value'], one['unit'])}")
     rows = []
     for key in (one for one in content["keys"] if one["influence"]):
         row = {"key": key["key"], "value": f"{key['value']:.6g} {key['unit']}".strip()}
@@ -47,6 +45,12 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
     lines += [f"no derivative by {', '.join(keys)}: {why}" for why, keys in reasons.items()]
     lines += [f"written: {', '.join(files)}"] if files else []
     return Group(rows_table(rows, f"{content['title']}\n{'; '.join(heads)}"), *(Text(line) for line in lines))
+
+
+def _in_units(value: float, unit: str) -> str:
+    if unit == "N/m":
+        return f"{1e-6 * value:.5g}\u00a0N/µm"
+    return f"{1e6 * value:.5g}\u00a0µm" if unit == "m" else f"{value:.5g}\u00a0{unit}"
 
 
 def _share(key: ReadTables, name: str) -> str:
