@@ -44,13 +44,14 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
         reasons.setdefault(one["reason"], []).append(one["key"])
     lines += [f"no derivative by {', '.join(keys)}: {why}" for why, keys in reasons.items()]
     lines += [f"written: {', '.join(files)}"] if files else []
-    return Group(rows_table(rows, f"{content['title']}\n{'; '.join(heads)}"), *(Text(line) for line in lines))
+    title = "\n".join([content["title"], *heads])
+    return Group(rows_table(rows, title), *(Text(line) for line in lines))
 
 
 def _in_units(value: float, unit: str) -> str:
     if unit == "N/m":
-        return f"{1e-6 * value:.5g}\u00a0N/µm"
-    return f"{1e6 * value:.5g}\u00a0µm" if unit == "m" else f"{value:.5g}\u00a0{unit}"
+        return f"{1e-6 * value:.5g} N/µm"
+    return f"{1e6 * value:.5g} µm" if unit == "m" else f"{value:.5g} {unit}"
 
 
 def _share(key: ReadTables, name: str) -> str:
