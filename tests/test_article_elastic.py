@@ -255,8 +255,11 @@ def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     now[0] = 60.0
     progress("factoring ball, 26000 elements", 3, 10)
     words, done, total = told[-1]
-    assert words.startswith("static 400 N axial with elastic bodies: factoring ball, 26000 elements 3 of 10;")
-    assert "11 min" in words and (done, total) == (60, 720)
+    assert (
+        words
+        == "static 400 N axial with elastic bodies (all runs: some 11 min left): factoring ball, 26000 elements 3 of 10"
+    )
+    assert (done, total) == (60, 720)
     # The next one of its kind will take no longer than it did.
     progress.begin(3, "static 1000 N axial with elastic bodies")
     assert told[-1][1:] == (60, 600) and "9 min" in told[-1][0]

@@ -139,7 +139,8 @@ def _motion(out: Page, rows: list[Tables], content: ReadTables, drawn: dict[str,
     out.section("In motion")
     out.text(
         f"{content['speed_rpm']:g} r/min, {content['scene']['load']['axial']:g} N, tilt locked, balls with inertia, friction "
-        f"{content['friction']:g}; integrator `newmark`, {content['turns']} turns of {content['steps_per_turn']} steps, the same start and "
+        f"{content['friction']:g}; integrator `newmark`, {content['turns']} turn{'s' if content['turns'] > 1 else ''} of "
+        f"{content['steps_per_turn']} steps, the same start and "
         "identifier for all bodies. Unidirectional: a force of constant amplitude along one line. Bidirectional: m e w² of the rig’s "
         "unbalance, turning with the rotor. The balance of energy is its drift over what was exchanged; stability is what result.json "
         "states: Floquet multipliers belong to steady orbits, which friction does not have."

@@ -33,7 +33,7 @@ def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
     return Group(
         Words(content["title"], "bold"),
         rows_table(at_rest, f"at rest: nodal peak pressure of the most loaded ball from Hertz's; Q (ball loads), x, y, kyy from {content['reference']} bodies"),
-        rows_table(moving, f"{content['speed_rpm']:g} r/min, {content['turns']} turns of {content['steps_per_turn']} steps; K, |Z| and w C over |Z| from {content['reference']} bodies"),
+        rows_table(moving, f"{content['speed_rpm']:g} r/min, {content['turns']} turn{'s' if content['turns'] > 1 else ''} of {content['steps_per_turn']} steps; K, |Z| and w C over |Z| from {content['reference']} bodies"),
         *(Words(line, "magenta") for line in lines),
         Words(end, "dim"),
         *written(files),

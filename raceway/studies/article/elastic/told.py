@@ -42,11 +42,12 @@ class Told:
         )
         whole = sum(self._seconds.values())
         far = f" {done} of {total}" if total else ""
-        self._tell(f"{self._name}: {what}{far}; {_words(whole - gone)}", round(gone), round(whole))
+        # The time comes before what is done: a terminal cuts long lines.
+        self._tell(f"{self._name} ({_words(whole - gone)}): {what}{far}", round(gone), round(whole))
 
 
 def _words(left: float) -> str:
     """Seconds that are left, in words."""
     if left < 90.0:
-        return f"all runs end in some {left:.0f} s by the plan"
-    return f"all runs end in some {left / 60.0:.0f} min by the plan"
+        return f"all runs: some {left:.0f} s left"
+    return f"all runs: some {left / 60.0:.0f} min left"
