@@ -14,8 +14,9 @@ from raceway.core.periodic.direct import directly
 from raceway.core.periodic.doubling import doubled
 from raceway.core.periodic.sampling import displacements
 from raceway.core.periodic.special import DOUBLING, FOLD, PAIR, special_points
-from raceway.errors import SceneError
+from raceway.errors import ConvergenceError, SceneError
 from raceway.studies.follow.instead import QUASI, REPEATS, WANDERS, judged
+from raceway.studies.follow.study import FollowInterrupt
 from validation.command_line import invoke
 from validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
 from validation.oscillators import Oscillator, Pressed, natural_frequency
@@ -260,19 +261,69 @@ def test_files_hold_every_number(curve, tmp_path):
 @pytest.mark.parametrize(
     ("over", "words"),
     [
-        ("bearing.ball_count=8:12", "whole number"),
-        ("integrator.turns=2:3", "setting of the method"),
+        ("bearing.ball_count=8:12", "takes whole numbers only"),
+        ("integrator.turns=2:3", "setting of a method"),
         ("excitation.ramp_turns=1:2", "changes nothing"),
         ("excitation.speed_rpm=-500:3000", "greater than 0"),
         ("excitation.speed_rpm=3000:3000", "begins where it ends"),
         ("bearing.conformity_inner=0.52:1.2", "conformity_inner"),
-        ("contact.kind=hertz:penalty", "no number"),
+        ("excitation.speed_rpm=0:3000", "greater than 0"),
+        ("contact.kind=hertz:penalty", "takes a word or a switch"),
+        ("load.axial=400:0", "nothing loads the bearing"),
+        ("load.axial=nan:400", "finite"),
+        ("excitation.force=40:0", "its force is zero"),
+        ("load.radial[5]=0:100", r"did you mean 'load.radial\[1\]'"),
+        ("excitation.speed_rpm=1:2:3", "must have the form"),
         ("speed", "must have the form"),
     ],
 )
 def test_what_cannot_be_followed_is_refused(over, words):
-    with pytest.raises(SceneError, match=words):
+    with pytest.raises((SceneError, ConvergenceError), match=words):
         rw.follow(SCENE, over)
+
+
+def test_orbiting_balls_are_refused_with_what_to_do():
+    with pytest.raises(SceneError, match="kinematics.orbiting=false"):
+        rw.follow(
+            {**SCENE, "kinematics": {"orbiting": True}, "excitation": {**SCENE["excitation"], "kind": "bidirectional"}}, OVER
+        )
+
+
+def test_down_to_no_damping_beyond_which_there_is_no_scene():
+    """The last value is reached itself, by differences to one side; there is an orbit, which nothing damps."""
+    found = rw.follow(SCENE, "rotor.damping=20:0")
+    assert found.end == "" and found.rows[-1].parameter == 0.0
+    undamped = rw.run({**SCENE, "rotor": {"mass": 2.0}, "integrator": {"kind": "periodic", "tolerance": 1e-9}})
+    assert found.rows[-1].stiffness == pytest.approx(undamped.equivalent_stiffness, rel=1e-6)
+    assert found.rows[-1].verdict == "neutral"
+
+
+def test_meshes_follow_the_natural_frequencies_along_the_branch():
+    """A tilt support of 1000 times the stiffness: meshes for the first value's vibrations would say 4e11 of a growth of 1."""
+    found = rw.follow(SCENE, "supports.tilt=3e4:1e6")
+    assert found.end == "" and {row.verdict for row in found.rows} == {"stable"} and not found.labels
+
+
+def test_a_key_in_a_list_and_values_with_units():
+    """A radial load of 10 N against the force's axis: the branch ends where a run says."""
+    found = rw.follow(SCENE, "load.radial[1]=0:0.01 kN", points=40)
+    there = {**SCENE, "load": {"axial": 400.0, "radial": [0.0, 10.0]}, "integrator": {"kind": "periodic", "tolerance": 1e-9}}
+    assert found.rows[-1].parameter == pytest.approx(10.0)
+    assert found.rows[-1].stiffness == pytest.approx(rw.run(there).equivalent_stiffness, rel=1e-6)
+
+
+def test_ctrl_c_keeps_the_orbits_so_far(tmp_path):
+    def stop(what, done, total):
+        if what == "orbits" and done == 5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(FollowInterrupt) as caught:
+        rw.follow(SCENE, OVER, out=tmp_path, progress=stop)
+    partial = caught.value.partial
+    content = json.loads((tmp_path / "follow.json").read_text())
+    assert len(partial.rows) == len(content["rows"]) == 5
+    here = partial.rows[-1].parameter
+    assert content["end"].startswith(f"stopped at {here:.6g} after 5 orbits") and f"={here:.6g}:30000" in content["end"]
 
 
 def test_the_command_writes_and_tells(tmp_path):

@@ -106,7 +106,7 @@ def on_the_way(speed_rpm: float) -> Point:
     problem = parameter.problem_at(speed_rpm, symmetry)
     solved = directly(problem, equilibrium.displacement, equilibrium.stiffness, 1e-9).solved
     fastest = highest_order(problem, equilibrium.stiffness) * problem.speed
-    return Branch(lambda p: parameter.problem_at(p, symmetry), 2950.0, solved.size, 1e-8, fastest=fastest).start(
+    return Branch(lambda p: parameter.problem_at(p, symmetry), 2950.0, solved.size, 1e-8, fastest=lambda _: fastest).start(
         solved, speed_rpm
     )
 
@@ -120,7 +120,7 @@ def beside(fold: Point, count: int = 1) -> list[Point]:
         2950.0,
         fold.solved.size,
         1e-8,
-        fastest=fold.highest * fold.solved.problem.speed,
+        fastest=lambda _: fold.highest * fold.solved.problem.speed,
     )
     begin = attrs.evolve(fold, tangent=_again(branch, fold))
     found = [begin, begin]

@@ -57,8 +57,12 @@ def key_of(scene: Scene, path: str) -> Key:
     table = path.partition(".")[0]
     if table in SETTINGS:
         raise SceneError.at(path, None, f"is a setting of a method: the answer must not depend on [{table}]")
-    why = f"is no continuous key of this scene: a number that the scene gives or has by default{nearest(path, known)}"
-    raise SceneError.at(path, None, why)
+    found = _value(scene, path)
+    if isinstance(found, bool | str):
+        raise SceneError.at(path, found, "is no continuous key: it takes a word or a switch")
+    if isinstance(found, int):
+        raise SceneError.at(path, found, "is no continuous key: it takes whole numbers only")
+    raise SceneError.at(path, None, f"is no continuous key of this scene, which has no number there{nearest(path, known)}")
 
 
 def with_number(scene: Scene, path: str, value: float) -> Scene:
@@ -69,8 +73,25 @@ def with_number(scene: Scene, path: str, value: float) -> Scene:
     ValueError
         A number that its key's or table's rule refuses.
     """
-    steps: list[str | int] = [name or int(index) for name, index in _STEP.findall(path)]
-    found: Scene = _replaced(scene, steps, value)
+    found: Scene = _replaced(scene, _steps(path), value)
+    return found
+
+
+def _steps(path: str) -> list[str | int]:
+    return [name or int(index) for name, index in _STEP.findall(path)]
+
+
+def _value(scene: Scene, path: str) -> Any:
+    """What stands at a path; None where there is nothing."""
+    found: Any = scene
+    for step in _steps(path):
+        if isinstance(step, int):
+            found = found[step] if isinstance(found, tuple) and step < len(found) else None
+        elif attrs.has(type(found)):
+            inside = [getattr(found, f.name) for f in attrs.fields(type(found)) if "plugin" in f.metadata]
+            found = next((getattr(part, step) for part in (found, *inside) if hasattr(part, step)), None)
+        else:
+            return None
     return found
 
 

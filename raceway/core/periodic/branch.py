@@ -80,7 +80,7 @@ class Branch:
     unit : a typical change of the parameter;  length : a typical size of the motion [m]
     tolerance : error of the motion over its size that meshes are kept fit for;  most_intervals : that they may have
     slope : (problem, path) -> (m s, 5) derivative of the balance of forces by the parameter; None for a difference quotient
-    fastest : highest natural frequency [rad/s], which multipliers are fit for; 0: as exact as the mesh
+    fastest : parameter -> highest natural frequency [rad/s], which multipliers are fit for; 0: as exact as the mesh
     aim : deviation that steps are chosen for; None: by the number of corrections
     """
 
@@ -90,7 +90,7 @@ class Branch:
     tolerance: float = 1e-6
     most_intervals: int = 2048
     slope: Callable[[Problem, Path], np.ndarray] | None = None
-    fastest: float = 0.0
+    fastest: Callable[[float], float] = lambda _: 0.0
     aim: float | None = None
 
     def start(self, solved: Solved, parameter: float, sense: float = 1.0) -> Point:
@@ -99,7 +99,8 @@ class Branch:
         across = np.zeros(n2 + 1)
         across[-1] = sense
         _, _, tangent, linear = self._correct(solved.path, parameter, across, None)
-        return Point(parameter, linear, self._estimate(linear, tangent).error, tangent, False, highest=self._order(linear))
+        error = self._estimate(linear, tangent).error
+        return Point(parameter, linear, error, tangent, False, highest=self._order(linear, parameter))
 
     def along(self, path: Path, parameter: float, tangent: np.ndarray) -> Point:
         """The point of an orbit that is known, with a direction to leave it by.
@@ -114,7 +115,7 @@ class Branch:
         if linearised is None:
             raise ConvergenceError("the balls find no place between the races")
         solved = Solved(problem, path, linearised[0], float(np.abs(path.v / problem.weight).max()), True, 0, 0.0)
-        return Point(parameter, solved, 0.0, tangent, False, highest=self._order(solved))
+        return Point(parameter, solved, 0.0, tangent, False, highest=self._order(solved, parameter))
 
     def follow(self, first: Point, step: float, longest: float | None = None) -> Iterator[Point]:
         """Points from ``first`` on, one by one, for as long as they are asked for.
@@ -185,7 +186,7 @@ class Branch:
         free = last.problem.free
         state = np.concatenate([(path.q[0] - moved.q[0])[free], (path.v[0] - moved.v[0])[free]]) / self.length
         strayed = float(np.hypot(np.linalg.norm(state), (parameter - at) / self.unit))
-        return Point(parameter, last, found.error, tangent, folded, deviation, strayed, self._order(last))
+        return Point(parameter, last, found.error, tangent, folded, deviation, strayed, self._order(last, parameter))
 
     def crossing(self, point: Point) -> float:
         """Determinant of the bordered problem, which changes its sign where another branch crosses, and not at a fold."""
@@ -195,8 +196,8 @@ class Branch:
         """(2 n,) of the unknown state at the start of the span, by a unit of length along the branch."""
         return self.length * point.tangent[:-1]
 
-    def _order(self, solved: Solved) -> float:
-        return self.fastest / solved.problem.speed
+    def _order(self, solved: Solved, parameter: float) -> float:
+        return self.fastest(parameter) / solved.problem.speed
 
     def _estimate(self, solved: Solved, tangent: np.ndarray) -> Estimate:
         """The error across the branch, which has a value at folds too."""
@@ -218,12 +219,23 @@ class Branch:
         if self.slope is not None:
             by = self.slope(problem, path)
         else:
-            h = _DIFFERENCE * self.unit
-            both = [self._imbalance(self.problem_at(parameter + off), path) for off in (-h, h)]
-            by = (both[1] - both[0]) / (2.0 * h)
+            by = self._difference(problem, path, parameter)
         out, report = problem.eliminated(path.nodes), np.zeros(3)
         done = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
         return (out, report) if done == path.intervals and np.isfinite(report).all() else None
+
+    def _difference(self, problem: Problem, path: Path, parameter: float) -> np.ndarray:
+        """By the parameter: central, at the end of what it may be to one side."""
+        h, sides = _DIFFERENCE * self.unit, []
+        for off in (-h, h):
+            try:
+                sides.append((off, self.problem_at(parameter + off)))
+            except ConvergenceError:
+                sides.append((0.0, problem))
+        (low, one), (high, two) = sides
+        if low == high:
+            self.problem_at(parameter + h)  # why there is none on either side
+        return (self._imbalance(two, path) - self._imbalance(one, path)) / (high - low)
 
     def _imbalance(self, problem: Problem, path: Path) -> np.ndarray:
         push = problem.push(path.nodes)

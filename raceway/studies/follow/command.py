@@ -64,7 +64,8 @@ def follow(given: FollowOptions) -> int:
     """Follow the steady orbit of a scene from the first value of a key to the last, through folds: K, C, amplitude, phase and
     stability of each orbit, with folds, period doublings, Neimark-Sacker points and peaks located.
 
-    Writes follow.json, follow.csv and follow.png. The scene's integrator and identifier count for nothing.
+    Writes follow.json, follow.csv and follow.png. The scene's integrator and identifier count for nothing. Stopped by Ctrl-C, it writes
+    the orbits so far, and where to go on.
 
     \b
     Example:
@@ -81,13 +82,22 @@ def follow(given: FollowOptions) -> int:
     tell_faults(registry)
     with show_progress() as progress:
         from raceway.studies.follow.front import follow as study
+        from raceway.studies.follow.study import FollowInterrupt
 
-        found = study(
-            tables, given.over, points=given.points, aim=given.aim, doubled=given.doubled, turns=given.turns, plugins=given.plugins, progress=progress,
-        )  # fmt: skip
+        stopped = None
+        try:
+            found = study(
+                tables, given.over, points=given.points, aim=given.aim, doubled=given.doubled, turns=given.turns, plugins=given.plugins, progress=progress,
+            )  # fmt: skip
+        except FollowInterrupt as stop:
+            if not stop.partial.rows:
+                raise
+            found, stopped = stop.partial, stop  # what there is of the curve is written and shown first
     content, files = found.to_dict(), list[str]()
-    failed = attempt(lambda: found.write(folder, pictures), files)
+    failed = attempt(lambda: found.write(folder, pictures and stopped is None), files)
     from raceway.studies.follow.screen import follow_screen
 
     show(content, given.as_json, failed, lambda: follow_screen(content, files))
+    if stopped is not None:
+        raise stopped
     return 0

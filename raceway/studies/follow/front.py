@@ -9,14 +9,15 @@ from typing import Any
 from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, registry_with
-from raceway.scene.file import parse_value, with_value
+from raceway.scene.continuous import key_of
+from raceway.scene.file import parse_value, scene_from_dict, with_value
 from raceway.scene.given import Change, plain_tables
+from raceway.scene.units import number_in
 from raceway.storage.tables import Tables
 from raceway.studies.follow.parameter import Parameter
 from raceway.studies.follow.result import Followed
-from raceway.studies.follow.study import Rule
+from raceway.studies.follow.study import FollowInterrupt, Rule
 from raceway.studies.follow.study import follow as study
-from raceway.studies.many.axes import is_number
 from raceway.studies.many.points import numbers_at
 
 POINTS, AIM = 1000, 1e-3
@@ -63,6 +64,8 @@ def follow(
         A key that is not continuous, or a range whose ends or middle are no scenes.
     ConvergenceError
         No orbit at the first value.
+    FollowInterrupt
+        On Ctrl-C: a KeyboardInterrupt with the curve up to there as ``partial``; it is written to ``out``, too, without a picture.
 
     Notes
     -----
@@ -84,8 +87,13 @@ def follow(
     registry = registry_with([Path(one) for one in plugins])
     tables = plain_tables(scene, *changes, registry=registry)
     parameter = parameter_of(tables, over, registry)
-    with telling(progress) as told:
-        found = study(parameter, Rule(points, aim, doubled, turns), told)
+    try:
+        with telling(progress) as told:
+            found = study(parameter, Rule(points, aim, doubled, turns), told)
+    except FollowInterrupt as stop:
+        if out is not None and stop.partial.rows:
+            stop.partial.write(out, picture=False)
+        raise
     if out is not None:
         found.write(out)
     return found
@@ -94,17 +102,25 @@ def follow(
 def parameter_of(tables: Tables, over: str, registry: Registry) -> Parameter:
     """The key and its ends of the text ``KEY=first:last``, in a scene that is solved for its steady orbits."""
     key, sign, ends = over.partition("=")
-    first, colon, last = ends.partition(":")
-    if not (sign and colon and key.strip() and "." in key):
+    texts = ends.split(":")
+    if not (sign and len(texts) == 2 and "." in key):
         raise SceneError.at("--over", over, _FORM)
-    key = key.strip()
-    values = []
-    for text in (first, last):
-        value = parse_value(text.strip())
-        value = numbers_at(tables, {key: value}, registry)[key]
-        if not is_number(value):
-            raise SceneError.at(key, text, "is no number: only a continuous key can be followed")
-        values.append(float(value))
-    if values[0] == values[1]:
+    key, tables = key.strip(), with_value(tables, "integrator", {"kind": "periodic"})
+    # What has no number yet, as supports.tilt = "free", is read with one; keys of lists have theirs.
+    given = [parse_value(text) for text in texts]
+    if "[" not in key:
+        given = [numbers_at(tables, {key: value}, registry)[key] for value in given]
+        tables = with_value(tables, key, given[0])
+    whole = scene_from_dict(tables, registry)
+    unit = key_of(whole, key).unit
+    first, last = (_number(key, value, unit) for value in given)
+    if first == last:
         raise SceneError.at(key, over, "begins where it ends: there is no branch to follow")
-    return Parameter(with_value(tables, "integrator", {"kind": "periodic"}), key, values[0], values[1], registry)
+    return Parameter(whole, key, first, last)
+
+
+def _number(key: str, value: Any, unit: str) -> float:
+    try:
+        return number_in(unit, value) if isinstance(value, str) else float(value)
+    except (TypeError, ValueError):
+        raise SceneError.at(key, value, "is no number: only a continuous key can be followed") from None

@@ -2,8 +2,8 @@
 
 Notes
 -----
-A scene is read and built anew at each value, about a millisecond for rigid bodies.  Where the systems at both ends and
-between them differ by the excitation and by arrays that are linear in the key (loads, gyroscopic terms), only these change.
+The model is built anew at each value, about a millisecond for rigid bodies.  Where the systems at both ends and between them
+differ by the excitation and by arrays that are linear in the key (loads, gyroscopic terms), only these change.
 """
 
 from __future__ import annotations
@@ -24,16 +24,12 @@ from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.surrogate import compiled
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Schedule
-from raceway.errors import ConvergenceError, Mistake, SceneError
-from raceway.framework.registry import Registry
+from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict, value_at, with_value
+from raceway.scene.continuous import with_number
 from raceway.scene.tables import Scene
-from raceway.storage.tables import Tables
 
-#: Tables whose keys are settings of the method, and keys that may not change along a branch.
-_METHOD = ("integrator", "identifier", "mesh")
 #: A place between the ends where nothing special is to be expected.
 _BETWEEN = 0.382
 #: Problems that are kept: a correction asks for the same three again.
@@ -48,18 +44,16 @@ class Parameter:
 
     Attributes
     ----------
-    tables : of the scene;  key : dotted
+    whole : the scene, which has a number at the key;  key : a continuous one, such as "load.axial"
     linear : parts of the system that change linearly, where nothing else does but the excitation; None where more changes
     """
 
-    tables: Tables
+    whole: Scene
     key: str
     first: float
     last: float
-    registry: Registry
     linear: tuple[str, ...] | None = attrs.field(default=None, init=False)
     _ends: tuple[System, System] = attrs.field(init=False)
-    _excitation: Any = attrs.field(init=False)
     _kept: dict[float, Problem] = attrs.field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
@@ -85,7 +79,7 @@ class Parameter:
         return self.first + part * (self.last - self.first)
 
     def scene(self, p: float) -> Scene:
-        return scene_from_dict(with_value(self.tables, self.key, float(p)), self.registry)
+        return with_number(self.whole, self.key, float(p))
 
     def model(self, p: float) -> Model:
         """Model of the scene at a value of the key."""
@@ -106,25 +100,28 @@ class Parameter:
         return problem_of(self.system(p), 2.0 * np.pi / self.excitation(p).period_s, q).symmetry
 
     def excitation(self, p: float) -> Any:
-        """Of the scene at a value of the key, which need not be read whole for it."""
-        table, _, name = self.key.rpartition(".")
-        return attrs.evolve(self._excitation, **{name: float(p)}) if table == "excitation" else self._excitation
+        """Of the scene at a value of the key."""
+        return self.scene(p).excitation
 
     def system(self, p: float) -> System:
         """The compiled ring at a value of the key."""
+        return self._system(p, self.excitation(p))
+
+    def _system(self, p: float, excitation: Any) -> System:
         if self.linear is None:
             return self._built(p)
         part = (p - self.first) / (self.last - self.first)
         one, two = self._ends
         changed = {name: (1.0 - part) * getattr(one, name) + part * getattr(two, name) for name in self.linear}
-        return attrs.evolve(one, force_params=self.excitation(p).parameters(), **changed)
+        return attrs.evolve(one, force_params=excitation.parameters(), **changed)
 
     def problem_at(self, p: float, symmetry: Symmetry) -> Problem:
         """The boundary-value problem at a value of the key; the last ones are kept."""
         found = self._kept.get(p)
         if found is None or found.symmetry is not symmetry:
             try:
-                found = Problem(self.system(p), 2.0 * np.pi / self.excitation(p).period_s, symmetry)
+                excitation = self.excitation(p)
+                found = Problem(self._system(p, excitation), 2.0 * np.pi / excitation.period_s, symmetry)
             except (SceneError, ValueError) as why:
                 raise ConvergenceError(f"beyond it there is no scene ({why})") from why
             if len(self._kept) >= _KEPT:
@@ -138,32 +135,29 @@ class Parameter:
         return by_address(ring)
 
     def _check(self) -> None:
-        """Refuse a key that is no continuous one of the motion, and ranges whose ends are no scenes."""
-        over = f"{self.first:g}:{self.last:g}"
-        if self.key.split(".")[0] in _METHOD:
-            raise SceneError.at(
-                self.key, over, "is a setting of the method; follow a key of the bearing, its loads or its excitation"
-            )
-        for p in (self.first, self.last, self.value(_BETWEEN)):
+        """Refuse ranges that leave what the key allows, and scenes without a steady orbit."""
+        for p in (self.first, self.last):
             try:
                 scene = self.scene(p)
-            except SceneError as error:
-                raise SceneError(
-                    [Mistake(m.path, m.value, f"{m.message} (followed over every value of {over})") for m in error.mistakes]
-                ) from None
-        if value_at(self.tables, "excitation") is None:
+            except ValueError as why:
+                over = f"{self.first:g}:{self.last:g}"
+                raise SceneError.at(self.key, p, f"{why} (followed over every value of {over})") from None
+        excitation = scene.excitation
+        if excitation is None:
             raise SceneError.at("excitation", None, "is missing: there is no motion to follow")
-        if scene.excitation.period_s is None:
+        if excitation.period_s is None:
             raise SceneError.at(
-                "excitation.kind", scene.excitation.name, "does not repeat itself every turn: there is no steady orbit"
+                "excitation.kind", excitation.name, "does not repeat itself every turn: there is no steady orbit"
             )
-        self._excitation = scene.excitation
         model = build_model(scene, make_plan(scene))
-        refuse(model.system, Schedule(scene.excitation.period_s / 36, 36, 1))
+        refuse(model.system, Schedule(excitation.period_s / 36, 36, 1))
         if model.system.scalars[CAGE] != 0.0:
-            raise SceneError.at(
-                "kinematics.orbiting", True, "balls that orbit change the period along the branch: follow it with false"
+            words = (
+                "balls that orbit pass at a frequency of their own, so that K, C and multipliers belong to no whole turns of the force: "
+                "the branch is followed for balls that stand, --set kinematics.orbiting=false. Single values with orbiting balls: "
+                "`raceway run` or `raceway sweep`"
             )
+            raise SceneError.at("kinematics.orbiting", True, words)
 
 
 def _same(one: object, two: object) -> bool:

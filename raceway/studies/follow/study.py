@@ -24,6 +24,14 @@ _TOLERANCE = 1e-8
 _FIRST = 0.02
 
 
+class FollowInterrupt(KeyboardInterrupt):
+    """Ctrl-C on the way; ``partial``: the curve up to there, whose ``end`` says so."""
+
+    def __init__(self, partial: Followed) -> None:
+        super().__init__()
+        self.partial = partial
+
+
 @attrs.frozen
 class Rule:
     """How a branch is followed.
@@ -49,11 +57,13 @@ def follow(parameter: Parameter, rule: Rule, on_progress: OnProgress | None = No
     ------
     ConvergenceError
         No equilibrium or no orbit at the first value.
+    FollowInterrupt
+        On Ctrl-C, with the orbits so far.
     """
     model, equilibrium = parameter.settled(parameter.first)
     q, tangent, mass = equilibrium.displacement, equilibrium.stiffness, model.mass_used
     try:
-        parameter.settled(parameter.last)
+        end = parameter.settled(parameter.last)[1]
     except ConvergenceError as why:
         raise ConvergenceError(f"at `{parameter.key}` = {parameter.last:g}: {why}", why.state) from why
     symmetry = parameter.symmetry(q)
@@ -62,16 +72,40 @@ def follow(parameter: Parameter, rule: Rule, on_progress: OnProgress | None = No
         problem = attrs.evolve(problem, watch=lambda: on_progress("the first orbit", 0, 0))
     first = _first(problem, q, tangent)
     unit = abs(parameter.last - parameter.first) / 10.0
-    fastest = highest_order(problem, tangent) * problem.speed
+    last = parameter.problem_at(parameter.last, symmetry)
+    squares = [(highest_order(at, k) * at.speed) ** 2 for at, k in ((problem, tangent), (last, end.stiffness))]
+
+    def fastest(p: float) -> float:
+        """Highest natural frequency [rad/s]: its square is linear in a stiffness."""
+        part = (p - parameter.first) / (parameter.last - parameter.first)
+        return float(np.sqrt(max(squares[0] + part * (squares[1] - squares[0]), min(squares))))
+
     branch = Branch(lambda p: parameter.problem_at(p, symmetry), unit, first.size, ERROR, MOST, None, fastest, rule.aim)
     curve = Followed(parameter.key, parameter.first, parameter.last, float(np.degrees(symmetry.span)), model.scene.title)
     sense = 1.0 if parameter.last > parameter.first else -1.0
-    Walk(branch, curve, parameter, mass, rule.points).go(branch.start(first, parameter.first, sense), _FIRST, on_progress)
-    if rule.doubled:
-        _doubled(branch, curve, parameter, mass, rule, on_progress)
-    if rule.turns:
-        for one in (curve, *curve.doubled):
+    try:
+        Walk(branch, curve, parameter, mass, rule.points).go(
+            branch.start(first, parameter.first, sense), _FIRST, on_progress
+        )
+        if rule.doubled:
+            _doubled(branch, curve, parameter, mass, rule, on_progress)
+        for one in (curve, *curve.doubled) if rule.turns else ():
             one.instead += [instead(point, rule.turns, on_progress) for point in one.worst]
+    except KeyboardInterrupt as stop:
+        raise FollowInterrupt(_stopped(curve)) from stop
+    return curve
+
+
+def _stopped(curve: Followed) -> Followed:
+    """What there is of a curve that was stopped."""
+    curve.doubled = [one for one in curve.doubled if one.rows]
+    for one in (curve, *curve.doubled):
+        one.labels.sort(key=lambda label: label.row.arc)
+    here = curve.rows[-1].parameter if curve.rows else curve.first
+    if curve.end or here == curve.last:
+        curve.notes.append("stopped before the branches of twice the period and the time integrations were finished")
+    else:
+        curve.end = f"stopped at {here:.6g} after {len(curve.rows)} orbits; --over {curve.key}={here:.6g}:{curve.last:g} goes on from there"
     return curve
 
 

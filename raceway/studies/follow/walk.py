@@ -24,6 +24,8 @@ ERROR, _LOST = 1e-6, 1e-3
 _STRAYED = 0.2
 #: Most change of the key in a step, in tenths of the range.
 _MOST = 0.5
+#: Distance from the last value over the range, from which it is reached with the key held.
+_BESIDE = 1e-4
 OnProgress = Callable[[str, int, int], None]
 
 
@@ -64,7 +66,8 @@ class Walk:
             except ConvergenceError as why:
                 size *= 0.5
                 if size < least:
-                    curve.end = f"the branch ends at {here.parameter:.6g}: {why}"
+                    if not self._at_the_last(here):
+                        curve.end = f"the branch ends at {here.parameter:.6g}: {why}"
                     return
                 continue
             if closed is not None and closed(there):
@@ -85,6 +88,22 @@ class Walk:
             size = min(size * self.branch.growth(there), _MOST / max(abs(there.tangent[-1]), 1e-300))
             here = self._meshed(there)
         curve.end = f"left after {self.points} orbits at {here.parameter:.6g} (--points)"
+
+    def _at_the_last(self, here: Point) -> bool:
+        """Beside the last value, beyond which there may be no scene, as no damping below 0: with the key held."""
+        gap = self.parameter.last - here.parameter
+        if abs(gap) > _BESIDE * abs(self.parameter.last - self.parameter.first):
+            return False
+        try:
+            solved = solve(
+                self.parameter.problem_at(self.parameter.last, here.solved.problem.symmetry), here.solved.path, 1e-2 * ERROR
+            )
+            there = self.branch.start(solved, self.parameter.last, float(np.sign(gap)))
+        except ConvergenceError:
+            return False
+        self.arc += abs(gap) / self.branch.unit
+        self._tell(there)
+        return True
 
     def _within(self, one: Point, two: Point, size: float) -> tuple[Point, float, float | None]:
         """The second point, or that at the end of the range between the two; the step's length, and that end."""
