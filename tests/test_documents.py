@@ -19,7 +19,7 @@ from raceway.scene.file import STUDY_TABLES
 from raceway.scene.tables import TABLES
 from tests.snippets import PAGES, ROOT, Listing, anchors, links, listings
 
-_ENVIRONMENT = "makes a virtual environment; continuous integration does it"
+_ENVIRONMENT = "makes a virtual environment"
 _THREE = "three terminals; tests/test_dask.py does it"
 #: Commands that no test runs, each with the reason.
 NOT_RUN = {
