@@ -86,6 +86,27 @@ def test_an_internal_resonance_does_not_hide_the_stable_motion():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("axial", "speed", "amplitude", "inertia", "found"),
+    [
+        (800.0, 10980.0, "constant", True, "from a higher speed"),
+        (400.0, 13492.5, "unbalance", False, "from a heavier axial load"),
+    ],
+)
+def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitude, inertia, found):
+    """Points of the article's study at which nothing grows out of rest: the orbit closes in a turn of the reference ring."""
+    tables = article(axial, kind="periodic", tolerance=1e-9)
+    tables["excitation"] |= {"speed_rpm": speed, "amplitude": amplitude}
+    tables["kinematics"] = {"ball_inertia": inertia}
+    result = solved(tables)
+    assert result.simulation.orbits[0]["found"] == found
+    z, multiplier, gap = by_integration(result)
+    assert gap < 1e-6
+    assert abs(z - result.identification.dynamic_stiffness) < 1e-6 * abs(z)
+    assert multiplier == pytest.approx(result.simulation.orbits[0]["multiplier"], abs=1e-4)
+
+
+@pytest.mark.slow
 def test_a_branch_that_closes_leads_to_the_stable_motion():
     """800 N: two unstable motions, and a stable one that a branch whose turns do not close passes by."""
     result = solved(article(800.0, kind="periodic", tolerance=1e-9))

@@ -53,6 +53,7 @@ def by_integration(result: Result, damping: float = 0.0) -> tuple[complex, float
     """Z, the largest multiplier, and what a turn does not close by over its amplitude, of a turn that begins on the motion."""
     model, simulation = result.model, result.simulation
     assert simulation is not None and model.excitation is not None
+    w = 2.0 * np.pi / model.excitation.period_s
     ring = Damped(
         9.525e-3,
         46e-3,
@@ -60,14 +61,14 @@ def by_integration(result: Result, damping: float = 0.0) -> tuple[complex, float
         np.radians(15.0),
         0.522,
         0.522,
-        spin_speed=W,
+        spin_speed=w if model.scene.kinematics.ball_inertia else 0.0,
         damping=damping,
-        spin=ring_inertia(model.scene)[2] * W,
+        spin=ring_inertia(model.scene)[2] * w,
     )
-    force = (rotating if model.excitation.sense else swinging)(model.excitation.amplitude_n, W)
-    times = np.linspace(0.0, 2.0 * np.pi / W, 181)
+    force = (rotating if model.excitation.sense else swinging)(model.excitation.amplitude_n, w)
+    times = np.linspace(0.0, 2.0 * np.pi / w, 181)
     mass, load, free = model.system.mass, model.system.load, model.system.free
     begin = simulation.whole.displacement[-1], simulation.whole.velocity[-1]
     q, _, flow = trajectory(ring, mass, load, force, free, *begin, times, 1e-10, variational=True)
     gap = float(np.abs(q[-1] - q[0])[:3].max() / np.ptp(q[:, 1]))
-    return dynamic_stiffness(times[:-1], q[:-1], force, W), float(np.abs(np.linalg.eigvals(flow)).max()), gap
+    return dynamic_stiffness(times[:-1], q[:-1], force, w), float(np.abs(np.linalg.eigvals(flow)).max()), gap

@@ -18,7 +18,7 @@ special         folds, branch points, period doublings and Neimark-Sacker points
 doubling        the branch of twice the period at a period doubling
 direct          a motion from a first guess, at once or under a growing force
 from_rest       the branch that grows out of rest with the force
-detour          a motion reached from another speed
+detour          a motion followed to from another speed or load
 search          all motions that are found, directly and along branches
 beginning       the motion that a transient starts on
 floquet         Floquet multipliers and stability

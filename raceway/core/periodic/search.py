@@ -1,11 +1,11 @@
-"""The periodic motions of a system: directly, and along branches on which the force grows or the speed changes."""
+"""The periodic motions of a system: directly, and along branches on which the force grows, the speed or the load changes."""
 
 from __future__ import annotations
 
 import attrs
 import numpy as np
 
-from raceway.core.periodic.detour import from_other_speeds
+from raceway.core.periodic.detour import from_elsewhere
 from raceway.core.periodic.direct import MOST, directly, full_steps, grown, highest_order, mesh_of
 from raceway.core.periodic.first_guess import standing
 from raceway.core.periodic.floquet import Floquet, floquet
@@ -34,7 +34,8 @@ class Found:
     ----------
     refined : the motion with its error
     highest : order of the highest natural frequency at the equilibrium
-    how : "directly", "from rest" (the force grows), "from a higher speed", "from a lower speed" or "by Fourier collocation"
+    how : "directly", "from rest" (the force grows), "from a higher speed", "from a lower speed", "from a heavier axial load" or "by
+        Fourier collocation"
     fate : its multipliers
     fold : share of the force at which the branch from rest turns back for good; None where it leads to the whole force
     others : further motions under the same force that were met in the search
@@ -82,7 +83,7 @@ def find(
     branch far away.  Where it fails, is unstable, or ends far from the linear response, there may be several motions: the
     branch that leads from the resting ring is followed round its folds, and every place where it meets the whole force is a
     motion.  The first one along the branch that is not unstable is taken; where all are, the one that is left slowest.  Where
-    the branch never reaches the whole force and all found so far is unstable, motions at other speeds are followed to this one.
+    the branch never reaches the whole force and all found so far is unstable, motions at other speeds and loads are followed to this one.
 
     Raises
     ------
@@ -183,7 +184,7 @@ def _chosen(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: flo
             if lost is not None:
                 raise lost from None
     if fold is not None and problem.system.scalars[CAGE] == 0.0 and all(one.fate.verdict == "unstable" for one in found):
-        reached = from_other_speeds(problem, q, tangent, tolerance)
+        reached = from_elsewhere(problem, q, tangent, tolerance, not found)
         if reached is not None and not any(_alike(reached[0], known.refined) for known in found):
             found.append(found_by(reached[0], highest, reached[1], fold))
     if not found:
@@ -191,7 +192,7 @@ def _chosen(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: flo
         end = back if branch.folds else "beyond which it could not be followed"
         raise ConvergenceError(
             f"no motion of the period of the force was found: the one that grows out of rest ends at {100 * (fold or 0.0):.3g} % "
-            f"of the force, {end}, and none leads here from other speeds. A transient integrator with start = 'ramp' shows "
+            f"of the force, {end}, and none leads here from other speeds or a heavier load. A transient integrator with start = 'ramp' shows "
             "what the ring does instead.",
             {"q": q.copy()},
         )
