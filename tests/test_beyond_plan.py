@@ -110,7 +110,7 @@ def test_only_many_times_the_plan_is_beyond_it(monkeypatch):
 
 def test_short_plans_count_as_three_seconds(monkeypatch):
     clock = Clock(monkeypatch)
-    plan = type("Plan", (), {"predicted_wall_s": 0.01})()
+    plan = type("Plan", (), {"predicted_wall_s": 0.01, "at_least": False})()
     allowance = Allowance.of(plan, PATIENCE)
     clock.now = 59.0
     assert not allowance.spent

@@ -9,11 +9,13 @@ import json
 import numpy as np
 import pytest
 
+from raceway.bodies.elastic.plan import allowed_bytes
 from raceway.bodies.model import build_model
 from raceway.core.elastic.solver import LinearSolver
 from raceway.core.elastic.start import from_orbit
 from raceway.core.ring.orbit import steady_orbit
 from raceway.errors import RacewayError, SceneError
+from raceway.pipeline.allowance import Allowance
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
@@ -262,9 +264,33 @@ def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path,
 
 
 def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.plan.machine_bytes", lambda: 2.0**24)
+    monkeypatch.setattr("raceway.bodies.elastic.plan.allowed_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
+
+
+def test_a_limit_of_the_process_counts_as_memory(monkeypatch):
+    monkeypatch.setattr("resource.getrlimit", lambda kind: (2**33, 2**33))
+    assert 0.0 < allowed_bytes() < 2.0**33
+
+
+def test_friction_at_rest_is_left_out_and_told(static):
+    rubbing = scene(contact={"friction": 0.03})
+    assert any(part.part == "friction" and "at rest" in part.why for part in make_plan(rubbing).left_out)
+    found = run(rubbing).to_dict()
+    assert any("without friction" in text for text in found["warnings"])
+    # Nothing else differs: the same solver on the same unknowns.
+    assert found["equilibrium"]["displacement"]["x"] == static[0].to_dict()["equilibrium"]["displacement"]["x"]
+    moving = scene(contact={"friction": 0.03}, **EXCITED)
+    assert any(part.part == "friction" for part in make_plan(moving).kept)
+
+
+def test_no_run_on_a_mesh_of_unknown_size_is_stopped_for_its_time():
+    files = {"kind": "file", "ball": "b.vtu", "inner_ring": "i.vtu", "outer_ring": "o.vtu"}
+    plan = make_plan(scene_from_dict({**TINY, "mesh": files}))
+    assert plan.at_least and plan.mesh is None
+    assert Allowance.of(plan, 20.0).patience == float("inf")
+    assert Allowance.of(make_plan(scene()), 20.0).patience == 20.0
 
 
 def test_surfaces_that_overlap_by_more_than_an_element_are_refused():

@@ -363,6 +363,7 @@ class Cost:
     unknowns : None for those of the ring and the balls alone
     mesh : ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
     scales : whether a slower machine takes longer in proportion
+    at_least : whether it may be any number of times more: a mesh whose size is not known before it is read
     """
 
     seconds: float
@@ -370,6 +371,7 @@ class Cost:
     unknowns: int | None = None
     mesh: Tables | None = None
     scales: bool = True
+    at_least: bool = False
 
 
 class BodiesKind(attrs.AttrsInstance, Protocol):

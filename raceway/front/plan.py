@@ -37,8 +37,9 @@ class ScenePlan(Shown, Plan):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         step = "static" if self.time_step_s is None else f"{self.predicted_steps} steps of {self.time_step_s:.3g} s"
+        time = "time not known before the mesh is read" if self.at_least else number(self.predicted_wall_s, "s", 2)
         head: list[Fact] = [
-            ("predicted", "", f"{number(self.predicted_wall_s, 's', 2)}; {step}; {self.dofs} unknowns"),
+            ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
             ("kept", "", ", ".join(one.part for one in self.kept)),
         ]
         return self.title, [*head, *(("left out", "", f"{one.part}: {one.why}") for one in self.left_out)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import attrs
 
 from raceway.core.jit import working_processor_time
@@ -29,7 +31,8 @@ class Allowance:
 
     @classmethod
     def of(cls, plan: Plan, patience: float) -> Allowance:
-        return cls(max(plan.predicted_wall_s, _LEAST_S), patience)
+        """Without an end where the plan knows no more than what a run takes at least."""
+        return cls(max(plan.predicted_wall_s, _LEAST_S), inf if plan.at_least else patience)
 
     @property
     def taken(self) -> float:

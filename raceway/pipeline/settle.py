@@ -14,6 +14,7 @@ from raceway.bodies.running import report_of
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
+from raceway.framework.duties import traits_of
 
 
 def settle(
@@ -95,6 +96,10 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
         found.append("the bearing unseats: the contact angle of a loaded ball is zero or negative")
     if any(model.scene.load.moment) and model.scene.supports.tilt == "locked":
         found.append("`load.moment` has no effect: supports.tilt is locked")
-    if model.scene.contact.friction > 0.0:
+    if model.scene.contact.friction > 0.0 and traits_of(model.scene).every_node:
+        found.append(
+            "equilibria of elastic bodies are without friction, and so is their stiffness: contact.friction acts in motion"
+        )
+    elif model.scene.contact.friction > 0.0:
         found.append("friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have")
     return (*found, *model.bearing.edge_warnings(model, inner, outer, force))

@@ -6,6 +6,7 @@ from math import pi
 
 import attrs
 
+from raceway.framework.duties import traits_of
 from raceway.planning.parts import Decisions
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.planning.steady_orbits import remembers_its_start
@@ -70,7 +71,14 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
     why_not = "contact.damping is 0" if not damped else "nothing moves, or no rates: a series of equilibria"
     why = "contact.damping is set" if scene.contact.dashpot > 0.0 else f"c = tau k, tau = {scene.time_constant:.3g} s"
     parts.decide(damped and rates, "contact damping", why, why_not)
-    friction = parts.decide(scene.contact.friction > 0.0, "friction", "contact.friction is set", "contact.friction is 0")
+    rubbing = scene.contact.friction > 0.0
+    why_not = "contact.friction is 0"
+    if rubbing and not uses_record(scene) and traits_of(scene).every_node:
+        rubbing, why_not = (
+            False,
+            "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness",
+        )
+    friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
     wanted = scene.kinematics.gyroscopic != "none"
     why_not = "nothing turns: no spin speed" if wanted else "kinematics.gyroscopic is none"
     moments = parts.decide(

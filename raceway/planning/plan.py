@@ -37,6 +37,7 @@ class Plan:
     dofs : unknowns of the ring and of the balls
     time_step_s : None in a static scene;  predicted_wall_s : of a whole run on this machine
     predicted_work_s : the same on the machine whose times the plan knows: no machine's speed changes it
+    at_least : whether that may be any number of times more: a mesh whose size is not known before it is read
     predicted_once_s : seconds of that which a second run on the same bodies does not take again
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
     modules : optional modules, and whether a run imports them
@@ -56,6 +57,7 @@ class Plan:
     predicted_work_s: float
     predicted_once_s: float = 0.0
     mesh: Tables | None = None
+    at_least: bool = False
     _modules: Callable[[], tuple[Module, ...]] = attrs.field(default=tuple, eq=False, repr=False)
 
     @property
@@ -76,6 +78,7 @@ class Plan:
             "time_step_s": self.time_step_s,
             "predicted_steps": self.predicted_steps,
             "predicted_wall_s": self.predicted_wall_s,
+            "predicted_at_least": self.at_least,
             "mesh": self.mesh,
             "modules": as_dicts(self.modules),
         }
@@ -128,6 +131,7 @@ def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | No
         predicted_work_s=cost.seconds,
         predicted_once_s=cost.once,
         mesh=cost.mesh,
+        at_least=cost.at_least,
         modules=partial(optional_modules, scene, registry or default_registry(), balls, motion.recorded),
     )
 

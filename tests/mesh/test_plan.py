@@ -71,7 +71,7 @@ def test_rigid_bodies_have_no_mesh():
 
 
 def test_the_plan_shows_the_mesh(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.plan.machine_bytes", lambda: float("inf"))
+    monkeypatch.setattr("raceway.bodies.elastic.plan.allowed_bytes", lambda: float("inf"))
     found = json.loads(invoke("plan", EXAMPLES / "b7206_article_mesh.toml", "--json").stdout)
     assert found["mesh"]["cells"] == sum(body["cells"] for body in found["mesh"]["bodies"]) > 1_000_000
     shown = invoke("plan", EXAMPLES / "b7206_article_mesh.toml").stdout

@@ -118,7 +118,7 @@ class Elastic:
         """Meshing, factors and solves; contact resultants are calibrated as the bearing's own condensed rings."""
         cost = elastic_cost(scene)
         if cost is None:
-            return Cost(START_S, scales=False)
+            return Cost(START_S, scales=False, at_least=True)
         seconds = START_S + cost.equilibrium_s
         if scene.contact.discretisation == "resultant":
             seconds += section_cost(attrs.evolve(scene, mesh=None)).seconds

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from math import ceil, inf, pi
+from pathlib import Path
 
 import attrs
 
@@ -20,8 +21,9 @@ _BYTES, _BYTES_A_CELL = 2.0e8, (7.5e4, 4.0e4)
 #: coarser mesh), bytes at the peak while it is, bytes of a second set for time steps, processor time of its factors.  Measured with element
 #: sizes of 1.6 mm and 2 nodes to the semi-axis, of 1.0 mm, and on the article's mesh: 1.1, 3.5 and 6.6 GB, 9, 50 and 124 s; 16 GB in motion.
 _POINT_BYTES, _PART_CELLS, _PEAK_BYTES, _FACTOR_BYTES, _FACTOR_S = 3.0e3, 60_288, 5.3e9, 8.0e9, 85.0
-#: Processor seconds a cell: all that is not factored, up to the equilibrium; a solution of all bodies with its contacts.
-_POINT_S, _ALL_S = 7.0e-5, 1.2e-5
+#: Processor seconds a cell: all that is not factored, up to the equilibrium; a solution of all bodies with its contacts; a time step
+#: from the parabola through the ones before, with friction (measured on the article's mesh: 3 and 5 s under either excitation).
+_POINT_S, _ALL_S, _STEP_S = 7.0e-5, 1.2e-5, 4.5e-6
 #: Share of the machine's memory that a run may take.
 _SHARE = 0.8
 #: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
@@ -108,7 +110,7 @@ def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> 
     step = cells * _FORCE_S[plain] + _PYTHON_S
     if method.implicit:
         memory += _FACTOR_BYTES * sum(n ** (4.0 / 3.0) for n in sizes.values())
-        start, step = start + factor, solve
+        start, step = start + factor, _STEP_S * cells
     return ElasticCost(cells, unknowns, int(memory), _stable_step(scene), first, start, step)
 
 
@@ -159,12 +161,36 @@ def _stable_step(scene: Scene) -> float:
     return float((elements**-2 + contacts**-2) ** -0.5)
 
 
-def machine_bytes() -> float:
-    """Memory of this machine; without end where the system does not tell."""
+def allowed_bytes() -> float:
+    """Memory that this process may take: the machine's, its container's or its own limit; inf where the system does not tell."""
+    return min(_machine_bytes(), _container_bytes(), _own_bytes())
+
+
+def _machine_bytes() -> float:
     try:
         return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
     except (AttributeError, ValueError, OSError):
-        return float("inf")
+        return inf
+
+
+def _container_bytes() -> float:
+    """Limit of the control group, as containers and job schedulers set it."""
+    try:
+        return float(Path("/sys/fs/cgroup/memory.max").read_text())
+    except (ValueError, OSError):  # "max", or no such system
+        return inf
+
+
+def _own_bytes() -> float:
+    """What ``ulimit -v`` leaves."""
+    try:
+        import resource
+
+        limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+        taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    except (ImportError, ValueError, OSError):
+        return inf
+    return inf if limit == resource.RLIM_INFINITY else float(limit - taken)
 
 
 def elastic_faults(scene: Scene) -> list[Mistake]:
@@ -201,14 +227,14 @@ def elastic_faults(scene: Scene) -> list[Mistake]:
 
 
 def memory_faults(scene: Scene) -> list[Mistake]:
-    """Meshes whose matrices this machine does not hold."""
+    """Meshes whose matrices this process cannot hold."""
     cost = elastic_cost(scene)
-    most = _SHARE * machine_bytes()
+    most = _SHARE * allowed_bytes()
     if cost is None or cost.bytes <= most:
         return []
     why = (
         f"gives {cost.cells} elements, whose matrices would take about {cost.bytes / 2**30:.1f} GiB, above "
-        f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of this machine's memory): take larger elements or fewer "
+        f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of the memory that this process may take): take larger elements or fewer "
         "nodes_per_semi_axis, or bodies.kind = 'condensed'"
     )
     return [Mistake("mesh.kind", scene.mesh.name, why)]

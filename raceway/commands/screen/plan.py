@@ -20,7 +20,7 @@ def plan_screen(title: str, plan: ReadTables) -> RenderableType:
         ("Size and cost, predicted", "", ""),
         ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
         ("time step", step, f"{plan['predicted_steps']} steps"),
-        ("wall time", number(plan["predicted_wall_s"], "s", 2), "with compiled kernels in the cache"),
+        _wall_time(plan),
     ]
     if plan["mesh"] is not None:
         rows += _mesh_rows(plan["mesh"])
@@ -32,6 +32,12 @@ def plan_screen(title: str, plan: ReadTables) -> RenderableType:
     parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"])]
     parts += [_reasons("Modules not imported, hence not compiled", unused), sections(rows)]
     return Group(Words(title, "bold"), *parts)
+
+
+def _wall_time(plan: ReadTables) -> Row:
+    if plan["predicted_at_least"]:
+        return ("wall time", "not known", "before the mesh is read: how large it is")
+    return ("wall time", number(plan["predicted_wall_s"], "s", 2), "with compiled kernels in the cache")
 
 
 def _mesh_rows(mesh: ReadTables) -> list[Row]:
