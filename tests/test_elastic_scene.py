@@ -279,8 +279,9 @@ def test_friction_at_rest_is_left_out_and_told(static):
     assert any(part.part == "friction" and "at rest" in part.why for part in make_plan(rubbing).left_out)
     found = run(rubbing).to_dict()
     assert any("without friction" in text for text in found["warnings"])
-    # Nothing else differs: the same solver on the same unknowns.
-    assert found["equilibrium"]["displacement"]["x"] == static[0].to_dict()["equilibrium"]["displacement"]["x"]
+    # Nothing else differs but the springs of the cage, which rest on nothing that carries.
+    x = static[0].to_dict()["equilibrium"]["displacement"]["x"]
+    assert found["equilibrium"]["displacement"]["x"] == pytest.approx(x, rel=1e-6)
     moving = scene(contact={"friction": 0.03}, **EXCITED)
     assert any(part.part == "friction" for part in make_plan(moving).kept)
 
