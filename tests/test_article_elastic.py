@@ -176,6 +176,7 @@ def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
         design(read_toml(SCENE), friction=-0.1)
 
 
+@pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, monkeypatch):
     monkeypatch.setattr(Design, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
     monkeypatch.setattr(designs, "CLAIMED", ())

@@ -157,8 +157,9 @@ def test_every_command_is_looked_at():
 
 
 def marked(names):
-    """Parameters; ``view`` draws with pyvista."""
-    return [pytest.param(one, marks=[pytest.mark.needs("pyvista")] if one == "view" else []) for one in names]
+    """Parameters; ``view`` draws with pyvista, the article's study takes a quarter of a minute."""
+    marks = {"view": pytest.mark.needs("pyvista"), "study article": pytest.mark.slow}
+    return [pytest.param(one, marks=marks.get(one, ())) for one in names]
 
 
 @pytest.mark.parametrize("name", marked(COMMANDS))

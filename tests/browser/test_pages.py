@@ -16,7 +16,11 @@ from validation.browser.pages import PAGES
 from validation.command_line import MINIMAL
 
 #: The page of `view` has pictures; those two take longest to write.
-MARKS = {"view": [pytest.mark.slow, pytest.mark.needs("pyvista")], "study article": [pytest.mark.slow]}
+MARKS = {
+    "view": [pytest.mark.slow, pytest.mark.needs("pyvista")],
+    "study article": [pytest.mark.slow],
+    "study map": [pytest.mark.slow],
+}
 
 
 @pytest.fixture(scope="module")

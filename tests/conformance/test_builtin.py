@@ -6,7 +6,7 @@ from raceway.framework.registry import default_registry
 from raceway.testing import check
 
 ENTRIES = list(default_registry().all())
-MARKS = {"gmsh": pytest.mark.needs("gmsh"), "dask": pytest.mark.slow}
+MARKS = {"gmsh": pytest.mark.needs("gmsh"), "dask": pytest.mark.slow, "film": pytest.mark.slow, "elastic": pytest.mark.slow}
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,10 @@ def result():
     return run(scene_from_dict(TINY))
 
 
-@pytest.mark.parametrize("formulation", ["one_point", "full", "incompatible"])
+@pytest.mark.parametrize(
+    "formulation",
+    [pytest.param("one_point", marks=pytest.mark.slow), pytest.param("full", marks=pytest.mark.slow), "incompatible"],
+)
 def test_a_ball_on_a_groove_has_hertz_s_largest_shear(formulation):
     """6000 elements, 2.5 down to Hertz's depth: the size to 5 %, the depth of the flat maximum to 15 %."""
     for side in below(1000.0, 4.0, formulation, growth=1.3, coarse=1.5e-3):

@@ -133,7 +133,9 @@ def test_superelements_of_a_step_are_kept_and_know_its_mass():
 @pytest.mark.parametrize(
     "method", [Newmark(tolerance=1e-10), GeneralizedAlpha(tolerance=1e-10)], ids=["newmark", "generalized_alpha"]
 )
-@pytest.mark.parametrize("tables", [{}, SEATS], ids=["fastened", "on beds"])
+@pytest.mark.parametrize(
+    "tables", [pytest.param({}, id="fastened"), pytest.param(SEATS, id="on beds", marks=pytest.mark.slow)]
+)
 def test_steps_with_friction_are_those_of_the_unreduced_system(method, tables):
     """Eight steps after a force that acts at once; 1e-10 of the forces, times a softness of some hundred."""
     found = []
