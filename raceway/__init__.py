@@ -67,6 +67,8 @@ _MODULES = {
     "raceway.studies.sensitivities.front": "sensitivities",
     "raceway.studies.sensitivities.sensitivities": "Sensitivities",
     "raceway.studies.measured.front": "identify",
+    "raceway.studies.fit.front": "fit",
+    "raceway.studies.fit.fitted": "Fitted",
     "raceway.studies.ross.front": "export_ross",
     "raceway.studies.rotor_files.front": "export_coefficients",
     "raceway.studies.view.front": "view",

@@ -56,6 +56,7 @@ COMMANDS = {
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),
     "study rig": ("study", "rig", EXAMPLES / "test_rig.toml", *RIG, "--no-pictures", "--out", "RIG"),
     "identify": ("identify", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--out", "OUT"),
+    "fit": ("fit", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--free", "load.axial", "--out", "OUT"),
     "study limits": ("study", "limits", EXAMPLES / "set_tbt.toml"),
     "study map": ("study", "map", *MAP, "--processes", "0", "--no-pictures", "--out", "OUT"),
     "study article": ("study", "article", *SMALL, "--no-pictures", "--out", "OUT"),
@@ -97,7 +98,7 @@ def seen(folder):
 def look(name, seen, folder):
     if name in seen:
         return seen[name]
-    for other in {"plot": ["sweep"], "export": ["sweep"], "identify": ["study rig"]}.get(name, []):
+    for other in {"plot": ["sweep"], "export": ["sweep"], "identify": ["study rig"], "fit": ["study rig"]}.get(name, []):
         look(other, seen, folder)
     signals = next(iter(sorted((folder / "rig").glob("signals-*.csv"))), "none")
     out = folder / re.sub(r"\W+", "-", name)

@@ -70,6 +70,7 @@ SLOW = {
     "cluster",
     "compare",
     "elastic",
+    "fit",
     "identify",
     "map",
     "mesh",

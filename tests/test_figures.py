@@ -22,6 +22,7 @@ from raceway.studies.article import figures as article
 from raceway.studies.article import panel
 from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
+from raceway.studies.fit import picture as fits
 from raceway.studies.follow import picture as followed
 from raceway.studies.law import picture as law_picture
 from raceway.studies.law.front import law
@@ -191,10 +192,24 @@ def of_a_branch() -> list[Figure]:
     return [followed.draw({**title, "rows": rows, "labels": labels, "instead": [section] * 2, "doubled": [twice]})]
 
 
+def of_fits() -> list[Figure]:
+    """One number, two numbers, none that is determined; one of two quantities scattered over decades."""
+    loads = [400.0, 1000.0, 2000.0, 3000.0]
+    data = {"axial [N]": loads, "kxx [N/um]": [39.0, 68.0, 98.0, 124.0], "x [um]": [5.0, 11.0, 20.0, 1e3]}
+    found = [
+        raceway.fit(data, b7206c(), free)
+        for free in ("bearing.contact_angle_deg", "bearing.contact_angle_deg,bearing.conformity_inner")
+    ]
+    lost = {"error": None, "determined": False, "low": None, "high": None}
+    whole = [one.to_dict() for one in found]
+    return [fits.draw(one) for one in (*whole, {**whole[0], "free": [{**whole[0]["free"][0], **lost}]})]
+
+
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
     contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
+    fits: of_fits,
 }  # fmt: skip
 
 

@@ -19,6 +19,7 @@ AREAS = {
         core/ring/start core/signals core/stepping/record core/stepping/states data/forces integrators pipeline/__init__
         pipeline/motion pipeline/run pipeline/simulate pipeline/starting plugins/excitations plugins/identifiers""",
     "periodic": "core/periodic integrators/periodic pipeline/error/steady_motion",
+    "fit": "studies/fit",
     "follow": "studies/follow core/periodic/branch core/periodic/doubling core/periodic/special",
     "errors": "pipeline/error pipeline/plausibility",
     "condensed": """
@@ -55,7 +56,7 @@ AREAS = {
         studies/many/work studies/sweep""",
     "verify": "data/cases studies/many/reference studies/verify",
     "pages": """
-        data/page data/view data/view_stage plugins/reports studies/compare/picture studies/many/page studies/map/picture
+        data/page data/view data/view_stage plugins/reports studies/compare/picture studies/fit/picture studies/many/page studies/map/picture
         studies/precision/labels studies/precision/picture studies/sensitivities/picture studies/stability/picture studies/sweep/picture studies/view""",
     "no report": """
         __init__ __main__ cli commands data/templates errors framework/__init__ framework/contracts framework/duties framework/higher_types framework/hookspecs framework/registry
@@ -63,7 +64,7 @@ AREAS = {
         storage/files storage/tables storage/trust storage/user_files studies/__init__ studies/command studies/many/__init__ studies/many/axes testing
         data/article_elastic studies/article/command studies/article/elastic studies/article/screen studies/compare/command studies/compare/front studies/compare/labelled studies/compare/screen studies/map/command
         studies/law studies/limits/command studies/measured/command studies/measured/front studies/measured/identified studies/precision/command studies/precision/front
-        studies/precision/labelled studies/precision/screen studies/band/command studies/band/front studies/sensitivities/command studies/sensitivities/front studies/sensitivities/screen studies/rig/command studies/rig/screen
+        studies/precision/labelled studies/precision/screen studies/band/command studies/band/front studies/fit/command studies/fit/fitted studies/fit/screen studies/sensitivities/command studies/sensitivities/front studies/sensitivities/screen studies/rig/command studies/rig/screen
         studies/ross/command studies/ross/front studies/ross/points studies/ross/screen studies/ross/table studies/stability/command studies/stability/screen studies/sweep/command studies/sweep/front studies/sweep/screen
         studies/sweep/store_command studies/verify/command studies/verify/screen studies/view/command studies/view/front studies/view/view studies/view/mesh_command
         studies/view/mesh_screen""",
@@ -97,6 +98,7 @@ MEASURES = {
     "error_starts": "rigid motion errors",
     "expected_values": "rigid motion",
     "film": "film rigid motion",
+    "fit": "fit measured rig shaft gradients rigid examples/test_rig.toml validation/shaker.py",
     "follow": "rigid motion periodic follow",
     "fuzz": "rigid motion periodic errors mesh plan scene",
     "gradients": "gradients rigid condensed periodic",

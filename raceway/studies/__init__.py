@@ -5,6 +5,7 @@ compare, follow, precision, stability, sweep, verify, view, ross, measured    on
 rotor_files  coefficients for Nastran and Ansys, as CSV and JSON
 band        the range of an answer over the tolerances of its scene
 sensitivities   derivatives of an answer by every number of its scene
+fit         numbers of a scene from measured data, with what these do not determine
 limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
 infer, catalogue    balls and grooves from printed numbers; the bearings that were made so, with their commands
 law         one contact of a bearing with any installed contact law, beside Hertz'

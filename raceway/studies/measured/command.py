@@ -19,7 +19,7 @@ from raceway.commands.frame import (
     show,
     show_progress,
 )
-from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults
+from raceway.commands.inputs import columns_by_head, has_matplotlib, load, slug, tell_faults
 from raceway.errors import SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
@@ -40,17 +40,23 @@ class IdentifyOptions(NamedTuple):
     as_json: bool
 
 
+slow_roll_option = click.option(
+    "--slow-roll", type=PATH, metavar="FILE.csv",
+    help="Signals at a low speed, whose run-out is subtracted.",
+)  # fmt: skip
+run_out_option = click.option(
+    "--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [µm] and angle from the mark [deg]."
+)
+
+
 @click.command(short_help="K and C of a bearing from measured signals.")
 @click.argument("signals", type=PATH)
 @click.option(
     "--scene", required=True, type=PATH, metavar="SCENE",
     help="The rig: a scene with a table [rig]; load.axial as in the measurement.",
 )  # fmt: skip
-@click.option(
-    "--slow-roll", type=PATH, metavar="FILE.csv",
-    help="Signals at a low speed, whose run-out is subtracted.",
-)  # fmt: skip
-@click.option("--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [µm] and angle from the mark [deg].")
+@slow_roll_option
+@run_out_option
 @click.option(
     "--map", "columns", multiple=True, metavar='"HEAD=NAME"',
     help='A column by its head: "X [um]=y_um", or =ignore; repeat for more.',
@@ -82,7 +88,7 @@ def identify(given: IdentifyOptions) -> int:
     registry = registry_with(given.plugins)
     loaded = load(given.scene, given.changes, registry)
     rig_of(loaded)
-    vector, columns = _vector(given.run_out), _columns(given.columns)
+    vector, columns = run_out_of(given.run_out), columns_by_head(given.columns)
     if vector is not None and given.slow_roll is not None:
         raise SceneError.at("--run-out", given.run_out, "the slow roll tells it already: leave one of them out")
     changed = loaded.title.partition("\n")[1:]
@@ -107,18 +113,7 @@ def identify(given: IdentifyOptions) -> int:
     return 0
 
 
-def _columns(texts: tuple[str, ...]) -> dict[str, str]:
-    """Head -> name from ``HEAD=NAME``; a head may have an equals sign, a name has none."""
-    found = {}
-    for text in texts:
-        head, sign, name = text.rpartition("=")
-        if not sign or not head.strip() or not name.strip():
-            raise SceneError.at("--map", text, 'must have the form "HEAD=NAME", for instance "X [um]=y_um"')
-        found[head.strip()] = name.strip()
-    return found
-
-
-def _vector(text: str | None) -> tuple[float, float] | None:
+def run_out_of(text: str | None) -> tuple[float, float] | None:
     """Amplitude [m] and angle [deg] from ``UM,DEG``."""
     if text is None:
         return None

@@ -10,6 +10,7 @@ from raceway.framework.registry import Registry
 from raceway.scene.rig import Rig
 from raceway.scene.tables import Scene
 from raceway.studies.measured.identify import Found, identify
+from raceway.studies.measured.orders import Order
 from raceway.studies.measured.recording import recording_of
 from raceway.studies.measured.run_out import given, slow_roll
 from raceway.studies.measured.signals import Signals, read_signals
@@ -45,6 +46,22 @@ def refuse_no_load(scene: Scene) -> None:
         raise SceneError.at("load.axial", scene.load.axial, message)
 
 
+def roll_of(slow: Signals | None) -> Order | None:
+    """The 1x line of a slow roll, if there is one.
+
+    Raises
+    ------
+    SceneError
+        What is wrong with it.
+    """
+    if slow is None:
+        return None
+    try:
+        return slow_roll(recording_of(slow))
+    except RacewayError as why:
+        raise why if isinstance(why, SceneError) else SceneError.at(slow.source, None, str(why)) from None
+
+
 def from_signals(
     signals: Signals,
     scene: Scene,
@@ -74,12 +91,7 @@ def from_signals(
 
     refuse_no_load(scene)
     recording = recording_of(signals)
-    roll = None
-    if slow is not None:
-        try:
-            roll = slow_roll(recording_of(slow))
-        except RacewayError as why:
-            raise why if isinstance(why, SceneError) else SceneError.at(slow.source, None, str(why)) from None
+    roll = roll_of(slow)
     tell("bearing at rest", 1)
     held = bearing(scene, scene.load.axial, registry)
     tell("identifying", 2)

@@ -112,6 +112,11 @@ def plain(head: str) -> str:
     return " ".join(unicodedata.normalize("NFKC", head).replace("μ", "u").lower().split())
 
 
+def quantity_of(head: str) -> str:
+    """What a head seems to name: "time", "y", "force y", or a word that is none of them."""
+    return _parts(plain(head))[0]
+
+
 def _taken(heads: Sequence[str], mapping: Mapping[str, str]) -> list[Head]:
     """Each head for itself, then the axes together: X beside Y is another thing than X beside Z."""
     parts = [_parts(plain(head)) for head in heads]

@@ -158,6 +158,53 @@ def _speeds(found: Order) -> dict[str, float]:
     return {"mean": found.speed, "lowest": found.lowest, "highest": found.highest}
 
 
+@attrs.frozen(eq=False)
+class Seen:
+    """The 1x line at the sensor against the unbalance: of a record, less its run-out.
+
+    Attributes
+    ----------
+    run_out : that was subtracted
+    line, fourier : deflection at the sensor [m], by least squares and by a whole-turn Fourier transform; without a mark their sizes
+    """
+
+    run_out: RunOut
+    line: complex
+    fourier: complex
+
+
+def seen(found: Order, rig: Rig, held: Bearing, run_out: RunOut | None = None, slow: Order | None = None) -> Seen:
+    """The 1x line of a record.
+
+    Parameters
+    ----------
+    found : the order of the record
+    held : the scene's bearing, by which the unbalance's response is taken off a slow roll
+    run_out : known run-out;  slow : instead of it, the 1x line of a slow roll
+
+    Raises
+    ------
+    RacewayError
+        An orbit that turns against the shaft, or a run-out without a mark.
+    """
+    if found.backward > abs(found.line):
+        raise RacewayError(
+            f"the orbit turns from z towards y, against the shaft ({1e6 * found.backward:.3g} µm backward, "
+            f"{1e6 * abs(found.line):.3g} µm forward): change the sign of one column, or swap y and z"
+        )
+    angle = radians(rig.unbalance_angle_deg)
+    run_out = run_out or RunOut()
+    if slow is not None:
+        run_out = less_response(slow, held, rotor(rig, slow.speed), angle)
+    if run_out.vector and not found.marked:
+        raise RacewayError("no `key`: without a mark the run-out cannot be subtracted; leave it out, or record the mark")
+    if found.marked:
+        line, fourier = ((value - run_out.vector) * exp(-1j * angle) for value in (found.line, found.fourier))
+    else:
+        line, fourier = abs(found.line) + 0j, abs(found.fourier) + 0j
+    return Seen(run_out, line, fourier)
+
+
 def identify(
     recording: Recording, rig: Rig, held: Bearing, run_out: RunOut | None = None, slow: Order | None = None
 ) -> Found:
@@ -177,21 +224,9 @@ def identify(
     """
     turned = turning(recording)
     found = order(turned)
-    if found.backward > abs(found.line):
-        raise RacewayError(
-            f"the orbit turns from z towards y, against the shaft ({1e6 * found.backward:.3g} µm backward, "
-            f"{1e6 * abs(found.line):.3g} µm forward): change the sign of one column, or swap y and z"
-        )
+    there = seen(found, rig, held, run_out, slow)
+    line_at, fourier, run_out = there.line, there.fourier, there.run_out
     angle = radians(rig.unbalance_angle_deg)
-    run_out = run_out or RunOut()
-    if slow is not None:
-        run_out = less_response(slow, held, rotor(rig, slow.speed), angle)
-    if run_out.vector and not found.marked:
-        raise RacewayError("no `key`: without a mark the run-out cannot be subtracted; leave it out, or record the mark")
-    if found.marked:
-        line_at, fourier = ((value - run_out.vector) * exp(-1j * angle) for value in (found.line, found.fourier))
-    else:
-        line_at, fourier = abs(found.line) + 0j, abs(found.fourier) + 0j
     line = rotor(rig, found.speed)
     try:
         state = invert(line, held, line_at)

@@ -65,10 +65,9 @@ def recording_of(signals: Signals) -> Recording:
     if force:
         raise SceneError.at(
             source, None,
-            f"was read ({signals.told()}), but K and C cannot be identified from a force and a displacement yet: what excites the rig "
-            "of the scene is its unbalance. Give a record of both displacements and the mark under the unbalance (a force that is "
-            f'recorded beside them is left out with --map "HEAD={IGNORE}"), or compute the scene under the measured force, with '
-            '[excitation] kind = "measured", and compare the displacements',
+            f"was read ({signals.told()}), but what excites the rig of the scene is its unbalance. A linear model's K, C and mass from force and "
+            "displacement: raceway fit FILE.csv --free K,C. For the rig give a record of both displacements and the mark under the unbalance "
+            f'(a force that is recorded beside them is left out with --map "HEAD={IGNORE}")',
         )  # fmt: skip
     if missing := [name for name in ("y", "z") if name not in columns]:
         raise SceneError.at(

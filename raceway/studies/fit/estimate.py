@@ -1,0 +1,212 @@
+"""Least squares with known derivatives: estimate, covariance, and the combinations of free numbers that the data do not determine.
+
+Notes
+-----
+Numbers are searched for in multiples of their sizes, J is the derivative of the weighted residuals by these.  A right singular vector
+v of J with singular value s is a combination of changes that moves the data by s; along it the estimate scatters by the noise
+over s.  Where 95 % of that is more than the numbers themselves, or s is rounding, the data do not determine the combination.
+
+References
+----------
+Seber, Wild, Nonlinear Regression, Wiley 1989, chapters 2 and 3: linearised region, Student's distribution of its half-widths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import attrs
+import numpy as np
+
+from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.studies.fit.free import Free
+
+#: Probability of intervals and regions.
+CONFIDENCE = 0.95
+#: Singular value over the largest one that is rounding of derivatives; part of a number in a combination below which it is not told.
+_ROUNDING, _TOLD = 1e-7, 0.1
+#: Relative change of numbers and of the sum of squares that ends the search, and evaluations at most.
+_TOLERANCE, _MOST = 1e-9, 100
+#: Part of its size by which a number lies at the end of its range, and near to it.
+_AT_LIMIT, _NEAR = 1e-4, 0.05
+#: Probability below which residuals are too large for errors that are stated.
+_UNLIKELY = 1e-3
+
+
+class Residuals(Protocol):
+    """Weighted residuals (n,), (fit - datum) / standard error, and their derivatives (n, p) by the free numbers."""
+
+    def residuals(self, values: np.ndarray) -> np.ndarray:
+        """At numbers (p,).
+
+        Raises
+        ------
+        ConvergenceError, SceneError
+            The model has no answer there.
+        """
+        ...
+
+    def jacobian(self, values: np.ndarray) -> np.ndarray:
+        """At the numbers (p,) of the last residuals."""
+        ...
+
+
+@attrs.frozen
+class Combination:
+    """Changes of free numbers, in their units, that the data do not tell from none.
+
+    ``changes``: name -> change;  ``moves``: the data by that many standard errors at most.
+    """
+
+    changes: dict[str, float]
+    moves: float
+
+
+@attrs.frozen(eq=False)
+class Estimate:
+    """Numbers found by least squares.
+
+    Attributes
+    ----------
+    free, values : (p,);  covariance : (p, p), of the linearised model, along what the data determine
+    reach : half-width at 95 % over the standard error;  half : (p,) half-widths, infinite where the data do not determine a number
+    residuals, jacobian : (n,), (n, p), weighted, there
+    scatter : root of the sum of squares over the degrees of freedom: 1 where errors are as stated; None without freedom
+    widened : factor on stated errors where residuals are too large for them, else 1
+    undetermined : combinations;  open : the same by singular vectors (k, p), in the units of the numbers
+    at_limit : names of numbers at the end of their range
+    evaluations : of the model
+    """
+
+    free: tuple[Free, ...]
+    values: np.ndarray
+    covariance: np.ndarray
+    reach: float
+    half: np.ndarray
+    residuals: np.ndarray
+    jacobian: np.ndarray
+    scatter: float | None
+    widened: float
+    undetermined: tuple[Combination, ...]
+    open: np.ndarray
+    at_limit: tuple[str, ...]
+    evaluations: int
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom: data less free numbers."""
+        return self.jacobian.shape[0] - self.jacobian.shape[1]
+
+    def half_widths(self, slopes: np.ndarray) -> np.ndarray:
+        """Half-widths at 95 % (m,) of numbers whose derivatives by the free ones are given (m, p).
+
+        Notes
+        -----
+        Combinations that the data do not determine count as known to the sizes of the numbers.
+        """
+        known = self.reach**2 * np.einsum("ij,jk,ik->i", slopes, self.covariance, slopes)
+        found: np.ndarray = np.sqrt(np.maximum(known, 0.0) + ((slopes @ self.open.T) ** 2).sum(axis=1))
+        return found
+
+
+def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate:
+    """The numbers at the least sum of squares.
+
+    Parameters
+    ----------
+    stated : whether weights are those of stated errors; else the residuals' own scatter tells them
+
+    Raises
+    ------
+    RacewayError
+        The model has no answer where the search begins.
+    ConvergenceError
+        The search finds no end.
+    """
+    from scipy.optimize import least_squares
+
+    sizes = np.array([one.size for one in free])
+    begin = np.array([one.start for one in free]) / sizes
+    first = problem.residuals(begin * sizes)
+
+    def residuals(x: np.ndarray) -> np.ndarray:
+        try:
+            return problem.residuals(x * sizes)
+        except RacewayError:  # beyond a range, or no answer there: the search takes shorter steps
+            return np.full(len(first), np.inf)
+
+    def jacobian(x: np.ndarray) -> np.ndarray:
+        """Without combinations that are rounding, along which the search would wander."""
+        try:
+            slopes = problem.jacobian(x * sizes) * sizes
+        except SceneError as why:
+            raise _no_derivative(free, x * sizes, why) from None
+        u, s, v = np.linalg.svd(slopes, full_matrices=False)
+        return np.asarray((u * np.where(s > _ROUNDING * s[0], s, 0.0)) @ v)
+
+    found = least_squares(residuals, begin, jacobian, ftol=_TOLERANCE, xtol=_TOLERANCE, gtol=_TOLERANCE, max_nfev=_MOST)
+    if found.status <= 0:
+        raise ConvergenceError(
+            f"no least sum of squares after {found.nfev} evaluations of the model: begin nearer to it with --set, or free fewer keys"
+        )
+    return judged(tuple(free), found.x * sizes, found.fun, found.jac / sizes, stated, int(found.nfev))
+
+
+def _no_derivative(free: Sequence[Free], values: np.ndarray, why: SceneError) -> RacewayError:
+    """What to say of numbers that ran to the end of their ranges, where derivatives end; else the reason as it is."""
+    for one, value in zip(free, values, strict=True):
+        if min(value - one.low, one.high - value) < _NEAR * one.size:
+            return ConvergenceError(
+                f"`{one.name}` ran to {value:.4g} {one.unit}".rstrip()
+                + ", the end of the range that the scene's rules leave it: the data ask for a "
+                "number that is not physical. Are the data's units, loads and speeds right, and the scene's bearing that of the test?"
+            )
+    return why
+
+
+def judged(
+    free: tuple[Free, ...], values: np.ndarray, residuals: np.ndarray, jacobian: np.ndarray, stated: bool, evaluations: int
+) -> Estimate:
+    """What residuals (n,) and derivatives (n, p) at the least sum of squares tell of the numbers."""
+    from scipy.stats import chi2, t
+
+    n, p = jacobian.shape
+    squares, freedom = float(residuals @ residuals), n - p
+    scatter = float(np.sqrt(squares / freedom)) if freedom else None
+    noise, widened = 1.0 if stated else (scatter or 0.0), 1.0
+    if stated and scatter is not None and scatter > 1.0 and chi2.sf(squares, freedom) < _UNLIKELY:
+        noise = widened = scatter
+    reach = float(t.ppf(0.5 + 0.5 * CONFIDENCE, freedom)) if freedom and noise != 1.0 else 1.959964
+    sizes = np.array([one.size for one in free])
+    _, s, directions = np.linalg.svd(jacobian * sizes, full_matrices=False)
+    open_ = (s <= _ROUNDING * s[0]) | (reach * noise > s) if s[0] > 0.0 else np.ones(p, bool)
+    known = directions[~open_]
+    root = known / s[~open_, None]
+    covariance = noise**2 * root.T @ root * np.outer(sizes, sizes)
+    half = reach * np.sqrt(np.diag(covariance))
+    if freedom == 0 and not stated:  # as many data as numbers, errors not stated: nothing tells the scatter
+        half[:] = np.inf
+    lost = (np.abs(directions[open_]) > _TOLD).any(axis=0)
+    half[lost] = np.inf
+    told = tuple(
+        Combination(_changes(free, one, sizes), float(one_s / noise) if noise else 0.0)
+        for one, one_s in zip(directions[open_], s[open_], strict=True)
+    )
+    at_limit = tuple(
+        one.name
+        for one, value in zip(free, values, strict=True)
+        if min(value - one.low, one.high - value) < _AT_LIMIT * one.size
+    )
+    return Estimate(
+        free, values, covariance, reach, half, residuals, jacobian, scatter, widened, told, directions[open_] * sizes, at_limit,
+        evaluations,
+    )  # fmt: skip
+
+
+def _changes(free: Sequence[Free], direction: np.ndarray, sizes: np.ndarray) -> dict[str, float]:
+    """A singular vector as changes of numbers, the largest one by a tenth of its size and up."""
+    scaled = 0.1 * direction / direction[np.argmax(np.abs(direction))]
+    return {
+        one.name: float(part * size) for one, part, size in zip(free, scaled, sizes, strict=True) if abs(part) > 0.1 * _TOLD
+    }

@@ -1,0 +1,164 @@
+"""Fits by kind of data: a table of measured quantities, the signals of a rig, a record of force and displacement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.registry import Registry
+from raceway.pipeline.simulate import OnProgress
+from raceway.scene.continuous import continuous_keys
+from raceway.scene.file import rig_of
+from raceway.scene.tables import Scene
+from raceway.studies.fit.estimate import Estimate, estimate
+from raceway.studies.fit.fitted import Derived, Fitted, Series
+from raceway.studies.fit.free import free_keys
+from raceway.studies.fit.linear import Linear, fit_lines, free_parts, lines_of
+from raceway.studies.fit.observed import MEASURED, Observed, refuse_few
+from raceway.studies.fit.posterior import posterior
+from raceway.studies.fit.predicted import Predicted
+from raceway.studies.fit.rig_line import RigLine, refuse_across
+from raceway.studies.measured.orders import Order
+from raceway.studies.measured.recording import recording_of
+from raceway.studies.measured.run_out import RunOut
+from raceway.studies.measured.signals import Signals
+
+#: Words of keys by which a bearing is damped: without a free one C is the scene's, not the signals'.
+_DAMPING = ("damping", "time_constant", "loss_factor")
+
+#: Part of a record's force that a model may leave; what to do about more.
+_LEFT = 0.1
+_LEFT_OVER = "free C or mass, too, give --mass, or cut the record to frequencies below the next resonance"
+
+
+def of_table(
+    data: Observed, scene: Scene, names: list[str], steps: int = 0, on_progress: OnProgress | None = None
+) -> Fitted:
+    """Free keys of a scene from a table.
+
+    Parameters
+    ----------
+    steps : of a posterior; 0: none
+
+    Raises
+    ------
+    SceneError, ConvergenceError
+        What is wrong with table, keys or scene; no answer, or no end of the search.
+    """
+    free = free_keys(scene, names)
+    refuse_few(sum(len(one) for one in data.values.values()), len(free), data.source)
+    problem = Predicted.of(data, scene, free)
+    found = estimate(problem, free, data.stated)
+    series = tuple(_series(data, problem, found))
+    sampled = posterior(problem, found, data.stated, steps, on_progress=on_progress) if steps else None
+    return Fitted(scene.title, data.source, "table", data.stated, found, series, (), (), sampled)
+
+
+def of_rig(
+    signals: Signals, scene: Scene, names: list[str], registry: Registry, known: RunOut | None, roll: Order | None, steps: int = 0,
+    on_progress: OnProgress | None = None,
+) -> Fitted:  # fmt: skip
+    """Free keys of a scene from the signals of its rig.
+
+    Parameters
+    ----------
+    known : run-out, or None;  roll : 1x line of a slow roll, or None
+    steps : of a posterior; 0: none
+
+    Raises
+    ------
+    SceneError, ConvergenceError
+        What is wrong with signals, keys or scene; no motion like the measured one, or no end of the search.
+    """
+    rig = rig_of(scene)
+    free = free_keys(scene, names)
+    refuse_across(scene, free)
+    try:
+        problem = RigLine.of(recording_of(signals), scene, rig, registry, free, known, roll)
+        refuse_few(problem.count, len(free), signals.source)
+        found = estimate(problem, free, stated=True)
+    except RacewayError as why:
+        if why.exit_code != 2 or isinstance(why, SceneError):
+            raise
+        raise SceneError.at(signals.source, None, str(why)) from None
+    problem.residuals(found.values)
+    state, line = problem.state, problem.line
+    assert state is not None
+    halves = found.half_widths(problem.slopes)
+    derived = [Derived("K", "N/m", state.stiffness, float(halves[0]))]
+    if problem.found.marked and any(word in one.name for one in free for word in _DAMPING):
+        derived.append(Derived("C", "N s/m", state.damping, float(halves[1])))
+    parts = [("real", np.real), ("imaginary", np.imag)][: problem.count]
+    seen, fitted = (line, state.sensor) if problem.found.marked else (abs(line), abs(state.sensor))
+    slopes = np.array([part(problem.line_slopes) for _, part in parts])
+    series = Series(
+        f"line at the sensor ({' and '.join(name for name, _ in parts)} part)", "m", "part", "", np.arange(1.0, len(parts) + 1.0),
+        np.array([part(seen) for _, part in parts]), np.array([part(fitted) for _, part in parts]),
+        np.full(len(parts), found.widened * problem.errors[0]), found.half_widths(slopes),
+    )  # fmt: skip
+    speed = problem.found.speed * 30.0 / np.pi
+    title, notes = f"{scene.title}, {speed:.1f} r/min", problem.notes()
+    sampled = posterior(problem, found, True, steps, on_progress=on_progress) if steps else None
+    return Fitted(title, signals.source, "rig", True, found, (series,), tuple(derived), notes, sampled)
+
+
+def of_record(signals: Signals, names: list[str], mass: float) -> Fitted:
+    """K, C and mass of a linear model from a record of force and displacement.
+
+    Parameters
+    ----------
+    mass : where it is not free [kg]
+
+    Raises
+    ------
+    SceneError
+        What is wrong with the record or the names.
+    ConvergenceError
+        The search finds no end.
+    """
+    if not (np.isfinite(mass) and mass >= 0.0):
+        raise SceneError.at("mass", mass, "must be at least 0 kg")
+    lines = lines_of(signals)
+    free = free_parts(names, lines, mass)
+    refuse_few(2 * lines.force.size, len(free) + len(lines.axes), signals.source)
+    found, model = fit_lines(lines, free, mass)
+    title = f"F = K x + C x' + m x'', {lines.omega[0] / 2.0 / np.pi:.4g} to {lines.omega[-1] / 2.0 / np.pi:.4g} Hz"
+    left = float(np.linalg.norm(model.rest) / np.linalg.norm(lines.force))
+    notes = [f"the model leaves {100.0 * left:.2g} % of the force (root mean square): {_LEFT_OVER}"] if left > _LEFT else []
+    for one, value, half in zip(found.free, found.values, found.half, strict=True):
+        if one.name in ("K", "mass", "kyy", "kzz") and value + half < 0.0:
+            notes.append(
+                f"{one.name} is negative: does the force's sign mean that of the displacement, and is the mass known?"
+            )
+    return Fitted(title, signals.source, "record", False, found, tuple(_spectra(model, found)), (), tuple(notes))
+
+
+def _spectra(model: Linear, found: Estimate) -> list[Series]:
+    """Sizes of the force's lines beside the model's, an axis each."""
+    lines = model.lines
+    error = np.sqrt(0.5 * model.variance(found.values))
+    apart = model.rest
+    return [
+        Series(
+            f"force along {axis}", "N", "frequency", "Hz", lines.omega / 2.0 / np.pi, np.abs(lines.force[:, k]),
+            np.abs(lines.force[:, k] + apart[:, k]), error[:, k], 0.0 * error[:, k],
+        )
+        for k, axis in enumerate(lines.axes)
+    ]  # fmt: skip
+
+
+def _series(data: Observed, problem: Predicted, found: Estimate) -> list[Series]:
+    fitted = problem.fitted(found.values)
+    key = next((path for path, numbers in data.keys.items() if np.ptp(numbers) > 0.0), None)
+    count = len(next(iter(data.values.values())))
+    x = data.keys[key] if key else np.arange(1.0, count + 1.0)
+    band = found.half_widths(found.jacobian).reshape(-1, count)
+    units = {one.path: one.unit for one in continuous_keys(problem.scenes[0])}
+    noise = found.widened if data.stated else (found.scatter or 0.0)
+    return [
+        Series(
+            name, MEASURED[name], key or "measurement", units[key] if key else "", x, values, fitted[name],
+            noise * data.weights[name], band[k] * data.weights[name],
+        )
+        for k, (name, values) in enumerate(data.values.items())
+    ]  # fmt: skip

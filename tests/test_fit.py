@@ -1,0 +1,319 @@
+"""Numbers from measured data: closed forms, the scene's own answers, what is not determined, and bad input."""
+
+import json
+
+import attrs
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.registry import default_registry
+from raceway.scene.continuous import with_number
+from raceway.scene.file import load_scene, rig_of
+from raceway.storage.number_table import NumberTable
+from raceway.studies.fit.estimate import estimate, judged
+from raceway.studies.fit.free import Free, free_keys
+from raceway.studies.fit.observed import observed
+from raceway.studies.fit.predicted import Predicted
+from raceway.studies.measured.recording import write_recording
+from raceway.studies.rig.sensors import record as rig_record
+from raceway.studies.rig.sensors import response, slow_roll_record, white_noise
+from raceway.studies.shaft.balance import balance
+from raceway.studies.shaft.bearing import bearing
+from raceway.studies.shaft.rotor import rotor
+from validation.command_line import EXAMPLES, invoke
+from validation.shaker import record, turning_record
+from validation.tables import b7206c
+
+ANGLE = "bearing.contact_angle_deg"
+LOADED = b7206c(load={"axial": 500.0})
+LOADS = (400.0, 1000.0, 2000.0, 3000.0)
+MOVING = {
+    **LOADED,
+    "rotor": {"mass": 2.0, "damping": 1000.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": 50.0},
+}
+
+
+def answers(tables, name, **bearing):
+    """A quantity of scenes with another bearing over load."""
+    scene = {**tables, "bearing": {**tables["bearing"], **bearing}}
+    return [rw.sensitivities(rw.evolve(scene, f"load.axial={load}"), ["load.axial"]).values[name] for load in LOADS]
+
+
+LINE = [Free("a", "", 1.0, 10.0), Free("b", "", 1.0, 10.0)]
+
+
+@attrs.define
+class Straight:
+    """y = a + b x with unit errors: the textbook's line."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+    def residuals(self, at):
+        return at[0] + at[1] * self.x - self.y
+
+    def jacobian(self, _at):
+        return np.column_stack([np.ones_like(self.x), self.x])
+
+
+def test_a_straight_line_is_the_closed_form():
+    """Covariance s^2 (X' X)^-1 and Student's half-widths of a regression line."""
+    from scipy.stats import linregress, t
+
+    x = np.linspace(0.0, 5.0, 9)
+    y = 2.0 + 3.0 * x + np.random.default_rng(2).standard_normal(9)
+    found = estimate(Straight(x, y), LINE, stated=False)
+    line = linregress(x, y)
+    assert found.values == pytest.approx([line.intercept, line.slope], rel=1e-8)
+    assert found.half == pytest.approx(t.ppf(0.975, 7) * np.array([line.intercept_stderr, line.stderr]), rel=1e-6)
+    known = estimate(Straight(x, y), LINE, stated=True)
+    assert known.half[1] == pytest.approx(1.959964 / np.sqrt(((x - x.mean()) ** 2).sum()), rel=1e-6)
+
+
+def test_errors_that_are_stated_too_small_widen_the_intervals_and_are_told():
+    x = np.linspace(0.0, 5.0, 9)
+    far = Straight(x, 2.0 + 3.0 * x + 30.0 * np.random.default_rng(2).standard_normal(9))
+    found = estimate(far, LINE, stated=True)
+    assert found.widened == pytest.approx(found.scatter) and found.widened > 10.0
+
+
+def test_two_numbers_that_only_add_up_are_told_as_a_combination():
+    """Derivatives by two numbers that are alike: their sum is known, their difference is not."""
+    free = (Free("a", "N", 10.0, 10.0), Free("b", "N", 5.0, 5.0), Free("c", "m", 1.0, 1.0))
+    j = np.column_stack([np.ones(8), np.ones(8), np.linspace(-2.0, 2.0, 8)])
+    found = judged(free, np.array([10.0, 5.0, 1.0]), np.resize([0.1, -0.1], 8), j, False, 1)
+    (one,) = found.undetermined
+    assert set(one.changes) == {"a", "b"} and one.changes["a"] == pytest.approx(-one.changes["b"])
+    assert np.isinf(found.half[:2]).all() and np.isfinite(found.half[2])
+    # a + b is as known as c; a alone by its size.
+    both, alone = found.half_widths(np.array([[1.0, 1.0, 0.0], [1.0, 0.0, 0.0]]))
+    assert both < 1.0 < alone
+
+
+@pytest.mark.parametrize(("tables", "name", "rel"), [(LOADED, "kxx", 1e-6), (LOADED, "x", 1e-6), (MOVING, "K", 1e-5)])
+def test_exact_answers_of_another_bearing_give_its_angle_back(tables, name, rel):
+    unit = "m" if name == "x" else "N/m"
+    data = {"axial [N]": LOADS, f"{name} [{unit}]": answers(tables, name, contact_angle_deg=17.0)}
+    found = rw.fit(data, tables, ANGLE)
+    assert found[ANGLE] == pytest.approx(17.0, rel=rel)
+    assert found.half_width(ANGLE) < 1e-2 and found.determined
+
+
+def test_derivatives_of_residuals_are_those_of_the_residuals():
+    """Exact gradients of the scene against central differences of whole answers."""
+    scene = rw.Scene.from_dict(MOVING)
+    table = NumberTable(
+        ["axial [N]", "K [N/µm]", "kxx [N/µm]"], np.array([[400.0, 40.0, 40.0], [900.0, 60.0, 60.0]]), np.arange(2)
+    )
+    free = free_keys(scene, [ANGLE, "rotor.mass"])
+    problem = Predicted.of(observed(table, "made up", scene), scene, free)
+    at = np.array([15.5, 2.0])
+    problem.residuals(at)
+    exact = problem.jacobian(at)
+    steps = np.array([1e-3, 1e-3])
+    for k, step in enumerate(steps):
+        ends = [problem.residuals(at + sign * step * np.eye(2)[k]) for sign in (-1.0, 1.0)]
+        # Orbits are solved to 1e-8, over a step of 1e-4 of the number.
+        assert exact[:, k] == pytest.approx((ends[1] - ends[0]) / (2.0 * step), rel=1e-3, abs=1e-3 * np.abs(exact).max())
+
+
+def test_what_the_data_do_not_determine_is_said_with_the_combination(tmp_path):
+    """kxx at rest knows no mass; K under one load knows angle or load, not both."""
+    data = {"axial [N]": LOADS, "kxx [N/m]": answers(MOVING, "kxx", contact_angle_deg=17.0)}
+    found = rw.fit(data, MOVING, [ANGLE, "rotor.mass"])
+    assert found[ANGLE] == pytest.approx(17.0, rel=1e-5) and np.isinf(found.half_width("rotor.mass"))
+    assert "do not determine rotor.mass" in found.warnings[0]
+    one = {"kxx [N/m]": [67e6, 67e6, 67e6], "kxx error [N/m]": [1e6, 1e6, 1e6]}
+    both = rw.fit(one, LOADED, [ANGLE, "load.axial"])
+    assert not both.determined and set(both.estimate.undetermined[0].changes) == {ANGLE, "load.axial"}
+    assert "together" in both.warnings[0] and both.to_dict()["free"][0]["error"] is None
+
+
+TABLE = {"axial [N]": [400.0, 1000.0], "kxx [N/um]": [39.0, 67.0]}
+BAD = [
+    (TABLE, [], "names no key"),
+    (TABLE, ["bearing.ball_count"], "no continuous key"),
+    (TABLE, [ANGLE, ANGLE], "twice"),
+    (TABLE, ["load.axial"], "column of the data"),
+    (TABLE, ["integrator.tolerance"], "setting of a method"),
+    (TABLE, [ANGLE, "bearing.conformity_inner", "bearing.conformity_outer"], "2 measured numbers for 3 free"),
+    ({}, [ANGLE], "is empty"),
+    ({"axial [N]": [], "kxx [N/um]": []}, [ANGLE], "no measurements"),
+    ({"axial [N]": [400.0], "kxx": [39.0]}, [ANGLE], "has no unit"),
+    ({"axial [N]": [400.0], "kxx [um]": [39.0]}, [ANGLE], "not a unit"),
+    ({"axial [m]": [400.0], "kxx [N/um]": [39.0]}, [ANGLE], "not a unit"),
+    ({"axial [N]": [400.0], "kxy [N/um]": [39.0]}, [ANGLE], "unknown column 'kxy"),
+    ({"axial [N]": [400.0]}, [ANGLE], "no measured quantity"),
+    ({"axial [N]": [400.0], "kxx [N/um]": [39.0], "x error [um]": [1.0]}, [ANGLE], "no column x beside it"),
+    ({"axial [N]": [400.0] * 2, "kxx [N/um]": [39.0, 60.0], "kxx error [N/um]": [1.0, 1.0]}, [ANGLE], "contradict"),
+    ({"axial [N]": [400.0], "kxx [N/um]": [39.0], "kxx error [N/um]": [0.0]}, [ANGLE], "greater than 0"),
+    ({"axial [N]": [400.0], "kxx [N/um]": [float("nan")]}, [ANGLE], "finite"),
+    ({"axial [N]": [400.0, 500.0], "kxx [N/um]": [39.0]}, [ANGLE], "differ in length"),
+    ({"axial [N]": [400.0], "K [N/um]": [39.0]}, [ANGLE], "excitation"),
+    ({"conformity_inner": [0.2], "kxx [N/um]": [39.0]}, [ANGLE], "measurement 1"),
+    ("no-such-file.csv", [ANGLE], "no such file"),
+    (3.0, [ANGLE], "must be a CSV file"),
+]
+
+
+@pytest.mark.parametrize(("data", "free", "words"), BAD)
+def test_what_cannot_be_fitted_is_refused_in_one_sentence(data, free, words):
+    with pytest.raises(SceneError, match=words) as caught:
+        rw.fit(data, LOADED, free)
+    assert len(caught.value.mistakes) == 1 and "nan" not in str(caught.value)
+
+
+def test_data_that_ask_for_what_is_not_physical_end_with_the_key_and_its_end():
+    with pytest.raises(ConvergenceError, match=f"`{ANGLE}` ran to .*not physical"):
+        rw.fit({"axial [N]": [400.0, 1000.0, 2000.0], "kxx [N/um]": [0.1, 0.3, 0.4]}, LOADED, ANGLE)
+
+
+@pytest.mark.parametrize(("mass", "free", "known"), [(2.0, "K,C,mass", 0.0), (2.0, "K,C", 2.0), (0.0, "K,C", 0.0)])
+def test_force_and_displacement_give_stiffness_damping_and_mass_back(mass, free, known):
+    """Without noise to the accuracy of the record's transform: leakage of a record that begins at rest and ends anywhere."""
+    found = rw.fit(record(5e7, 800.0, mass, 1, noise_db=200.0), free=free, mass=known)
+    assert found["K"] == pytest.approx(5e7, rel=1e-3) and found["C"] == pytest.approx(800.0, rel=5e-3)
+    if "mass" in free:
+        assert found["mass"] == pytest.approx(2.0, rel=1e-3)
+
+
+def test_intervals_of_a_record_hold_what_they_state():
+    """30 records with 40 dB of noise: 95 % of 60 intervals within what chance leaves, 50 at least (p = 1e-4)."""
+    inside = 0
+    for seed in range(30):
+        found = rw.fit(record(5e7, 800.0, 2.0, 100 + seed), free="K,C", mass=2.0)
+        inside += sum(abs(found[name] - true) <= found.half_width(name) for name, true in (("K", 5e7), ("C", 800.0)))
+    assert 50 <= inside < 60  # never outside would be intervals that are too wide: p = 0.05
+
+
+def test_two_directions_give_all_parts():
+    k, c = np.array([[5e7, 1e7], [-1e7, 4e7]]), np.array([[800.0, 100.0], [-50.0, 600.0]])
+    found = rw.fit(turning_record(k, c, 1.5, 3), free="K,C,mass")
+    for a, one in enumerate("yz"):
+        for b, other in enumerate("yz"):
+            assert abs(found[f"k{one}{other}"] - k[a, b]) < 2.0 * found.half_width(f"k{one}{other}")
+            assert abs(found[f"c{one}{other}"] - c[a, b]) < 2.0 * found.half_width(f"c{one}{other}")
+    assert found["mass"] == pytest.approx(1.5, rel=2e-3)
+
+
+def test_a_single_frequency_does_not_tell_stiffness_from_mass():
+    random, t = np.random.default_rng(0), np.arange(2000) / 8000.0
+    w = 2.0 * np.pi * 200.0
+    data = {
+        "time_s": t,
+        "force_n": 10.0 * np.cos(w * t) + 0.01 * random.standard_normal(2000),
+        "x_um": 0.2 * np.cos(w * t - 0.1) + 0.002 * random.standard_normal(2000),
+    }
+    both = rw.fit(data, free="K,C,mass")
+    assert np.isinf(both.half_width("K")) and np.isinf(both.half_width("mass")) and np.isfinite(both.half_width("C"))
+    alone = rw.fit(data, free="K,C")
+    assert abs(alone["K"] - 5e7 * np.cos(0.1)) < 2.0 * alone.half_width("K")
+
+
+def test_a_model_that_misses_the_record_is_told():
+    found = rw.fit(record(5e7, 800.0, 2.0, 1), free="K,C")
+    assert any("leaves" in text and "mass" in text for text in found.warnings)
+
+
+RECORD = record(5e7, 800.0, 2.0, 1)
+BAD_RECORDS = [
+    (RECORD, {"free": "stiffness"}, "no number of the linear model"),
+    (RECORD, {"free": ""}, "names no number"),
+    (RECORD, {"free": "K,mass", "mass": 1.0}, "either known or fitted"),
+    (RECORD, {"free": "K", "mass": -1.0}, "at least 0 kg"),
+    (RECORD, {"free": "K", "scene": LOADED}, "leave it out"),
+    (RECORD, {"free": "K", "slow_roll": "a.csv"}, "belongs to the signals of a rig"),
+    ({**RECORD, "time_s": np.cumsum(1.0 + 0.5 * (np.arange(4096) % 2))}, {"free": "K"}, "even ones"),
+    ({**RECORD, "force_n": np.ones(4096)}, {"free": "K"}, "is constant"),
+    (
+        {"time_s": RECORD["time_s"], "force_y_n": RECORD["force_n"], "z_m": RECORD["x_m"]},
+        {"free": "K"},
+        "along the same axis",
+    ),
+    ({"time_s": RECORD["time_s"], "force_n": RECORD["force_n"]}, {"free": "K"}, "along the same axis"),
+]
+
+
+@pytest.mark.parametrize(("data", "given", "words"), BAD_RECORDS)
+def test_records_that_cannot_be_fitted_are_refused(data, given, words):
+    given = dict(given)
+    with pytest.raises(SceneError, match=words):
+        rw.fit(data, given.pop("scene", None), **given)
+
+
+@pytest.fixture(scope="module")
+def signals(tmp_path_factory):
+    """Record and slow roll of a rig whose bearings have 17 deg, where the scene says 15."""
+    folder = tmp_path_factory.mktemp("rig")
+    scene = with_number(load_scene(EXAMPLES / "test_rig.toml"), "load.axial", 2000.0)
+    rig = rig_of(scene)
+    held = bearing(with_number(scene, ANGLE, 17.0), 2000.0, default_registry())
+    state = balance(rotor(rig, 13000.0 * np.pi / 30.0), held)
+    short = attrs.evolve(rig.signals, duration=0.25)
+    answer = response(rig, held, state, short)
+    write_recording(rig_record(rig, answer, short, 3), folder / "signals.csv")
+    write_recording(slow_roll_record(rig, held, short, 4, white_noise(answer, short)), folder / "slow.csv")
+    return folder, scene, state
+
+
+def test_the_rigs_record_gives_the_angle_that_its_scene_does_not_say(signals):
+    folder, scene, state = signals
+    found = rw.fit(folder / "signals.csv", scene, ANGLE, slow_roll=folder / "slow.csv")
+    assert abs(found[ANGLE] - 17.0) < 0.2  # issue
+    assert abs(found[ANGLE] - 17.0) < 2.0 * found.half_width(ANGLE)
+    assert found["K"] == pytest.approx(state.stiffness, rel=0.01)
+    unlike = rw.identify(folder / "signals.csv", scene, slow_roll=folder / "slow.csv")
+    assert abs(found["K"] / state.stiffness - 1.0) < 0.2 * abs(unlike.equivalent_stiffness / state.stiffness - 1.0)
+
+
+@pytest.mark.parametrize(
+    ("free", "words"),
+    [
+        ("excitation.unbalance", "is the rig's"),
+        ("load.radial[0]", "whirl in circles"),
+        (f"{ANGLE},load.axial,bearing.conformity_inner", "2 measured"),
+    ],
+)
+def test_keys_that_a_rig_does_not_tell_are_refused(signals, free, words):
+    folder, scene, _ = signals
+    with pytest.raises(SceneError, match=words):
+        rw.fit(folder / "signals.csv", scene, free)
+
+
+def test_the_command_writes_what_it_shows(tmp_path):
+    table = tmp_path / "measured.csv"
+    rows = zip(LOADS, answers(LOADED, "kxx", contact_angle_deg=17.0), strict=True)
+    table.write_text("Load;Stiffness;note\n" + "".join(f"{load:g};{1e-6 * k:.6g};1\n" for load, k in rows))
+    scene = tmp_path / "scene.toml"
+    scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 500.0\n')
+    names = ("--map", "Load=load.axial [N]", "--map", "Stiffness=kxx [N/µm]", "--map", "note=ignore")
+    words = ["fit", table, "--scene", scene, "--free", ANGLE, *names, "--out", tmp_path]
+    shown = invoke(*words)
+    assert shown.exit_code == 0, shown.output
+    assert "17" in shown.output and (tmp_path / "fit.png").stat().st_size > 1000
+    content = json.loads((tmp_path / "fit.json").read_text())
+    assert content["free"][0]["value"] == pytest.approx(17.0, abs=1e-3) and content["series"][0]["x"] == list(LOADS)
+    assert json.loads(invoke(*words, "--json", "--no-pictures").stdout)["free"] == content["free"]
+    wrong = invoke("fit", table, "--free", ANGLE)
+    assert wrong.exit_code == 2 and "`scene`" in wrong.output
+
+
+@pytest.mark.slow
+def test_the_posterior_of_a_nearly_linear_fit_is_its_interval():
+    """With stated errors and few of them the posterior is normal: limits of 95 % are the interval's."""
+    k = np.array(answers(LOADED, "kxx", contact_angle_deg=17.0)[1:2])
+    data = {"axial [N]": LOADS[1:2], "kxx [N/m]": k, "kxx error [N/m]": 0.01 * k}
+    found = rw.fit(data, LOADED, ANGLE, posterior=120)
+    low, high = found.posterior.limits[:, 0]
+    half = found.half_width(ANGLE)
+    assert 0.5 * (high - low) == pytest.approx(half, rel=0.15)  # 1344 samples, some steps of memory each
+    assert 0.5 * (high + low) == pytest.approx(found[ANGLE], abs=0.15 * half)
+
+
+def test_a_posterior_without_its_package_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "emcee", None)
+    with pytest.raises(rw.RacewayError, match=r"needs emcee: pip install '.\[fit\]'"):
+        rw.fit(TABLE, LOADED, ANGLE, posterior=100)

@@ -1,0 +1,63 @@
+"""Records of a shaker on a mass, spring and dashpot in one direction or two, in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: Samples, their rate [Hz], and the band of the force [Hz].
+SAMPLES, RATE, BAND = 4096, 8000.0, (20.0, 1500.0)
+
+
+def record(
+    stiffness: float, damping: float, mass: float, seed: int, noise_db: float = 40.0, lines: int = 60
+) -> dict[str, np.ndarray]:
+    """Force and displacement of a system that begins at rest under a sum of sines, each with white noise.
+
+    Parameters
+    ----------
+    stiffness, damping, mass : [N/m, N s/m, kg]
+    noise_db : rms of a signal over that of its noise, of force and displacement alike
+    lines : sines of 10 N at frequencies that are no lines of the record's transform
+
+    Returns
+    -------
+    dict : time_s, force_n, x_m, (n,) each
+    """
+    random = np.random.default_rng(seed)
+    t = np.arange(SAMPLES) / RATE
+    w = 2.0 * np.pi * np.sort(random.uniform(*BAND, lines))
+    force = 10.0 * np.exp(2j * np.pi * random.uniform(size=lines))
+    moved = force / (stiffness - mass * w**2 + 1j * w * damping)
+    turning = np.exp(1j * np.outer(t, w))
+    f, x = (turning @ force).real, (turning @ moved).real
+    # The free motion that makes displacement and speed zero at the beginning.
+    place, speed = float(moved.real.sum()), float((1j * w * moved).real.sum())
+    if mass > 0.0:
+        decay = 0.5 * damping / mass
+        free = np.sqrt(stiffness / mass - decay**2)
+        x = x - np.exp(-decay * t) * (place * np.cos(free * t) + (speed + decay * place) / free * np.sin(free * t))
+    elif damping > 0.0:
+        x = x - place * np.exp(-stiffness / damping * t)
+    part = 10.0 ** (-noise_db / 20.0)
+    f, x = (one + part * one.std() * random.standard_normal(SAMPLES) for one in (f, x))
+    return {"time_s": t, "force_n": f, "x_m": x}
+
+
+def turning_record(stiffness: np.ndarray, damping: np.ndarray, mass: float, seed: int) -> dict[str, np.ndarray]:
+    """Periodic forces along y and z and their displacements, with 40 dB of noise each.
+
+    Parameters
+    ----------
+    stiffness, damping : (2, 2) [N/m, N s/m]
+    """
+    random = np.random.default_rng(seed)
+    t = np.arange(SAMPLES) / RATE
+    low, high = (int(one * SAMPLES / RATE) for one in BAND)
+    w = 2.0 * np.pi * np.arange(low, high) * RATE / SAMPLES
+    force = 10.0 * np.exp(2j * np.pi * random.uniform(size=(len(w), 2)))
+    z = stiffness - mass * (w**2)[:, None, None] * np.eye(2) + 1j * w[:, None, None] * damping
+    moved = np.linalg.solve(z, force[..., None])[..., 0]
+    turning = np.exp(1j * np.outer(t, w))
+    f, x = (turning @ force).real, (turning @ moved).real
+    f, x = (one + 0.01 * one.std() * random.standard_normal(one.shape) for one in (f, x))
+    return {"time_s": t, "force_y_n": f[:, 0], "force_z_n": f[:, 1], "y_m": x[:, 0], "z_m": x[:, 1]}
