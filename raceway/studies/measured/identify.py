@@ -25,6 +25,8 @@ from raceway.studies.shaft.rotor import Rotor, rotor
 _COVERAGE = 1.96
 #: Deflection of the bearing below this part of the sensor's line is a small difference of large numbers.
 _SMALL = 0.1
+#: Part by which the tilt stiffness may be off over that by which the scene misses K.
+_TILT = 2.0
 #: K off the scene's by more than this is told.
 _UNLIKE = 0.3
 
@@ -71,7 +73,7 @@ class Found:
                 "identification": self._identification(),
                 "uncertainty": {
                     "how": "half-widths at 95 %: scatter of the blocks of turns, slow roll, marks between samples, least squares against "
-                    "whole-turn Fourier; what is taken as known of the rig is in `sensitivities`",
+                    "whole-turn Fourier, the tilt stiffness that is assumed; what is taken as known of the rig is in `sensitivities`",
                     "parts": {
                         name: {"stiffness": part[0], "damping": part[1] if self.order.marked else None}
                         for name, part in self.parts.items()
@@ -244,6 +246,7 @@ def identify(
     }
     x = held.answer(state.speed, state.force, state.moment)[0]
     scene = (state.force / x).real + state.mass * state.speed**2
+    parts["tilt"] = _tilted(line, state, _TILT * abs(float(scene) / state.stiffness - 1.0))
     return Found(
         turned, found, run_out, state, float(scene), parts, sensitivities(changed_rotors(rig, found.speed), line, state)
     )
@@ -253,6 +256,18 @@ def _turned(line: Rotor, state: State, seen: complex, angle: float) -> np.ndarra
     """Largest change of ``values`` (4,) when the line that is seen, run-out and all, turns by an angle [rad] either way."""
     moved = [state.sensor + seen * (exp(1j * turn) - 1.0) for turn in (-angle, angle)]
     return np.max([np.abs(values(with_tilt_of(line, state, other)) - values(state)) for other in moved], axis=0)
+
+
+def _tilted(line: Rotor, state: State, part: float) -> np.ndarray:
+    """Largest change of ``values`` (4,) when the tilt stiffness that is assumed is off by a part of itself either way.
+
+    Notes
+    -----
+    The tilt stiffness is the scene's bearing's, and no sensor sees it.  How far the scene misses the K of the signals is
+    all that is known of how far it misses the tilt stiffness, which goes with the axial stiffness and follows the contact angle more.
+    """
+    changed = [with_tilt_of(line, state, state.sensor, factor) for factor in (1.0 / (1.0 + part), 1.0 + part)]
+    return np.max([np.abs(values(other) - values(state)) for other in changed], axis=0)
 
 
 def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
