@@ -138,8 +138,7 @@ def test_a_shaker_s_record_is_read_and_told_what_is_missing(tmp_path):
     assert found.exit_code == 2 and not (tmp_path / "out").exists()
     for words in (
         "400 samples over 0.0399 s of force (+- 20 N), y (+- 15 µm)",
-        "cannot be identified from a force",
-        'kind = "measured"',
+        "raceway fit FILE.csv",
     ):
         assert words in found.stderr
 
