@@ -193,16 +193,13 @@ def of_a_branch() -> list[Figure]:
 
 
 def of_fits() -> list[Figure]:
-    """One number, two numbers, none that is determined; one of two quantities scattered over decades."""
-    loads = [400.0, 1000.0, 2000.0, 3000.0]
-    data = {"axial [N]": loads, "kxx [N/um]": [39.0, 68.0, 98.0, 124.0], "x [um]": [5.0, 11.0, 20.0, 1e3]}
-    found = [
-        raceway.fit(data, b7206c(), free)
-        for free in ("bearing.contact_angle_deg", "bearing.contact_angle_deg,bearing.conformity_inner")
-    ]
-    lost = {"error": None, "determined": False, "low": None, "high": None}
-    whole = [one.to_dict() for one in found]
-    return [fits.draw(one) for one in (*whole, {**whole[0], "free": [{**whole[0]["free"][0], **lost}]})]
+    """One number, two numbers, none that is determined; a second quantity that is scattered over decades."""
+    data = {"axial [N]": [400.0, 1000.0, 2000.0, 3000.0], "kxx [N/um]": [39.0, 68.0, 98.0, 124.0]}
+    names = "bearing.contact_angle_deg,bearing.conformity_inner"
+    one, two = (raceway.fit(data, b7206c(), free).to_dict() for free in (names.split(",")[0], names))
+    lost = {**one["free"][0], "error": None, "determined": False, "low": None, "high": None}
+    wild = {**one["series"][0], "measured": [1.0, 1e3, 1e6, 1e9]}
+    return [fits.draw(one), fits.draw({**two, "series": [*two["series"], wild]}), fits.draw({**one, "free": [lost]})]
 
 
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
