@@ -89,6 +89,7 @@ def test_two_numbers_that_only_add_up_are_told_as_a_combination():
     found = judged(free, np.array([10.0, 5.0, 1.0]), np.resize([0.1, -0.1], 8), j, False, 1)
     (one,) = found.undetermined
     assert set(one.changes) == {"a", "b"} and one.changes["a"] == pytest.approx(-one.changes["b"])
+    assert one.moves == pytest.approx(0.0, abs=1e-12)
     assert np.isinf(found.half[:2]).all() and np.isfinite(found.half[2])
     # a + b is as known as c; a alone by its size.
     both, alone = found.half_widths(np.array([[1.0, 1.0, 0.0], [1.0, 0.0, 0.0]]))
@@ -209,7 +210,9 @@ def test_what_noise_hides_is_not_determined():
     x = np.linspace(-2.5, 2.5, 9)
     data = Straight(x, 20.0 + x + 10.0 * np.random.default_rng(4).standard_normal(9))
     found = estimate(data, [Free("a", "", 20.0, 20.0), Free("b", "", 1.0, 1.0)], stated=False)
-    assert np.isinf(found.half).tolist() == [False, True] and set(found.undetermined[0].changes) >= {"b"}
+    assert np.isinf(found.half).tolist() == [False, True] and set(found.undetermined[0].changes) == {"b"}
+    # A tenth of the slope moves the data by that over the scatter.
+    assert found.undetermined[0].moves == pytest.approx(0.1 * np.linalg.norm(x) / found.scatter)
 
 
 def test_two_directions_give_all_parts():

@@ -190,8 +190,8 @@ def judged(
     lost = (np.abs(directions[open_]) > _TOLD).any(axis=0)
     half[lost] = np.inf
     told = tuple(
-        Combination(_changes(free, one, sizes), float(one_s / noise) if noise else 0.0)
-        for one, one_s in zip(directions[open_], s[open_], strict=True)
+        _combination(free, one, s_one / noise if noise else 0.0, sizes)
+        for one, s_one in zip(directions[open_], s[open_], strict=True)
     )
     at_limit = tuple(
         one.name
@@ -204,9 +204,17 @@ def judged(
     )  # fmt: skip
 
 
-def _changes(free: Sequence[Free], direction: np.ndarray, sizes: np.ndarray) -> dict[str, float]:
-    """A singular vector as changes of numbers, the largest one by a tenth of its size and up."""
-    scaled = 0.1 * direction / direction[np.argmax(np.abs(direction))]
-    return {
-        one.name: float(part * size) for one, part, size in zip(free, scaled, sizes, strict=True) if abs(part) > 0.1 * _TOLD
+def _combination(free: Sequence[Free], direction: np.ndarray, moves: float, sizes: np.ndarray) -> Combination:
+    """A singular vector as changes of numbers, the largest one by a tenth of its size and up.
+
+    Parameters
+    ----------
+    moves : standard errors by which the vector itself moves the data
+    """
+    part = 0.1 / direction[np.argmax(np.abs(direction))]
+    changes = {
+        one.name: float(part * share * size)
+        for one, share, size in zip(free, direction, sizes, strict=True)
+        if abs(part * share) > 0.1 * _TOLD
     }
+    return Combination(changes, float(abs(part) * moves))

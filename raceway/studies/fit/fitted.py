@@ -214,8 +214,8 @@ def told(one: Combination, units: dict[str, str]) -> str:
     parts = [f"{name} {change:+.3g} {units[name]}".rstrip() for name, change in one.changes.items()]
     if len(parts) == 1:
         (name,) = one.changes
-        return f"the data do not determine {name}: {parts[0]} moves them by {one.moves / 10.0:.2g} standard errors. Do not free it"
+        return f"the data do not determine {name}: {parts[0]} moves them by {one.moves:.2g} standard errors. Do not free it"
     return (
-        f"the data do not determine {' and '.join(one.changes)} together: {' with '.join(parts)} moves them by {one.moves / 10.0:.2g} "
+        f"the data do not determine {' and '.join(one.changes)} together: {' with '.join(parts)} moves them by {one.moves:.2g} "
         "standard errors. Free one of them less, or measure what tells them apart"
     )
