@@ -21,6 +21,7 @@ from raceway.studies.article.figures import pictures
 from raceway.studies.article.files import write
 from raceway.studies.article.panel import Picture
 from raceway.studies.article.report import page
+from raceway.studies.follow.instead import FAILED, Instead
 from validation.article_study import curves, row, study
 from validation.command_line import EXAMPLES, invoke
 
@@ -105,6 +106,7 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
         raise ConvergenceError("no motion was found")
 
     monkeypatch.setattr(runs, "run", fail)
+    monkeypatch.setattr(runs, "from_rest", lambda _, speed, turns: Instead(speed, FAILED, turns, why="nothing"))
     found = invoke("study", "article", *SMALL, "--no-pictures", "--out", tmp_path)
     assert found.exit_code == 1
     assert "every run failed" in found.stderr and "no motion was found" in found.stderr
@@ -240,3 +242,21 @@ def test_help_teaches_with_an_example_and_an_unknown_study_is_named():
     found = invoke("study", "artcle")
     assert found.exit_code == 2 and "did you mean 'article'" in found.stderr
     assert "article" in invoke("study", "--help").stdout
+
+
+@pytest.mark.slow
+def test_where_no_ring_stays_on_a_steady_motion_it_is_told_what_it_does_instead():
+    """600 N: unstable; 400 N against the shaft under m e w² along one direction: no steady motion is found."""
+    registry, made = default_registry(), design(article_tables())
+    constant, growing = (
+        Setting("unidirectional", a, t, True, "rigid") for a, t in (("constant", "free"), ("unbalance", "shaft"))
+    )
+    first, second = runs.curve(
+        [made.point(constant, 600.0, 13492.5, registry), made.point(growing, 400.0, 14497.5, registry)], registry
+    )
+    assert (first["status"], second["status"]) == ("unstable", "unsteady") and "k" in first and "k" not in second
+    for one in (first, second):
+        instead = one["instead"]
+        assert instead["kind"] != "not integrated" and instead["words"] in one["reason"]
+        # The force moves the ring by some µm a turn at least, and contacts that are lost do not let it go further than their slack.
+        assert 1e-6 < instead["least"] < instead["most"] < 2e-4

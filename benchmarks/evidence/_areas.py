@@ -74,6 +74,7 @@ AREAS = {
 MEASURES = {
     "article": "rigid motion periodic article examples/b7206.toml",
     "article_mesh": "elastic solids mesh plan revolution condensed examples/b7206_article_mesh.toml",
+    "article_points": "rigid periodic article follow",
     "article_motion": "elastic solids mesh rigid revolution condensed examples/b7206_article_mesh.toml",
     "band": "band gradients rigid",
     "catalogue": "catalogue rigid",

@@ -11,6 +11,8 @@ import numpy as np
 from raceway.storage.tables import Tables
 from raceway.studies.article.design import CLAIMED, FRICTION_ERROR, Design, Setting
 
+#: What became of a run that is neither failed nor refused.
+ANSWERED = ("completed", "unstable", "unsteady")
 #: What may be called k: name -> key of a row.
 MEASURES = {"K": "k", "|Z|": "abs_z"}
 
@@ -46,8 +48,8 @@ class Curves:
         return np.array([row[key] if row["status"] == "unstable" else np.nan for row in self.rows[setting, load]])
 
     def failed(self, setting: Setting, load: float) -> np.ndarray:
-        """(speeds,) where the run failed or was refused."""
-        return np.array([row["status"] not in ("completed", "unstable") for row in self.rows[setting, load]])
+        """(speeds,) where the run failed or was refused, so that nobody knows what a ring does."""
+        return np.array([row["status"] not in ANSWERED for row in self.rows[setting, load]])
 
     def surface(self, setting: Setting, measure: str = "K") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Values [N/m], errors, and where runs failed; (loads, speeds) each."""

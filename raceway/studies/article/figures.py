@@ -26,6 +26,7 @@ from raceway.studies.article.design import (
 )
 from raceway.studies.article.panel import GRID, Panel, Picture, colours, cut, end_labels, ends, finish
 from raceway.studies.article.rules import LEVEL
+from raceway.studies.article.runs import UNSTEADY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -123,6 +124,9 @@ def _excitation_panel(
     caption = "Dashed: the same with weightless balls."
     if np.isfinite(bad).any():
         caption += " Crosses: unstable motions, which a ring does not stay on; at the edge where they lie outside."
+    gaps = {f"{row['speed_rpm']:g}" for s in lines.values() for row in curves.rows[s, load] if row["status"] == UNSTEADY}
+    if gaps:
+        caption += f" No steady motion is found at {', '.join(sorted(gaps))} r/min; what a ring does there stands in the last table."
     return Panel(draw, alternative, caption)
 
 

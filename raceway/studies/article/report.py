@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,6 @@ import attrs
 
 from raceway.storage.tables import Tables
 from raceway.studies.article import causes, expected
-from raceway.studies.article.curves import told
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, FRICTIONS, TILT_WORDS, TILTS
 from raceway.studies.article.figures import named
 from raceway.studies.article.panel import Picture
@@ -269,23 +269,23 @@ def _rig(out: Page, study: Article) -> None:
 
 def _faults(out: Page, study: Article) -> None:
     out.section("Failed runs and unstable motions")
+    every = [(setting.name, row) for (setting, _), rows in study.curves.rows.items() for row in rows]
+    every += [("tilt stiffness of the shaft varied", row) for rows in study.scan.values() for row in rows]
+    every += [(f"at the rig’s speeds, {TILT_WORDS[row['tilt']]}, {row['bodies']}", row) for row in study.rig]
     bad = [
-        [setting.name, f"{load:g}", words] for (setting, load), rows in study.curves.rows.items() if (words := told(rows))
+        [name, f"{row['axial_n']:g}", f"{row['speed_rpm']:g}", row["status"], row["reason"]]
+        for name, row in every
+        if row["status"] != "completed"
     ]
-    for load, rows in study.scan.items():
-        bad += [["tilt stiffness of the shaft varied", f"{load:g}", words] for words in filter(None, [told(rows)])]
-    places = dict.fromkeys((row["tilt"], row["bodies"], row["axial_n"]) for row in study.rig)
-    for place in places:
-        found = told([row for row in study.rig if (row["tilt"], row["bodies"], row["axial_n"]) == place])
-        bad += [[f"at the rig’s speeds, {TILT_WORDS[place[0]]}, {place[1]}", f"{place[2]:g}", found]] if found else []
-    unstable = sum(row["status"] == "unstable" for row in study.curves.faults())
+    count = Counter(row["status"] for row in study.curves.faults())
     out.text(
-        f"{len(study.failed)} of {study.runs} runs failed. {unstable} steady motions of the curves are unstable: they satisfy the equations, but a "
-        "ring does not stay on them; they are crosses in the figures and count for no verdict. Unidirectional forces meet resonances "
+        f"{len(study.failed)} of {study.runs} runs failed. {count['unstable']} steady motions of the curves are unstable: they satisfy the equations, but a "
+        f"ring does not stay on them; they are crosses in the figures and count for no verdict. At {count['unsteady']} points no steady motion is found. "
+        "What a ring does instead is integrated from beside the unstable motion, or from rest. Unidirectional forces meet resonances "
         "of the contacts’ higher harmonics with the ring’s vibrations (docs/periodic.md)."
     )
     if bad:
-        out.table(["setting", "axial load N", "what became of it"], bad)
+        out.table(["setting", "axial load N", "r/min", "", "what became of it"], bad)
 
 
 def _digits(value: float | None, count: int = 5) -> str:

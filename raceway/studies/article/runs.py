@@ -10,16 +10,21 @@ from typing import Any
 
 import attrs
 
-from raceway.errors import RacewayError
+from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.file import scene_from_dict
 from raceway.storage.tables import Tables
+from raceway.studies.follow.instead import FAILED, Instead, from_rest, instead_of
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, program_key
 
 Row = Tables
+#: Of a point at which no steady motion is found, and what a ring does instead is known.
+UNSTEADY = "unsteady"
+#: Turns of the motion that is integrated where no ring stays on a steady one; half of them are judged.
+TURNS = 800
 
 
 @attrs.frozen
@@ -44,6 +49,9 @@ class Task:
 def curve(points: Sequence[Tables], registry: Registry) -> list[Row]:
     """One row a point, in order; a run that fails or is refused becomes a row with its reason.
 
+    Where the steady motion is unstable, or none is found, ``instead`` tells what a ring does, by time integration: from beside
+    that motion, or from rest.
+
     Parameters
     ----------
     points : tables of scenes
@@ -54,7 +62,17 @@ def curve(points: Sequence[Tables], registry: Registry) -> list[Row]:
 def _row(tables: Tables, registry: Registry) -> Row:
     row: Row = {"speed_rpm": tables["excitation"]["speed_rpm"], "axial_n": tables["load"]["axial"]}
     try:
-        result = run(scene_from_dict(tables, registry), registry)
+        scene = scene_from_dict(tables, registry)
+        try:
+            result = run(scene, registry)
+        except ConvergenceError as why:
+            if not scene.integrator.method.steady:
+                raise
+            motion = from_rest(scene, row["speed_rpm"], TURNS)
+            if motion.kind == FAILED:
+                raise
+            reason = f"{' '.join(str(why).split()).partition(': ')[0]}; instead, from rest: {motion.words}"
+            return {**row, "status": UNSTEADY, "reason": reason, "instead": _plain(motion)}
     except RacewayError as why:
         status = "failed" if why.exit_code == 1 else "refused"
         return {**row, "status": status, "reason": " ".join(str(why).split())}
@@ -62,16 +80,26 @@ def _row(tables: Tables, registry: Registry) -> Row:
     assert found is not None
     fate = result.stability["floquet"]
     unstable = fate is not None and fate["verdict"] == "unstable"
+    if unstable:
+        motion = instead_of(result, row["speed_rpm"], TURNS)
+        row["instead"] = _plain(motion)
+        grows = f"the steady motion is unstable, disturbances grow {fate['largest']:.4g} times a turn"
     return {
         **row,
         "status": "unstable" if unstable else "completed",
-        "reason": "the steady motion is unstable: a ring does not stay on it" if unstable else "",
+        "reason": f"{grows}; instead: {motion.words}" if unstable else "",
+        "found": None if fate is None else fate["found"],
         "k": found.equivalent_stiffness,
         "abs_z": abs(found.dynamic_stiffness),
         "force_n": found.force_amplitude,
         "error": None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0),
         "mesh_error": error["mesh"],
     }
+
+
+def _plain(motion: Instead) -> Row:
+    """Without the section, which a page of hundreds of points has no use for."""
+    return {name: value for name, value in motion.to_dict().items() if name != "section"}
 
 
 def work(

@@ -17,7 +17,7 @@ from raceway.scene.file import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import verdicts
-from raceway.studies.article.curves import ROTATING, Curves
+from raceway.studies.article.curves import ANSWERED, ROTATING, Curves
 from raceway.studies.article.design import TILTS, Design, Setting
 from raceway.studies.article.runs import Row, Task, curve, work
 from raceway.studies.article.verdict import Verdict
@@ -63,9 +63,9 @@ class Article:
 
     @property
     def failed(self) -> list[Tables]:
-        """Runs that failed or were refused, of curves, rig and scan; unstable motions are not among them."""
+        """Runs that failed or were refused, of curves, rig and scan; points at which it is known what a ring does instead are not among them."""
         every = [*self.curves.faults(), *self.rig, *(row for rows in self.scan.values() for row in rows)]
-        return [row for row in every if row["status"] not in ("completed", "unstable")]
+        return [row for row in every if row["status"] not in ANSWERED]
 
     @property
     def runs(self) -> int:

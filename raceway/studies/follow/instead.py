@@ -1,4 +1,5 @@
-"""What a ring does where its steady orbit is unstable: a time integration that begins beside it, and its Poincaré section.
+"""What a ring does where its steady orbit is unstable or not found: a time integration from beside it or from rest, and its
+Poincaré section.
 
 Notes
 -----
@@ -14,21 +15,34 @@ Nayfeh, Balachandran, Applied Nonlinear Dynamics (1995), sections 4.1 and 4.2.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import attrs
 import numpy as np
 
+from raceway.bodies.model import build_model
 from raceway.core.periodic.branch import Point
+from raceway.core.periodic.collocation import Solved, solve
+from raceway.core.periodic.direct import highest_order
+from raceway.core.periodic.floquet import transfer
 from raceway.core.periodic.sampling import states
+from raceway.core.ring.kernels.layout import DAMPING
+from raceway.core.ring.ring import Ring
 from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Motion, Schedule
-from raceway.errors import RacewayError
+from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.errors import ConvergenceError, RacewayError
 from raceway.integrators.newmark import Newmark
+from raceway.pipeline.result import Result
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.tables import Scene
 from raceway.storage.tables import Tables
 
 OnProgress = Callable[[str, int, int], None]
 #: Steps a turn, and those that are recorded; the step's error moves a settled orbit by some 1e-4.
-_STEPS, _RECORDED = 360, 8
+_STEPS, _RECORDED = 360, 24
+#: Turns in which the force grows on a ring at rest.
+_GROWN = 40
 #: Disturbance at the start over the orbit's size, along the disturbance that grows most.
 _KICK = 1e-2
 #: Turns after which an orbit may come back, and by what it may miss itself over its size.
@@ -36,18 +50,22 @@ _PERIODS, _BACK = 8, 1e-4
 #: Turns of the section that is judged; harmonics of the second frequency, and the share of the section's power they have.
 _JUDGED, _HARMONICS, _POWER = 512, 12, 0.999
 
+#: Relative error to which the orbit of a run is solved for again.
+_AGAIN = 1e-9
+
 REPEATS, QUASI, WANDERS, FAILED = "repeats", "quasi-periodic", "does not repeat", "not integrated"
 
 
 @attrs.frozen(eq=False)
 class Instead:
-    """The motion beside an unstable orbit.
+    """The motion beside an unstable orbit, or of a ring that was at rest.
 
     Attributes
     ----------
     parameter : value of the key;  kind : REPEATS, QUASI, WANDERS or FAILED;  turns : integrated
     period : turns after which it comes back, of REPEATS;  second : frequency in cycles a turn, of QUASI, at most 1/2
     least, most : smallest and largest half range of the radial displacement in a turn [m]
+    undamped : whether the contacts' dashpots were left out
     section : (n, 2) y [m] and its velocity over w [m], once a turn
     """
 
@@ -59,6 +77,7 @@ class Instead:
     least: float | None = None
     most: float | None = None
     why: str = ""
+    undamped: bool = False
     section: np.ndarray = attrs.field(factory=lambda: np.empty((0, 2)))
 
     @property
@@ -68,6 +87,8 @@ class Instead:
             return f"not integrated: {self.why}"
         assert self.least is not None and self.most is not None
         between = f"half range {1e6 * self.least:.4g} to {1e6 * self.most:.4g} µm a turn"
+        if self.undamped:
+            between += " (without the contacts' dashpots, with which grazing balls have no equilibrium)"
         if self.kind == REPEATS:
             after = "every turn: it settles on another orbit" if self.period == 1 else f"after {self.period} turns"
             return f"repeats {after}, {between}"
@@ -80,42 +101,86 @@ class Instead:
 
 
 def instead(point: Point, turns: int, on_progress: OnProgress | None = None) -> Instead:
-    """Integrate from beside an unstable orbit and say what comes of it."""
-    problem, solved = point.solved.problem, point.solved
-    system, w, free = problem.system, problem.speed, problem.free
-    values, vectors = np.linalg.eig(point.transfer)
+    """Integrate from beside an unstable orbit of a branch and say what comes of it."""
+    return _beside(point.solved, point.transfer, float(point.parameter), turns, on_progress)
+
+
+def instead_of(result: Result, parameter: float, turns: int) -> Instead:
+    """The same of a run by ``integrator.kind`` = "periodic" whose orbit is unstable."""
+    assert result.simulation is not None
+    near, at = result.simulation.whole.solution, result.equilibrium
+    nodes = near.excess.nodes
+    try:
+        solved = solve(near.problem, near.first_guess(near.problem, at.displacement, at.stiffness, nodes), _AGAIN)
+        over = transfer(solved, highest_order(near.problem, at.stiffness))
+    except ConvergenceError as why:
+        return Instead(parameter, FAILED, turns, why=str(why))
+    return _beside(solved, over, parameter, turns, None)
+
+
+def from_rest(scene: Scene, parameter: float, turns: int) -> Instead:
+    """What a ring at rest does under a force that grows within some turns, for ``turns`` turns from then on."""
+    model = build_model(scene, make_plan(scene))
+    at, period = settle(model), scene.excitation.period_s
+    schedule = Schedule(period / _STEPS, _STEPS, _GROWN + turns, _STEPS // _RECORDED, _GROWN * period)
+
+    def start(system: Ring) -> Motion:
+        return model.bearing.at_rest(system, at.displacement, at.ball, True)
+
+    return _told(model.system, start, schedule, model.system.arm, parameter, turns, None)
+
+
+def _beside(solved: Solved, over: np.ndarray, parameter: float, turns: int, on_progress: OnProgress | None) -> Instead:
+    """From beside an orbit, along the disturbance that grows most in a transfer ``over`` its span."""
+    problem, free = solved.problem, solved.problem.free
+    w, n = problem.speed, len(free)
+    values, vectors = np.linalg.eig(over)
     way = vectors[:, np.argmax(np.abs(values))].real
-    n = len(free)
     way *= _KICK * solved.size / max(float(np.abs(way / np.tile(problem.weight[free], 2)).max()), 1e-300)
     q, v, _, ball, _ = (part[0] for part in states(solved, np.zeros(1)))
     q, v = q.copy(), w * v
     q[free] += way[:n]
     v[free] += w * way[n:]
-    try:
+
+    def start(system: Ring) -> Motion:
         now = system.evaluate(q, v, ball=ball)
-        start = Motion(q, v, system.acceleration(q, v, system.outer_force(0.0), now), now.ball, now.ball.copy())
-        schedule = Schedule(2.0 * np.pi / w / _STEPS, _STEPS, turns, _STEPS // _RECORDED)
-        told = None if on_progress is None else (lambda done, total: on_progress("beside unstable orbits", done, total))
-        record = integrate(Newmark(), system, start, schedule, told)
+        return Motion(q, v, system.acceleration(q, v, system.outer_force(0.0), now), now.ball, now.ball.copy())
+
+    schedule = Schedule(2.0 * np.pi / w / _STEPS, _STEPS, turns, _STEPS // _RECORDED)
+    return _told(problem.system, start, schedule, problem.system.arm, parameter, turns, on_progress)
+
+
+def _told(
+    system: Ring, start: Callable[[Any], Motion], schedule: Schedule, arm: float, parameter: float, turns: int, on_progress: OnProgress | None
+) -> Instead:  # fmt: skip
+    """Integrate, and put the last turns into words and numbers."""
+    told = None if on_progress is None else (lambda done, total: on_progress("beside unstable orbits", done, total))
+    try:
+        record, undamped = _integrated(system, start, schedule, told)
     except RacewayError as why:
-        return Instead(float(point.parameter), FAILED, turns, why=str(why))
-    last = min(_JUDGED, turns // 2)
-    motion = np.hstack([record.displacement / problem.weight, record.velocity / w / problem.weight])
-    radial = record.displacement[:, 1:3].reshape(turns, _RECORDED, 2)[-last:]
-    swing = 0.5 * np.ptp(radial, axis=1).max(axis=1)
-    section = motion[_RECORDED - 1 :: _RECORDED][-last:]
+        return Instead(parameter, FAILED, turns, why=str(why))
+    last, w = min(_JUDGED, turns // 2), 2.0 * np.pi / (schedule.dt * _STEPS)
+    weight = np.array([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm])
+    motion = np.hstack([record.displacement / weight, record.velocity / w / weight])[-last * _RECORDED :]
+    swing = 0.5 * np.ptp(motion[:, 1:3].reshape(last, _RECORDED, 2), axis=1).max(axis=1)
+    section = motion[_RECORDED - 1 :: _RECORDED]
     kind, period, second = judged(section, float(np.abs(motion[:, 5:]).max()))
-    return Instead(
-        float(point.parameter),
-        kind,
-        turns,
-        period,
-        second,
-        float(swing.min()),
-        float(swing.max()),
-        "",
-        section[:, [1, 6]].copy(),
-    )
+    ends = float(swing.min()), float(swing.max())
+    return Instead(parameter, kind, turns, period, second, *ends, "", undamped, section[:, [1, 6]].copy())
+
+
+def _integrated(
+    system: Ring, start: Callable[[Any], Motion], schedule: Schedule, told: Callable[[int, int], None] | None
+) -> tuple[Record, bool]:
+    """The motion, and whether it is one without dashpots: their force jumps where a contact closes, and a ball may have no
+    equilibrium within the jump."""
+    try:
+        return integrate(Newmark(), system, start(system), schedule, told), False
+    except RacewayError:
+        if system.scalars[DAMPING] == 0.0:
+            raise
+    bare = system.without(DAMPING)
+    return integrate(Newmark(), bare, start(bare), schedule, told), True
 
 
 def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | None]:
