@@ -40,8 +40,9 @@ from raceway.pipeline.gradient.variation import Direction, NoDerivative
 _SAMPLES, _TOLERANCE = 360, 1e-8
 #: Largest step over the number at the key, and over the step of the static differences: errors fall with its square.
 _LARGEST, _SHARE = 3e-5, 0.03
-#: Turns of orbit and rates, and the change of the derivative over its size that ends them: the next one is a tenth of it or less.
-_RATES, _LEFT = 12, 1e-7
+#: Turns of orbit and rates; what the last one still changes, over the whole: the next one is a tenth of it or less; rounding of
+#: a motion over its size.
+_RATES, _LEFT, _ROUNDING = 12, 1e-7, 1e-11
 
 
 @attrs.frozen(eq=False)
@@ -138,8 +139,8 @@ class SteadyOrbit:
         rates = {k: solved.path.rate * (one.speed / solved.problem.speed) for k, one in problems.items()}
         lagging = any(solved.problem.system.scalars[entry] != 0.0 for entry in (DAMPING, TIME_CONSTANT))
         faster = (problems[1].speed - problems[-1].speed) / (2.0 * step)
-        last, weight = np.zeros(4), np.array([1.0, solved.problem.speed, 0.0, 0.0])
-        path = solved.path
+        path, first = solved.path, 0.0
+        rounding = _ROUNDING * np.abs(path.a / solved.problem.weight).max() / step
         moved = {k: attrs.evolve(path, q=path.q + k * step * held, rate=rates[k]) for k in problems}
         for turn in range(_RATES):
             slope = (_imbalance(problems[1], moved[1]) - _imbalance(problems[-1], moved[-1])) / (2.0 * step)
@@ -147,16 +148,16 @@ class SteadyOrbit:
                 return np.zeros(5)
             change = self._change(slope)
             moved = {k: _moved(one, change, k * step) for k, one in moved.items()}
-            lines = {
-                k: _line(attrs.evolve(solved, problem=problems[k], path=one), self._mass(problems[k].system))
-                for k, one in moved.items()
-            }
-            found: np.ndarray = (lines[1] - lines[-1]) / (2.0 * step)
-            if not lagging or np.linalg.norm((found - last) * weight) <= _LEFT * np.linalg.norm(found * weight):
+            size = float(np.abs(change.a / solved.problem.weight).max())
+            first = first or size
+            if not lagging or turn > 0 and size <= max(_LEFT * first, rounding):
                 break
-            last = found
             moved = {k: attrs.evolve(one, rate=_rates(problems[k], one)) for k, one in moved.items()}
-        return np.append(found, faster)
+        lines = {
+            k: _line(attrs.evolve(solved, problem=problems[k], path=one), self._mass(problems[k].system))
+            for k, one in moved.items()
+        }
+        return np.append((lines[1] - lines[-1]) / (2.0 * step), faster)
 
     def _mass(self, system: System) -> float:
         """``Model.mass_used`` of a neighbouring system."""
