@@ -27,6 +27,8 @@ from raceway.scene.continuous import Key
 
 #: Part of a gap, and of the stiffness, that the outermost step may move; largest step over the number at the key.
 _MOVED, _LARGEST = 0.004, 0.01
+#: Part of the way to a knot of the tables of compliances that a step may go, four of which then stay on one side.
+_KNOT = 0.25
 #: A step over the number so small that rounding shows: a contact is about to open or to close.
 _ROUGH = 1e-7
 #: Gaps below this part of the deepest one count as closed contacts without load.
@@ -163,7 +165,18 @@ def _step(system: System, direction: Direction, equilibrium: Equilibrium, here: 
     # Two steps to either side.
     step = min(largest, 0.5 * _MOVED / fastest) if fastest > 0.0 else largest
     least = _ROUGH * largest / _LARGEST
-    return max(step, least), "" if step >= least else _AT_THE_EDGE
+    if step < least:
+        return least, _AT_THE_EDGE
+    places = [s.table_places(q + by * moved, of.contacts.ball) for s, by, of in ((system, 0.0, here), (one, tried, along))]
+    room = _KNOT * _to_a_knot(*places, here.contacts.contact_force) * tried
+    return min(step, max(room, 10.0 * least)), ""
+
+
+def _to_a_knot(here: np.ndarray, there: np.ndarray, force: np.ndarray) -> float:
+    """The least distance of a loaded contact to a knot of its tables over the way from here to there, both (Z,) or (0,)."""
+    moves = (force[: len(here)] > 0.0) & (there != here)
+    left = np.abs(here - np.round(here))[moves] / np.abs(there - here)[moves]
+    return float(left.min(initial=np.inf))
 
 
 def _change(one: _State, two: _State, arm: float) -> float:

@@ -27,9 +27,9 @@ from raceway.scene.tables import Scene
 _LEAST = {"m": 1e-7, "N": 0.1, "N m": 1e-4, "deg": 1e-2, "r/min": 1.0, "K": 0.1, "kg": 1e-4, "s": 1e-7, "N s/m": 0.1}
 _ELSE = 1e-7
 #: Step over the number, of two models and of four; errors of the arrays are its square, and its fourth power.
-_TWO, _FOUR = 1e-5, 5e-4
+_TWO, _FOUR = 5e-6, 5e-4
 #: What the least step may be of the number; first try of a step along a direction, over the number, and over the least step at 0.
-_MUCH, _FIRST, _FIRST_AT_0 = 0.01, 1e-6, 0.01
+_MUCH, _FIRST, _FIRST_AT_0 = 1e-3, 1e-6, 0.01
 #: Arrays whose second difference is a larger part of the first than this have a kink; differences that are rounding.
 _BENT, _ROUNDING = 0.02, 1e-12
 #: Arrays of a system that forces at rest depend on, and those that only a motion does.
