@@ -1,5 +1,7 @@
 """The band of an answer over tolerances: indices of a published function, a linear answer by hand, and bad input."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -54,7 +56,39 @@ def test_the_scenes_own_table_is_read_and_checked():
     assert [one.path for one in wrong.mistakes] == ["tolerances.load.axail"] and "load.axial" in wrong.mistakes[0].message
 
 
+FITTED = LOADED | {"mounting": {"shaft_interference": 4e-6, "housing_interference": 20e-6}}
+
+
+@pytest.mark.parametrize(
+    ("name", "bore", "outer"), [("P4", 5.0, 7.0), ("ABEC 7", 5.0, 7.0), ("P5", 6.0, 9.0), ("P0", 10.0, 13.0)]
+)
+def test_a_class_by_name_is_what_its_table_makes_of_the_fits(name, bore, outer):
+    """ISO 492 for a bore of 30 mm, the last of its row, and an outside diameter of 62 mm: rings may be smaller, never larger."""
+    ranges = {one.key.path: (one.low, one.high) for one in tolerances_of(scene_from_dict(FITTED), {"class": name})}
+    assert ranges == {
+        "mounting.shaft_interference": pytest.approx((4e-6, (4.0 + bore) * 1e-6)),
+        "mounting.housing_interference": pytest.approx(((20.0 - outer) * 1e-6, 20e-6)),
+    }
+
+
+def test_a_tighter_class_makes_a_narrower_band():
+    fitted = LOADED | {"mounting": {"shaft_interference": 4e-6}}
+    wide, narrow = (rw.band(fitted, {"class": name}, count=32) for name in ("Normal", "P4"))
+    assert wide.high["kxx"] - wide.low["kxx"] == pytest.approx(
+        (10.0 / 5.0) * (narrow.high["kxx"] - narrow.low["kxx"]), rel=0.2
+    )  # deviations of 10 and 5 µm; stiffness is no line of the fit
+
+
+def test_balls_of_a_grade_differ_by_the_variation_of_their_lot():
+    (one,) = tolerances_of(scene_from_dict(LOADED), ["balls=G5"])
+    assert one.key.path == "bearing.ball_diameter" and one.high - one.low == pytest.approx(0.25e-6)
+
+
 BAD = [
+    ({"class": "P4"}, "changes nothing here"),
+    ({"class": "P3"}, "must be one of Normal"),
+    ({"balls": "5"}, "must be one of G3"),
+    (["class=P4", "class=P5"], "changes nothing here"),
     ({}, "none is given"),
     (["load.axial"], "KEY=TEXT"),
     ({"load.axial": "10"}, "must be text such as"),
@@ -83,6 +117,36 @@ def test_samples_without_an_answer_are_counted_and_no_indices_told():
 def test_counts_are_powers_of_two(count):
     with pytest.raises(SceneError, match="power of 2"):
         rw.band(LOADED, {"load.axial": "±1 %"}, count=count)
+
+
+CLASSES = [
+    ({"mounting": {"shaft_interference": 4e-6}}, ["class=P4", "class=P5"], "two tolerances"),
+    ({"mounting": {"shaft_interference": 4e-6}}, ["class=P4", "mounting.shaft_interference=±1 µm"], "two tolerances"),
+    ({"mounting": {"housing_interference": 4e-6}}, ["class=P4"], "leaves outer rings loose"),
+    (
+        {"bearing": {"preset": "B7206C", "bore": 2e-3}, "mounting": {"shaft_interference": 1e-6}},
+        ["class=P4"],
+        "2.5 to 80 mm",
+    ),
+]
+
+
+@pytest.mark.parametrize(("tables", "given", "words"), CLASSES)
+def test_what_a_class_cannot_say_is_refused(tables, given, words):
+    with pytest.raises(SceneError, match=words):
+        tolerances_of(scene_from_dict(LOADED | tables), given)
+
+
+def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
+    told = invoke("band", str(file), "--out", str(tmp_path), "--count", "16", "--processes", "0")
+    content = json.loads((tmp_path / "band.json").read_text())["quantities"]["kxx"]
+    row = next(line for line in told.output.splitlines() if line.startswith("kxx [N/µm]"))
+    assert float(row.split()[2]) == pytest.approx(1e-6 * content["value"], rel=1e-4)
+    edges, counts = content["histogram"]["edges"], content["histogram"]["counts"]
+    assert sum(counts) == 32 and edges[0] < content["low"] < content["high"] < edges[-1]
+    assert (tmp_path / "band.png").stat().st_size > 0
 
 
 def test_the_command_goes_on_with_what_is_kept(tmp_path):

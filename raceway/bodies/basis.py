@@ -84,7 +84,9 @@ def make_basis(scene: Scene) -> Basis:
         inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
     axial, ball_load = axial_approach(scene)
     azimuths = np.concatenate(azimuth)
-    return Basis(geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), _growth(scene, row))
+    return Basis(
+        geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), _growth(scene, row)
+    )
 
 
 def _growth(scene: Scene, row: np.ndarray) -> Growth:
