@@ -7,7 +7,6 @@ from math import cos, log, pi, sin, sqrt
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.tables import Scene
 
-
 #: Of the axial displacement at most; a dozen do.
 _ITERATIONS = 60
 

@@ -167,8 +167,8 @@ def _step(system: System, direction: Direction, equilibrium: Equilibrium, here: 
     least = _ROUGH * largest / _LARGEST
     if step < least:
         return least, _AT_THE_EDGE
-    places = [s.table_places(q + by * moved, of.contacts.ball) for s, by, of in ((system, 0.0, here), (one, tried, along))]
-    room = _KNOT * _to_a_knot(*places, here.contacts.contact_force) * tried
+    place, next_place = system.table_places(q, here.contacts.ball), one.table_places(q + tried * moved, along.contacts.ball)
+    room = _KNOT * _to_a_knot(place, next_place, here.contacts.contact_force) * tried
     return min(step, max(room, 10.0 * least)), ""
 
 

@@ -32,7 +32,8 @@ def draw(content: ReadTables) -> Figure:
         if known:
             _indices(rows[1, k], one, keys, named=k == 0)
     if known:
-        figure.legend(*_handles(rows[1, 0]), loc="outside lower right", ncols=2, fontsize=8, frameon=False)
+        handles, labels = rows[1, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower right", ncols=2, fontsize=8, frameon=False)
     rows[0, 0].set_ylabel("samples", fontsize=9)
     figure.suptitle("\n".join(line for text in content["title"].splitlines() for line in wrap(text, 90)), fontsize=11)
     return figure
@@ -62,8 +63,3 @@ def _indices(axes: Axes, one: ReadTables, keys: list[str], named: bool) -> None:
     total, first = (np.clip(one[what] or np.zeros(len(keys)), 0.0, 1.0) for what in ("total", "first_order"))
     axes.barh(places, total, color=_TOTAL, height=0.7, label="total")
     axes.barh(places, first, color=_FIRST, height=0.3, label="first order")
-
-
-def _handles(axes: Axes) -> tuple[list[object], list[str]]:
-    handles, labels = axes.get_legend_handles_labels()
-    return list(handles), list(labels)
