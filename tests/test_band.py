@@ -8,6 +8,7 @@ import pytest
 import raceway as rw
 from raceway import scene_from_dict
 from raceway.errors import SceneError
+from raceway.pipeline.gradient.first_order import limits
 from raceway.scene.tolerance import tolerances_of
 from raceway.studies.band.sobol import design, indices
 from validation.command_line import invoke
@@ -43,6 +44,39 @@ def test_a_small_band_is_that_of_the_derivatives():
         ]
     )
     assert both.first["kxx"] == pytest.approx((shares / shares.sum()).tolist(), abs=0.01)
+
+
+def test_limits_of_a_sum_of_even_numbers_are_the_closed_forms():
+    assert limits([]) == (0.0, 0.0)
+    assert limits([(-1.0, 3.0)]) == pytest.approx((1.0 - 1.9, 1.0 + 1.9), abs=1e-3)
+    q = 2.0 * (1.0 - np.sqrt(0.05))  # of a triangle
+    assert limits([(-1.0, 1.0), (-1.0, 1.0)]) == pytest.approx((-q, q), abs=1e-3)
+    many = limits([(-1.0, 1.0)] * 30)[1]
+    assert many == pytest.approx(1.96 * np.sqrt(30.0 / 3.0), rel=5e-3)  # tends to the normal distribution
+
+
+def test_a_result_has_the_band_of_its_tolerances_to_first_order():
+    """Against samples: even numbers, an answer that is nearly straight in them."""
+    moving = {
+        "rotor": {"mass": 2.0},
+        "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
+        "integrator": {"kind": "periodic"},
+    }
+    own = LOADED | moving | {"tolerances": {"load.axial": "±1 %", "bearing.contact_angle_deg": "+0.1 deg -0.05 deg"}}
+    found, samples = rw.run(own).tolerances["quantities"], rw.band(own, count=256)
+    assert set(found) == set(samples.nominal) and "K" in found
+    for name, one in found.items():
+        width = samples.high[name] - samples.low[name]
+        assert one["value"] == pytest.approx(samples.nominal[name], rel=1e-6)
+        assert (one["low"], one["high"]) == pytest.approx((samples.low[name], samples.high[name]), abs=0.02 * width)
+        assert list(one["shares"].values()) == pytest.approx(samples.first[name], abs=0.02)
+
+
+def test_results_say_where_no_band_is_known():
+    assert rw.run(LOADED).to_dict()["tolerances"] is None
+    wide = LOADED | {"tolerances": {"load.axial": "±10 %", "contact.friction": "+0.1 -0"}}
+    found = rw.run(wide).to_dict()["tolerances"]
+    assert [one["key"] for one in found["left_out"]] == ["contact.friction"] and found["quantities"]["kxx"]["low"] > 0.0
 
 
 def test_the_scenes_own_table_is_read_and_checked():

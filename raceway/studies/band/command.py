@@ -95,7 +95,7 @@ def _screen(content: ReadTables, files: list[str]) -> RenderableType:
     from rich.text import Text
 
     from raceway.commands.screen import rows_table
-    from raceway.studies.sensitivities.quantities import read_in
+    from raceway.framework.shown import read_in
 
     keys = [one["key"] for one in content["tolerances"]]
     rows = []

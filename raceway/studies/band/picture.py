@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from raceway.framework.shown import read_in
 from raceway.plugins.reports.pictures import new_figure
 from raceway.storage.tables import ReadTables
-from raceway.studies.sensitivities.quantities import read_in
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

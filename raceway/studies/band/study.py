@@ -13,6 +13,7 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.framework.shown import Fact, Shown, number
 from raceway.pipeline.gradient.gradients import Gradients
+from raceway.pipeline.gradient.quantities import UNITS, values
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress
@@ -24,7 +25,6 @@ from raceway.storage.tables import Tables
 from raceway.studies.band.sobol import Indices, design, indices
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
-from raceway.studies.sensitivities.quantities import UNITS, values
 
 #: Samples of a piece of work, which is what a killed worker loses; limits of the band.
 _CHUNK, _LIMITS = 256, (0.025, 0.975)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from raceway.commands.screen import rows_table
+from raceway.framework.shown import read_in
 from raceway.storage.tables import ReadTables
-from raceway.studies.sensitivities.quantities import read_in
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -13,13 +13,13 @@ import numpy as np
 from raceway.core.jit import working_clock
 from raceway.framework.shown import Fact, Shown, number
 from raceway.pipeline.gradient.gradients import Gradient, Gradients
+from raceway.pipeline.gradient.quantities import UNITS, derivatives, values
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.continuous import Key
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
-from raceway.studies.sensitivities.quantities import UNITS, derivatives, values
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium

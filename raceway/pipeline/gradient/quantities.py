@@ -1,4 +1,4 @@
-"""The numbers of a result that sensitivities are told of, and their derivatives by a key."""
+"""The numbers of a result whose derivatives are told, and these by a key."""
 
 from __future__ import annotations
 
@@ -20,15 +20,8 @@ UNITS = {
     "x": "m",
     "largest_ball_load": "N",
 }
-#: Units that people read, with their factors.
-_READ = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm")}
 #: Part of |Z| below which w C is no number that an orbit resolves.
 _RESOLVED = 1e-6
-
-
-def read_in(unit: str) -> tuple[float, str]:
-    """By what a number in a unit of ``UNITS`` is multiplied for people, and the unit it has then."""
-    return _READ.get(unit, (1.0, unit))
 
 
 def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
