@@ -64,9 +64,10 @@ def _cells(name: str, value: str, remark: str) -> str:
     return f'<td style="{_CELL}">{escape(name)}</td>{told}<td style="{_CELL};{_BROKEN}"{wide}>{escape(remark)}</td>'
 
 
-def read_in(unit: str) -> tuple[float, str]:
-    """By what a stiffness or a length of a bearing in SI units is multiplied for people, and the unit it has then."""
-    return _READ.get(unit, (1.0, unit))
+def read_in(value: float, unit: str) -> tuple[float, str]:
+    """A stiffness or a length of a bearing in the unit that people read it in, and that unit; other numbers as they are."""
+    factor, word = _READ.get(unit, (1.0, unit))
+    return factor * value, word
 
 
 def number(value: float | None, unit: str = "", digits: int = 5) -> str:

@@ -96,10 +96,10 @@ def tolerance_rows(found: ReadTables | None) -> list[Row]:
         return []
     rows: list[Row] = [("Tolerances, 95 % to first order", "", found["why"])]
     for name, one in found["quantities"].items():
-        factor, unit = read_in(one["unit"])
+        (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
         key, share = max(one["shares"].items(), key=lambda item: item[1], default=("", 0.0))
         most = f"{100.0 * share:.0f} % of the variance by {key}" if share else ""
-        rows.append((name.replace("_", " "), f"{factor * one['low']:.5g} to {factor * one['high']:.5g} {unit}", most))
+        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", most))
     rows += [("", "", f"without {one['key']}: {one['reason']}") for one in found["left_out"]]
     return rows
 

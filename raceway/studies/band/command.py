@@ -100,16 +100,16 @@ def _screen(content: ReadTables, files: list[str]) -> RenderableType:
     keys = [one["key"] for one in content["tolerances"]]
     rows = []
     for name, one in content["quantities"].items():
-        factor, unit = read_in(one["unit"])
-        row = {"quantity": f"{name.replace('_', ' ')} [{unit}]", "nominal": f"{factor * one['value']:.5g}"}
-        row |= {"2.5 %": f"{factor * one['low']:.5g}", "97.5 %": f"{factor * one['high']:.5g}"}
+        (value, unit), (low, _), (high, _) = (read_in(one[end], one["unit"]) for end in ("value", "low", "high"))
+        row = {"quantity": f"{name.replace('_', ' ')} [{unit}]", "nominal": f"{value:.5g}"}
+        row |= {"2.5 %": f"{low:.5g}", "97.5 %": f"{high:.5g}"}
         for k, key in enumerate(keys):
             row[f"total index, {key}"] = "" if one["total"] is None else f"{one['total'][k]:.3f}"
         rows.append(row)
     lines = []
     for one in content["tolerances"]:
-        factor, unit = read_in(one["unit"])
-        lines.append(f"{one['key']}: {factor * one['low']:.6g} to {factor * one['high']:.6g} {unit}".rstrip())
+        (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
+        lines.append(f"{one['key']}: {low:.6g} to {high:.6g} {unit}".rstrip())
     lines.append(f"{content['samples']} samples")
     if content["lost"]:
         lines.append(f"{content['lost']} have no answer, so that no indices are told: {content['why_lost']}")

@@ -40,13 +40,13 @@ def draw(content: ReadTables) -> Figure:
 
 
 def _histogram(axes: Axes, name: str, one: ReadTables) -> None:
-    factor, unit = read_in(one["unit"])
-    edges, counts = factor * np.array(one["histogram"]["edges"]), one["histogram"]["counts"]
-    axes.stairs(counts, edges, fill=True, color=_SAMPLES)
-    for end in ("low", "high"):
-        axes.axvline(factor * one[end], color=_LIMITS, linewidth=1.2)
-    axes.axvline(factor * one["value"], color="#555f6b", linewidth=1.0, linestyle="--")
-    axes.set_title(f"{name.replace('_', ' ')}\n{factor * one['low']:.5g} to {factor * one['high']:.5g} {unit}", fontsize=10)
+    (value, unit), (low, _), (high, _) = (read_in(one[end], one["unit"]) for end in ("value", "low", "high"))
+    edges = [read_in(edge, one["unit"])[0] for edge in one["histogram"]["edges"]]
+    axes.stairs(one["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
+    for end in (low, high):
+        axes.axvline(end, color=_LIMITS, linewidth=1.2)
+    axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--")
+    axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
     axes.set_xlabel(unit, fontsize=9)
     axes.tick_params(labelsize=8)
     axes.locator_params(axis="x", nbins=4)

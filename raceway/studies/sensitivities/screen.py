@@ -23,8 +23,8 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
     quantities = content["quantities"]
     heads = []
     for name, one in quantities.items():
-        factor, unit = read_in(one["unit"])
-        heads.append(f"{name.replace('_', ' ')} {factor * one['value']:.5g} {unit}")
+        value, unit = read_in(one["value"], one["unit"])
+        heads.append(f"{name.replace('_', ' ')} {value:.5g} {unit}")
     rows = []
     for key in (one for one in content["keys"] if one["influence"]):
         row = {"key": key["key"], "value": f"{key['value']:.6g} {key['unit']}".strip()}
