@@ -1,11 +1,14 @@
 """The band of an answer over tolerances: indices of a published function, a linear answer by hand, and bad input."""
 
+import json
+
 import numpy as np
 import pytest
 
 import raceway as rw
 from raceway import scene_from_dict
 from raceway.errors import SceneError
+from raceway.pipeline.gradient.first_order import limits
 from raceway.scene.tolerance import tolerances_of
 from raceway.studies.band.sobol import design, indices
 from validation.command_line import invoke
@@ -43,6 +46,39 @@ def test_a_small_band_is_that_of_the_derivatives():
     assert both.first["kxx"] == pytest.approx((shares / shares.sum()).tolist(), abs=0.01)
 
 
+def test_limits_of_a_sum_of_even_numbers_are_the_closed_forms():
+    assert limits([]) == (0.0, 0.0)
+    assert limits([(-1.0, 3.0)]) == pytest.approx((1.0 - 1.9, 1.0 + 1.9), abs=1e-3)
+    q = 2.0 * (1.0 - np.sqrt(0.05))  # of a triangle
+    assert limits([(-1.0, 1.0), (-1.0, 1.0)]) == pytest.approx((-q, q), abs=1e-3)
+    many = limits([(-1.0, 1.0)] * 30)[1]
+    assert many == pytest.approx(1.96 * np.sqrt(30.0 / 3.0), rel=5e-3)  # tends to the normal distribution
+
+
+def test_a_result_has_the_band_of_its_tolerances_to_first_order():
+    """Against samples: even numbers, an answer that is nearly straight in them."""
+    moving = {
+        "rotor": {"mass": 2.0},
+        "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
+        "integrator": {"kind": "periodic"},
+    }
+    own = LOADED | moving | {"tolerances": {"load.axial": "±1 %", "bearing.contact_angle_deg": "+0.1 deg -0.05 deg"}}
+    found, samples = rw.run(own).tolerances["quantities"], rw.band(own, count=256)
+    assert set(found) == set(samples.nominal) and "K" in found
+    for name, one in found.items():
+        width = samples.high[name] - samples.low[name]
+        assert one["value"] == pytest.approx(samples.nominal[name], rel=1e-6)
+        assert (one["low"], one["high"]) == pytest.approx((samples.low[name], samples.high[name]), abs=0.02 * width)
+        assert list(one["shares"].values()) == pytest.approx(samples.first[name], abs=0.02)
+
+
+def test_results_say_where_no_band_is_known():
+    assert rw.run(LOADED).to_dict()["tolerances"] is None
+    wide = LOADED | {"tolerances": {"load.axial": "±10 %", "contact.friction": "+0.1 -0"}}
+    found = rw.run(wide).to_dict()["tolerances"]
+    assert [one["key"] for one in found["left_out"]] == ["contact.friction"] and found["quantities"]["kxx"]["low"] > 0.0
+
+
 def test_the_scenes_own_table_is_read_and_checked():
     own = LOADED | {"tolerances": {"load.axial": "±10 %", "bearing": {"contact_angle_deg": "+1 deg -0.5 deg"}}}
     band = rw.band(own, count=2)
@@ -54,7 +90,39 @@ def test_the_scenes_own_table_is_read_and_checked():
     assert [one.path for one in wrong.mistakes] == ["tolerances.load.axail"] and "load.axial" in wrong.mistakes[0].message
 
 
+FITTED = LOADED | {"mounting": {"shaft_interference": 4e-6, "housing_interference": 20e-6}}
+
+
+@pytest.mark.parametrize(
+    ("name", "bore", "outer"), [("P4", 5.0, 7.0), ("ABEC 7", 5.0, 7.0), ("P5", 6.0, 9.0), ("P0", 10.0, 13.0)]
+)
+def test_a_class_by_name_is_what_its_table_makes_of_the_fits(name, bore, outer):
+    """ISO 492 for a bore of 30 mm, the last of its row, and an outside diameter of 62 mm: rings may be smaller, never larger."""
+    ranges = {one.key.path: (one.low, one.high) for one in tolerances_of(scene_from_dict(FITTED), {"class": name})}
+    assert ranges == {
+        "mounting.shaft_interference": pytest.approx((4e-6, (4.0 + bore) * 1e-6)),
+        "mounting.housing_interference": pytest.approx(((20.0 - outer) * 1e-6, 20e-6)),
+    }
+
+
+def test_a_tighter_class_makes_a_narrower_band():
+    fitted = LOADED | {"mounting": {"shaft_interference": 4e-6}}
+    wide, narrow = (rw.band(fitted, {"class": name}, count=32) for name in ("Normal", "P4"))
+    assert wide.high["kxx"] - wide.low["kxx"] == pytest.approx(
+        (10.0 / 5.0) * (narrow.high["kxx"] - narrow.low["kxx"]), rel=0.2
+    )  # deviations of 10 and 5 µm; stiffness is no line of the fit
+
+
+def test_balls_of_a_grade_differ_by_the_variation_of_their_lot():
+    (one,) = tolerances_of(scene_from_dict(LOADED), ["balls=G5"])
+    assert one.key.path == "bearing.ball_diameter" and one.high - one.low == pytest.approx(0.25e-6)
+
+
 BAD = [
+    ({"class": "P4"}, "changes nothing here"),
+    ({"class": "P3"}, "must be one of Normal"),
+    ({"balls": "5"}, "must be one of G3"),
+    (["class=P4", "class=P5"], "changes nothing here"),
     ({}, "none is given"),
     (["load.axial"], "KEY=TEXT"),
     ({"load.axial": "10"}, "must be text such as"),
@@ -83,6 +151,36 @@ def test_samples_without_an_answer_are_counted_and_no_indices_told():
 def test_counts_are_powers_of_two(count):
     with pytest.raises(SceneError, match="power of 2"):
         rw.band(LOADED, {"load.axial": "±1 %"}, count=count)
+
+
+CLASSES = [
+    ({"mounting": {"shaft_interference": 4e-6}}, ["class=P4", "class=P5"], "two tolerances"),
+    ({"mounting": {"shaft_interference": 4e-6}}, ["class=P4", "mounting.shaft_interference=±1 µm"], "two tolerances"),
+    ({"mounting": {"housing_interference": 4e-6}}, ["class=P4"], "leaves outer rings loose"),
+    (
+        {"bearing": {"preset": "B7206C", "bore": 2e-3}, "mounting": {"shaft_interference": 1e-6}},
+        ["class=P4"],
+        "2.5 to 80 mm",
+    ),
+]
+
+
+@pytest.mark.parametrize(("tables", "given", "words"), CLASSES)
+def test_what_a_class_cannot_say_is_refused(tables, given, words):
+    with pytest.raises(SceneError, match=words):
+        tolerances_of(scene_from_dict(LOADED | tables), given)
+
+
+def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
+    told = invoke("band", str(file), "--out", str(tmp_path), "--count", "16", "--processes", "0")
+    content = json.loads((tmp_path / "band.json").read_text())["quantities"]["kxx"]
+    row = next(line for line in told.output.splitlines() if line.startswith("kxx [N/µm]"))
+    assert float(row.split()[2]) == pytest.approx(1e-6 * content["value"], rel=1e-4)
+    edges, counts = content["histogram"]["edges"], content["histogram"]["counts"]
+    assert sum(counts) == 32 and edges[0] < content["low"] < content["high"] < edges[-1]
+    assert (tmp_path / "band.png").stat().st_size > 0
 
 
 def test_the_command_goes_on_with_what_is_kept(tmp_path):

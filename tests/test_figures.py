@@ -20,6 +20,7 @@ from raceway.pipeline.run import run
 from raceway.plugins.reports import pictures
 from raceway.studies.article import figures as article
 from raceway.studies.article import panel
+from raceway.studies.band import picture as band_picture
 from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
 from raceway.studies.fit import picture as fits
@@ -101,6 +102,16 @@ def of_sensitivities() -> list[Figure]:
     whole = raceway.sensitivities(scene).to_dict()
     odd = [{**key, "influence": {name: share * 1e4 for name, share in key["influence"].items()}} for key in whole["keys"]]
     return [bars.draw(whole), bars.draw({**whole, "keys": odd[:1]})]
+
+
+def of_a_band() -> list[Figure]:
+    found = raceway.band(
+        b7206c(load={"axial": 300.0}), {"load.axial": "±10 %", "bearing.contact_angle_deg": "±1 deg"}, count=16
+    )
+    whole = found.to_dict()
+    lost = {name: {**one, "total": None, "first_order": None} for name, one in whole["quantities"].items()}
+    odd = {name: {**one, "total": [1.3, -0.2], "first_order": [1.1, -0.1]} for name, one in whole["quantities"].items()}
+    return [band_picture.draw({**whole, "quantities": one}) for one in (whole["quantities"], lost, odd)]
 
 
 def of_a_map() -> list[Figure]:
@@ -207,6 +218,7 @@ DRAWN: dict[object, Callable[[], list[Figure]]] = {
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
     contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
     fits: of_fits,
+    band_picture: of_a_band,
 }  # fmt: skip
 
 

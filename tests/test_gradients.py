@@ -130,6 +130,22 @@ def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
     assert found.amplitude == pytest.approx(runs[3], rel=1e-5, abs=1e-6 * orbit.line[3] / key.value)
 
 
+def test_steps_pass_no_knot_of_the_tables_of_compliances():
+    """One contact lies 2 % of an interval from a knot, where derivatives of the stiffness jump: 4e-6 of them if steps pass it."""
+    model, still = built(
+        b7206c(
+            bodies={"kind": "condensed"},
+            load={"axial": 1843.8916451132752, "radial": [495.1466379641419, -92.98271863387704]},
+            supports={"tilt": "free"},
+            mounting={"inner_temperature": 1.4346647411771407},
+            kinematics={"spin_speed_rpm": 819.5406685711882},
+        )
+    )
+    found = static_gradient(model, still, key_of(model.scene, "load.axial"))
+    runs = by_runs(model, "load.axial", 1.5 * found.step, lambda _, e: e.stiffness)
+    assert np.abs(found.stiffness - runs).max() <= 1e-8 * np.abs(runs).max()
+
+
 def test_condensed_bodies_refuse_what_changes_their_meshes():
     tables = LOADED | {"bodies": {"kind": "condensed"}}
     scene = scene_from_dict(tables)

@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from raceway.bodies.model import Model, build_model
-from raceway.core.jit import working_clock
+from raceway.core.jit import working_processor_time
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.gradient.differences import WEIGHTS, derivative
@@ -189,10 +189,10 @@ def _cost() -> list[Row]:
     ):
         sensitivities(scene)  # kernels and meshes
         whole = min(_seconds(lambda scene=scene: run(scene)) for _ in range(3))
-        found = sensitivities(scene)
+        found = min((sensitivities(scene) for _ in range(3)), key=lambda one: one.gradients_s)
         taken = found.gradients_s
         ratio = taken / whole
-        note = f"{len(found.rows)} keys, {found.models} models built, {1e3 * taken:.0f} ms of processor time; run {1e3 * whole:.1f} ms. A model is built in Python, a run in compiled loops: building five models a key is what it costs"
+        note = f"{len(found.rows)} keys, {found.models} models built, {1e3 * taken:.0f} ms of processor time; run {1e3 * whole:.1f} ms, each the least of three. Building two models a key and evaluating contacts from Python is what it costs"
         if name.startswith("static"):
             label = f"further equilibria for all derivatives, {name}"
             result.append(below(label, _further_equilibria(scene), 1.0, COMMAND, note))
@@ -222,6 +222,6 @@ def _further_equilibria(scene: Any) -> int:
 
 
 def _seconds(work: Any) -> float:
-    begun = working_clock()
+    begun = working_processor_time()
     work()
-    return working_clock() - begun
+    return working_processor_time() - begun

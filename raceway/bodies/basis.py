@@ -11,13 +11,14 @@ import numpy as np
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse, contact_modulus, every
 from raceway.core.ring.changing_speed import ChangingSpeed
+from raceway.core.ring.ring import Growth
 from raceway.core.signatures import FORCE
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.closed_form import axial_approach
 from raceway.planning.plan import Plan
-from raceway.scene.growth import speed_growth
+from raceway.scene.growth import grooves, speed_growth
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.tables import Scene
 from raceway.storage.tables import Tables
@@ -33,6 +34,7 @@ class Basis:
     inner, outer : Hertz contacts; of rows that differ those of all balls, with numbers (Z,)
     azimuth : (Z,) at time zero, rows one after the other [rad];  row : (Z,) to which row of the set each ball belongs
     axial, ball_load : rough axial approach [m] and load of a ball [N] under the axial load alone
+    growth : of the grooves of the running, warm rows beyond the mounted ones'
     """
 
     geometry: BallBearing
@@ -44,6 +46,7 @@ class Basis:
     row: np.ndarray
     axial: float
     ball_load: float
+    growth: Growth
 
     @property
     def ball_radius(self) -> np.ndarray | float:
@@ -81,7 +84,18 @@ def make_basis(scene: Scene) -> Basis:
         inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
     axial, ball_load = axial_approach(scene)
     azimuths = np.concatenate(azimuth)
-    return Basis(geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0))
+    return Basis(
+        geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), _growth(scene, row)
+    )
+
+
+def _growth(scene: Scene, row: np.ndarray) -> Growth:
+    rows = np.array([[*attrs.astuple(grooves(scene, k)), 0.0] for k in range(len(scene.bearing.rows))])
+    # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
+    common = rows[0].copy()
+    if scene.bearing.equal_rows:
+        common[0] = rows[:, 0].mean()
+    return Growth(common, (rows - common)[row])
 
 
 def call_plugin(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
@@ -135,9 +149,9 @@ def law_params(scene: Scene, basis: Basis, pairs: ContactPairs | None = None) ->
 def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
     """Mass, damping and stiffness (5, 5) of ring, rotor and shaft, the unknowns (5,) and the constant load (5,)."""
     rotor = scene.rotor
-    mass, tilt, _ = ring_inertia(scene)
+    mass, tilt, polar = ring_inertia(scene)
     translation, rotation = rotor.mass + mass, rotor.transverse_inertia + tilt
-    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0]) + gyroscopic(scene)
+    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0]) + _gyroscopic(scene, polar)
     shaft = scene.supports.tilt if isinstance(scene.supports.tilt, float) else 0.0
     return {
         "mass": np.diag([translation] * 3 + [rotation] * 2),
@@ -176,8 +190,12 @@ def gyroscopic(scene: Scene) -> np.ndarray:
     -----
     dH/dt: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
     """
+    return _gyroscopic(scene, ring_inertia(scene)[2])
+
+
+def _gyroscopic(scene: Scene, of_ring: float) -> np.ndarray:
     found = np.zeros((5, 5))
-    found[3, 4] = (scene.rotor.polar_inertia + ring_inertia(scene)[2]) * scene.spin_speed
+    found[3, 4] = (scene.rotor.polar_inertia + of_ring) * scene.spin_speed
     found[4, 3] = -found[3, 4]
     return found
 

@@ -15,12 +15,11 @@ from raceway.bodies.basis import Basis, first_guess
 from raceway.bodies.running import renew
 from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.ring import Growth, Ring, Spin
+from raceway.core.ring.ring import Ring, Spin
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
 from raceway.planning.recording import turns_of
-from raceway.scene.growth import grooves
 from raceway.scene.tables import Scene
 from raceway.storage.tables import Tables
 
@@ -40,7 +39,7 @@ _SAMPLES, _SPEEDS = 1001, 17
 def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
     guess = first_guess(scene, basis)
-    growth, preloaded = growth_of(scene, basis), scene.bearing.preloaded
+    growth, preloaded = basis.growth, scene.bearing.preloaded
     if preloaded:
         system.table[:, ring.SHIFT] = _mounted_shifts(scene, basis, system.as_mounted(growth))
         guess[0] = 0.0
@@ -55,16 +54,6 @@ def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
     if sprung and system.spin is not None:
         system.spin = _follow_speed(scene, basis, system, system.spin, guess)
     return guess if place is None else place(system, guess)
-
-
-def growth_of(scene: Scene, basis: Basis) -> Growth:
-    """By how much the grooves of the running, warm rows differ from the mounted ones'."""
-    rows = np.array([[*attrs.astuple(grooves(scene, k)), 0.0] for k in range(len(scene.bearing.rows))])
-    # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
-    common = rows[0].copy()
-    if scene.bearing.equal_rows:
-        common[0] = rows[:, 0].mean()
-    return Growth(common, (rows - common)[basis.row])
 
 
 def _mounted_shifts(scene: Scene, basis: Basis, mounted: R) -> np.ndarray:
@@ -208,7 +197,7 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
         return None
     mounted = bearing.preload
     if bearing.preload_of == "row":
-        mounted = _unloaded(model, model.system.as_mounted(growth_of(model.scene, model.basis)))
+        mounted = _unloaded(model, model.system.as_mounted(model.basis.growth))
     running = running_preload(model)
     rows = _row_forces(model, model.system, equilibrium.displacement, equilibrium.ball)
     return {
@@ -245,7 +234,7 @@ def lost_preload(model: Model) -> str:
     bearing, kinematics = model.scene.bearing, model.scene.kinematics
     if not bearing.preloaded or running_preload(model) > 0.0:
         return ""
-    radial = growth_of(model.scene, model.basis).common[1]
+    radial = model.basis.growth.common[1]
     shrunk = f"the inner raceway has shrunk by {-1e6 * radial:.3g} µm (kinematics.radial_expansion = {kinematics.radial_expansion:g} m)"
     warm = ", ".join(
         f"mounting.{key} = {value:g} {'K' if 'temperature' in key else 'm'}"

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactLaw, Excitation
 
+#: Kernels that are compiled for the signature of their kind, by identity; they stay alive in it.
+_LOOKED_AT: dict[int, tuple[object, Signature]] = {}
+
 
 def plugin_kernel(plugin: ContactLaw | Excitation, kind: str, signature: Signature, name: str) -> Kernel:
     """The kernel of a plug-in, compiled for the signature of its kind.
@@ -46,6 +49,8 @@ def check_compiled(kernel: object, label: str, signature: Signature, name: str) 
     PluginError
         It is not compiled, or for other arguments.
     """
+    if _LOOKED_AT.get(id(kernel)) == (kernel, signature):
+        return
     remedy = f"decorate it with @jit({name}) of raceway.core.jit and raceway.core.signatures"
     try:
         compiled = getattr(kernel, "nopython_signatures", None)
@@ -56,3 +61,4 @@ def check_compiled(kernel: object, label: str, signature: Signature, name: str) 
     if not any(has.args == signature.args and has.return_type == signature.return_type for has in compiled):
         found = " or ".join(signature_words(has) for has in compiled) or "no signature"
         raise PluginError(f"{label}: its kernel has {found}, the rule is {signature_words(signature)}: {remedy}")
+    _LOOKED_AT[id(kernel)] = kernel, signature

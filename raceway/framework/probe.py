@@ -29,6 +29,9 @@ _MARK = -7.25e-301
 #: Probes that found nothing, by all that their outcome follows from: neighbours in a study repeat them.  How many are remembered.
 _PASSED: set[tuple[Hashable, ...]] = set()
 _MOST_PASSED = 4096
+#: The last law that passed, by its kernel: what it was tried with; parameters and depths that differ less try nothing new.
+_LAST_LAW: dict[Kernel, tuple[ContactLaw, np.ndarray, np.ndarray, np.ndarray]] = {}
+_NEAR = 0.05
 
 
 def probe_law(
@@ -56,6 +59,8 @@ def probe_law(
     from raceway.core.signatures import LAW
 
     depths = tuple(float(depth) for depth in depths if depth > 0.0)
+    if _passed_near(law, kernel, params, state, np.array(depths)):
+        return
     mark = _mark(kernel, params, state, depths)
     if mark in _PASSED:
         return
@@ -80,6 +85,18 @@ def probe_law(
     for depth in depths or (-min(_GAPS),):
         _probe_slopes(kernel, params, state, -depth, _RATES[1], who)
     _remember(mark)
+    _LAST_LAW[kernel] = law, params.copy(), state.copy(), np.array(depths)
+
+
+def _passed_near(law: ContactLaw, kernel: Kernel, params: np.ndarray, state: np.ndarray, depths: np.ndarray) -> bool:
+    """Whether the same law with the same options passed at parameters and depths that differ by less than ``_NEAR`` of themselves."""
+    last = _LAST_LAW.get(kernel)
+    if last is None or last[0] != law or not np.array_equal(last[2], state) or not isinstance(params, np.ndarray):
+        return False
+    for now, then in ((params, last[1]), (depths, last[3])):
+        if now.shape != then.shape or not (np.abs(now - then) <= _NEAR * np.abs(then)).all():
+            return False
+    return True
 
 
 def _probe_slopes(kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: float, rate: float, who: str) -> None:

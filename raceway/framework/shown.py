@@ -11,6 +11,8 @@ from textwrap import shorten
 Fact = tuple[str, str, str]
 #: Lines of text, the title's and the line of what is left out included, and characters of a line, at most.
 LINES, WIDTH = 15, 100
+#: Units that people read, with their factors.
+_READ = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm")}
 _TABLE = "border-collapse:collapse;max-width:46em;font-size:14px;line-height:1.35"
 _CELL = "text-align:left;vertical-align:top;padding:2px 14px 2px 0;border:0"
 #: Numbers are never broken; words of a remark are, rather than that the table is wider than the screen.
@@ -60,6 +62,12 @@ def _cells(name: str, value: str, remark: str) -> str:
     told = f'<td style="{_CELL};{_WHOLE}">{escape(value)}</td>' if value else ""
     wide = "" if value else ' colspan="2"'
     return f'<td style="{_CELL}">{escape(name)}</td>{told}<td style="{_CELL};{_BROKEN}"{wide}>{escape(remark)}</td>'
+
+
+def read_in(value: float, unit: str) -> tuple[float, str]:
+    """A stiffness or a length of a bearing in the unit that people read it in, and that unit; other numbers as they are."""
+    factor, word = _READ.get(unit, (1.0, unit))
+    return factor * value, word
 
 
 def number(value: float | None, unit: str = "", digits: int = 5) -> str:

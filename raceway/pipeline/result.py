@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -163,6 +164,13 @@ class Result(Shown):
 
         return Gradients(self.model, self.equilibrium).by_path(path)
 
+    @cached_property
+    def tolerances(self) -> Tables | None:
+        """95 % band over the scene's [tolerances] to first order, by derivatives; None without that table."""
+        from raceway.pipeline.gradient.first_order import first_order_band
+
+        return first_order_band(self.model, self.equilibrium)
+
     @property
     def ball_pass(self) -> Tables:
         """``speed_rpm``, and for each row FTF, BPFO, BPFI and BSF over the shaft's speed and in Hz, at the loaded contact angle."""
@@ -231,6 +239,7 @@ class Result(Shown):
                 "identification": self._identification(),
                 "model": self.bodies,
                 "motion": self._motion(),
+                "tolerances": self.tolerances,
                 "error": self.error,
                 "cost": self.cost,
                 "stability": self.stability,

@@ -9,7 +9,7 @@ schema      JSON schema of a scene file
 continuous  keys whose numbers can change a little, and scenes where one has
 catalogue   bearing presets
 materials   materials of rings and balls by name
-tolerance   ranges of numbers: the table [tolerances], which ``raceway band`` reads
+tolerance   ranges of numbers: the table [tolerances];  tolerance_class: those of ISO 492 and ISO 3290 by name
 requires    plug-ins that a scene needs
 rig         a test rig around the bearing
 unused      keys without effect, and those that a change makes so

@@ -36,7 +36,7 @@ def scene_schema(registry: Registry | None = None) -> Tables:
         tables[name] = _plugin_table(name, kind, default, registry)
     for name, cls in STUDY_TABLES.items():
         tables[name] = _table(cls)
-    words = 'by how much numbers may differ, for raceway band: "load.axial" = "±10 %"'
+    words = 'by how much numbers may differ: "load.axial" = "±10 %", class = "P4" (ISO 492, ABEC), balls = "G5" (ISO 3290)'
     tables["tolerances"] = {"type": "object", "description": words}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

@@ -1,6 +1,7 @@
 """A tolerance: a continuous key of a scene and by how much its number may differ, evenly distributed.
 
-The table ``[tolerances]`` of a scene has a text for each key, such as ``"±1 deg"``; nothing but ``raceway band`` reads it.
+The table ``[tolerances]`` of a scene has a text for each key, such as ``"±1 deg"``, and may name the class of the bearing and the grade of
+its balls: ``class = "P4"``, ``balls = "G5"`` (``raceway.scene.tolerance_class``).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.scene.continuous import Key, key_of, with_number
 from raceway.scene.given import leaves
 from raceway.scene.tables import Scene
+from raceway.scene.tolerance_class import NAMES, ranges_of
 from raceway.scene.units import number_in
 
 _FORM = "must be text such as '±10 %', '±1 deg' or '+0.002 -0.001', in the unit of the key or with one"
@@ -44,9 +46,15 @@ def tolerances_of(scene: Scene, given: Iterable[str] | Mapping[str, str]) -> tup
         raise SceneError.at("tolerances", None, "none is given: a band needs one, such as load.axial='±10 %'")
     found: dict[str, Tolerance] = {}
     for path, text in pairs:
-        if path in found:
-            raise SceneError.at(path, text, "has two tolerances: give one")
-        found[path] = _tolerance(scene, key_of(scene, path), str(text))
+        if path in NAMES:
+            ranges = ranges_of(scene, path, str(text).strip())
+            some = [_checked(scene, key_of(scene, one), str(text), *ends) for one, ends in ranges.items()]
+        else:
+            some = [_tolerance(scene, key_of(scene, path), str(text))]
+        for one in some:
+            if one.key.path in found:
+                raise SceneError.at(one.key.path, text, "has two tolerances: give one")
+            found[one.key.path] = one
     return tuple(found.values())
 
 
@@ -77,6 +85,11 @@ def _tolerance(scene: Scene, key: Key, text: str) -> Tolerance:
         above, below = (_size(key, part, text) for part in match.groups())
     else:
         raise SceneError.at(key.path, text, _FORM)
+    return _checked(scene, key, text, below, above)
+
+
+def _checked(scene: Scene, key: Key, text: str, below: float, above: float) -> Tolerance:
+    """From ``below`` to ``above`` the number at a key."""
     low, high = key.value - below, key.value + above
     if not low < high:
         raise SceneError.at(key.path, text, "is empty: the number cannot differ")

@@ -9,7 +9,7 @@ import numpy as np
 from raceway.bodies.basis import Basis, changing_speed, excitation, law_params, linear_parts, make_basis
 from raceway.bodies.contact_error import against_hertz
 from raceway.bodies.model import Bearing, Told
-from raceway.bodies.mounting import growth_of, place_ring
+from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.address import by_address
@@ -102,7 +102,7 @@ def _grooves(scene: Scene, geometry: BallBearing) -> np.ndarray:
 def _scalars(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     b, kinematics = scene.bearing, scene.kinematics
-    out, growth = np.zeros(ring.SCALARS), growth_of(scene, basis)
+    out, growth = np.zeros(ring.SCALARS), basis.growth
     cage = geometry.cage_speed(scene.spin_speed)
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(scene, geometry)
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] += growth.common
@@ -148,5 +148,5 @@ def _ball_table(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
     if not scene.bearing.equal_rows:
         grooves = np.array([_grooves(scene, one) for one in basis.geometries])
         table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] = (grooves - grooves[0])[row]
-    table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += growth_of(scene, basis).own
+    table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.own
     return table

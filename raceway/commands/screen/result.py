@@ -17,6 +17,7 @@ from raceway.commands.screen.result_parts import (
     orbit_rows,
     stability_rows,
     stiffness_rows,
+    tolerance_rows,
 )
 from raceway.commands.screen.text import micro, sections, written
 from raceway.commands.screen.wrapping import Words
@@ -40,6 +41,7 @@ def run_screen(result: ReadTables, files: Sequence[str], explain: bool = False) 
         *film_rows(result),
         *ball_pass_rows(result["ball_pass"]),
         *stiffness_rows(result, explain),
+        *tolerance_rows(result.get("tolerances")),
         *error_rows(result, explain),
     ]
     rows += bodies_rows(result.get("model"))

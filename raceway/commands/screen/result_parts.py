@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from raceway.commands.screen.notes import short
 from raceway.commands.screen.result_answer import loaded_ball, resolved, tangent_rows
 from raceway.commands.screen.text import Row, number, tilt_words
+from raceway.framework.shown import read_in
 from raceway.storage.tables import ReadTables
 
 #: Axial forces below this are rounding.
@@ -87,6 +88,20 @@ def ball_pass_rows(found: ReadTables) -> list[Row]:
 
 def _hertz(one: ReadTables, speed: float, *names: str) -> str:
     return ", ".join(f"{one[name + '_hz']:.5g}" for name in names) + " Hz" if speed else ""
+
+
+def tolerance_rows(found: ReadTables | None) -> list[Row]:
+    """The band over the scene's tolerances to first order; of each answer the tolerance that makes most of it."""
+    if not found:
+        return []
+    rows: list[Row] = [("Tolerances, 95 % to first order", "", found["why"])]
+    for name, one in found["quantities"].items():
+        (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
+        key, share = max(one["shares"].items(), key=lambda item: item[1], default=("", 0.0))
+        most = f"{100.0 * share:.0f} % of the variance by {key}" if share else ""
+        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", most))
+    rows += [("", "", f"without {one['key']}: {one['reason']}") for one in found["left_out"]]
+    return rows
 
 
 def stiffness_rows(result: ReadTables, explain: bool) -> list[Row]:

@@ -51,11 +51,8 @@ class ElasticBodies:
         return np.asarray(np.interp(np.abs(angles), calibration.angles, known))
 
     def _matched(self, race: int, angles: np.ndarray) -> np.ndarray:
-        from scipy.interpolate import CubicSpline
-
         one = (self.inner, self.outer)[race]
-        table = CubicSpline(one.angles, one.own)
-        return np.asarray(table(np.clip(angles, one.angles[0], one.angles[-1])) + self.ball_own)
+        return np.asarray(one.smooth(np.clip(angles, one.angles[0], one.angles[-1])) + self.ball_own)
 
     def at(self, angle: float) -> tuple[float, float]:
         """Compliances (inner, outer) of ring and ball together at a contact angle [rad], in m/N."""

@@ -11,6 +11,9 @@ wall below the groove and 0.34 D: 1.0 to 2.5 mm where they were found (B7206C: w
 
 from __future__ import annotations
 
+from functools import cached_property
+from typing import TYPE_CHECKING
+
 import attrs
 import numpy as np
 
@@ -22,6 +25,9 @@ from raceway.core.revolution.profile import Profile
 from raceway.core.revolution.ring_profile import coarse_profile
 from raceway.storage.array_cache import kept
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 #: Sources on which kept numbers depend.
 SOURCES = ("core/revolution", "core/hexahedron", "core/condensed", "core/patches", "core/mesh")
@@ -52,6 +58,13 @@ class RingCompliance:
     elements: int
     depths: np.ndarray
     surface: float
+
+    @cached_property
+    def smooth(self) -> CubicSpline:
+        """``own`` over the angle [rad]."""
+        from scipy.interpolate import CubicSpline
+
+        return CubicSpline(self.angles, self.own)
 
 
 def reach(shape: RingShape, ball_diameter: float) -> float:

@@ -43,7 +43,7 @@ def _difference(log_chi: float) -> float:
 
 @lru_cache(maxsize=1024)
 def ellipticity(curvature_difference: float) -> float:
-    """chi = a/b of the contact ellipse for a curvature difference in [0, 1), by bisection and secant to rounding."""
+    """chi = a/b of the contact ellipse for a curvature difference in [0, 1), by regula falsi (Illinois) to rounding."""
     if not 0.0 <= curvature_difference < 1.0:
         raise RacewayError(f"curvature difference {curvature_difference!r} is outside [0, 1): no elliptic contact")
     if curvature_difference < 1e-12:
@@ -53,14 +53,23 @@ def ellipticity(curvature_difference: float) -> float:
         high *= 2.0
         if high > 300.0:
             raise RacewayError("the contact ellipse is longer than 1e100 widths: a line contact, not a point")
+    below, above = -curvature_difference, _difference(high) - curvature_difference
+    low = 0.0
+    last = 0
     for _ in range(200):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
+        middle = (low * above - high * below) / (above - below)
+        if not low < middle < high:
             break
-        if _difference(middle) < curvature_difference:
-            low = middle
+        left = _difference(middle) - curvature_difference
+        if left == 0.0:
+            return float(np.exp(middle))
+        side = -1 if left < 0.0 else 1
+        # An end that stays for a second time counts half, or it would stay for ever.
+        if side < 0:
+            low, below, above = middle, left, 0.5 * above if last == side else above
         else:
-            high = middle
+            high, above, below = middle, left, 0.5 * below if last == side else below
+        last = side
     return float(np.exp(0.5 * (low + high)))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import asin, cos, pi, sin, sqrt
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +45,7 @@ class RingSection:
         # Where the groove meets the land, or a side face before that.
         left, right = (min(max(x, -0.5 * b.width), 0.5 * b.width) for x in (centre_x - half, centre_x + half))
         low, high = (asin(max(min((x - centre_x) / groove, 1.0), -1.0)) for x in (left, right))
-        at, weight = np.polynomial.legendre.leggauss(_ALONG)
+        at, weight = _rule(_ALONG)
         angle = 0.5 * (low + high) + 0.5 * (high - low) * at
         tops = [
             (
@@ -58,7 +59,7 @@ class RingSection:
             tops.append((x, np.full_like(x, land), np.full_like(x, 0.5 * (last - first))))
         x, top, slope = (np.concatenate(parts) for parts in zip(*tops, strict=True))
         along = slope * np.tile(weight, len(tops))
-        up, share = np.polynomial.legendre.leggauss(_ACROSS)
+        up, share = _rule(_ACROSS)
         wall = 0.5 * (top - bore)
         r = bore + wall[:, None] * (1.0 + up)
         area = along[:, None] * wall[:, None] * share
@@ -113,3 +114,11 @@ def _legendre(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     slopes = np.polynomial.legendre.legder(one, axis=1)
     value = np.polynomial.legendre.legvander(z, _DEGREE).T
     return value, slopes @ value[:-1]
+
+
+@cache
+def _rule(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points and weights on [-1, 1]; nobody writes into them."""
+    at, weight = np.polynomial.legendre.leggauss(points)
+    at.flags.writeable = weight.flags.writeable = False
+    return at, weight

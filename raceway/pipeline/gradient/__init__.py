@@ -5,4 +5,6 @@ variation       models of one scene at neighbouring values of a key; what they c
 statics         of displacement, stiffness and ball loads of the equilibrium
 motion          of the dynamic stiffness of the steady orbit
 gradients       both, key by key
+quantities      the numbers that are told of, and their derivatives
+first_order     their band over the tolerances of the scene
 """

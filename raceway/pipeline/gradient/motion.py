@@ -3,7 +3,7 @@
 Notes
 -----
 The collocated orbit u solves R(u, p) = 0 with the exact tangent that Newton's iteration and branches use.  Its derivative is one
-linear problem, du/dp = -R_u^-1 dR/dp round the span, dR/dp at the fixed orbit from two models at neighbouring p; the 1x line
+linear problem, du/dp = -R_u^-1 dR/dp round the span, dR/dp at the fixed orbit along the derivatives of the model's arrays; the 1x line
 is then differentiated along u + h du/dp, p + h.  With dashpots the rates of the balls follow the orbit, and tangents lack how
 their forces turn with the contacts: what is left of dR/dp along the line is then taken off again, until the derivative stays.
 """
@@ -30,17 +30,19 @@ from raceway.core.periodic.told import first_line
 from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.surrogate import surrogate
+from raceway.core.ring.system import System
 from raceway.core.stepping.record import Schedule
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.gradient.statics import StaticGradient
-from raceway.pipeline.gradient.variation import NoDerivative, Variation
+from raceway.pipeline.gradient.variation import Direction, NoDerivative
 
 #: Samples of a turn with which the force's period is checked; tolerance of the orbit where the scene's integrator has none.
 _SAMPLES, _TOLERANCE = 360, 1e-8
 #: Largest step over the number at the key, and over the step of the static differences: errors fall with its square.
 _LARGEST, _SHARE = 3e-5, 0.03
-#: Turns of orbit and rates, and the change of the derivative over its size that ends them: the next one is a tenth of it or less.
-_RATES, _LEFT = 12, 1e-7
+#: Turns of orbit and rates; what the last one still changes, over the whole: the next one is a tenth of it or less; rounding of
+#: a motion over its size.
+_RATES, _LEFT, _ROUNDING = 12, 1e-7, 1e-11
 
 
 @attrs.frozen(eq=False)
@@ -118,28 +120,27 @@ class SteadyOrbit:
         NoDerivative
             There is none, with the reason.
         """
-        variation = Variation(self.model, statics.key)
-        step = _LARGEST * abs(statics.key.value) or variation.tried
+        direction = statics.direction
+        step = _LARGEST * abs(statics.key.value) or direction.tried
         if statics.step:
             step = min(step, _SHARE * statics.step)
         try:
-            real, damping, stiffness, amplitude, speed = self._differentiated(variation, step, statics.displacement)
+            real, damping, stiffness, amplitude, speed = self._differentiated(direction, step, statics.displacement)
         except ConvergenceError as why:
             raise NoDerivative(f"the neighbouring orbits have no balance: {why}") from None
         omega = self.solved.problem.speed
         imag = damping * omega + self.line[1] * speed
         return MotionGradient(complex(real, imag), float(stiffness), float(damping), float(amplitude))
 
-    def _differentiated(self, variation: Variation, step: float, displacement: np.ndarray) -> np.ndarray:
+    def _differentiated(self, direction: Direction, step: float, displacement: np.ndarray) -> np.ndarray:
         """(5,) derivatives of ``line`` and of the speed."""
-        models = {k: variation.at(k * step) for k in (-1, 1)}
-        problems = {k: self._problem(one) for k, one in models.items()}
+        problems = {k: self._problem(direction, k * step) for k in (-1, 1)}
         solved, held = self.solved, np.where(self.model.system.free > 0.0, 0.0, displacement)
         rates = {k: solved.path.rate * (one.speed / solved.problem.speed) for k, one in problems.items()}
         lagging = any(solved.problem.system.scalars[entry] != 0.0 for entry in (DAMPING, TIME_CONSTANT))
         faster = (problems[1].speed - problems[-1].speed) / (2.0 * step)
-        last, weight = np.zeros(4), np.array([1.0, solved.problem.speed, 0.0, 0.0])
-        path = solved.path
+        path, first = solved.path, 0.0
+        rounding = _ROUNDING * np.abs(path.a / solved.problem.weight).max() / step
         moved = {k: attrs.evolve(path, q=path.q + k * step * held, rate=rates[k]) for k in problems}
         for turn in range(_RATES):
             slope = (_imbalance(problems[1], moved[1]) - _imbalance(problems[-1], moved[-1])) / (2.0 * step)
@@ -147,21 +148,26 @@ class SteadyOrbit:
                 return np.zeros(5)
             change = self._change(slope)
             moved = {k: _moved(one, change, k * step) for k, one in moved.items()}
-            lines = {
-                k: _line(attrs.evolve(solved, problem=problems[k], path=one), models[k].mass_used)
-                for k, one in moved.items()
-            }
-            found: np.ndarray = (lines[1] - lines[-1]) / (2.0 * step)
-            if not lagging or np.linalg.norm((found - last) * weight) <= _LEFT * np.linalg.norm(found * weight):
+            size = float(np.abs(change.a / solved.problem.weight).max())
+            first = first or size
+            if not lagging or turn > 0 and size <= max(_LEFT * first, rounding):
                 break
-            last = found
             moved = {k: attrs.evolve(one, rate=_rates(problems[k], one)) for k, one in moved.items()}
-        return np.append(found, faster)
+        lines = {
+            k: _line(attrs.evolve(solved, problem=problems[k], path=one), self._mass(problems[k].system))
+            for k, one in moved.items()
+        }
+        return np.append((lines[1] - lines[-1]) / (2.0 * step), faster)
 
-    def _problem(self, model: Model) -> Problem:
+    def _mass(self, system: System) -> float:
+        """``Model.mass_used`` of a neighbouring system."""
+        return float(system.mass[1, 1]) if self.model.mass_used else 0.0
+
+    def _problem(self, direction: Direction, by: float) -> Problem:
         """The boundary-value problem of a neighbouring model, on the same mesh of angles."""
-        speed = _speed(model)
-        return attrs.evolve(self.solved.problem, system=by_address(surrogate(model.system)), speed=speed, clock=speed)
+        problem = self.solved.problem
+        speed = problem.speed + by * direction.speed
+        return attrs.evolve(problem, system=direction.moved(problem.system, by), speed=speed, clock=speed)
 
     def _change(self, slope: np.ndarray) -> Change:
         """du/dp from dR/dp (m s, 5)."""
@@ -177,10 +183,6 @@ class SteadyOrbit:
         change = Change(np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a))
         spread(problem.free, out, first, 1.0, change)
         return change
-
-
-def _speed(model: Model) -> float:
-    return 2.0 * np.pi / float(model.excitation.period_s)
 
 
 def _imbalance(problem: Problem, path: Path) -> np.ndarray:

@@ -3,8 +3,7 @@
 Notes
 -----
 At the equilibrium r(q, p) = f(q, p) + K_s q - F(p) = 0 with the exact tangent T = dr/dq, the balls condensed.  Hence
-dq/dp = -T^-1 dr/dp, dr/dp at fixed q from models at neighbouring p, whose building is all that a key costs beside eight
-evaluations of the contacts.  Stiffness, damping and forces of the contacts are then differentiated along that line:
+dq/dp = -T^-1 dr/dp, dr/dp at fixed q along the derivatives of the model's arrays (``variation``).  Stiffness, damping and forces of the contacts are then differentiated along that line:
 dK/dp = d/dh K(q + h dq/dp, p + h).  Differences are central and of fourth order; their step moves no gap and no
 stiffness by more than ``_MOVED`` of itself, so that the error stays below 1e-7 of the derivative.  Coordinates that are held move with what
 holds them (``supports.axial`` = "displacement").
@@ -19,13 +18,17 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.ring import Evaluation
+from raceway.core.ring.surrogate import surrogate
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.pipeline.gradient.differences import WEIGHTS, derivative
-from raceway.pipeline.gradient.variation import NoDerivative, Variation
+from raceway.pipeline.gradient.variation import Direction, NoDerivative, direction_of
 from raceway.scene.continuous import Key
 
 #: Part of a gap, and of the stiffness, that the outermost step may move; largest step over the number at the key.
 _MOVED, _LARGEST = 0.004, 0.01
+#: Part of the way to a knot of the tables of compliances that a step may go, four of which then stay on one side.
+_KNOT = 0.25
 #: A step over the number so small that rounding shows: a contact is about to open or to close.
 _ROUGH = 1e-7
 #: Gaps below this part of the deepest one count as closed contacts without load.
@@ -41,20 +44,28 @@ class StaticGradient:
 
     Attributes
     ----------
-    key : by which, in its unit;  step : of the differences, in the same unit; 0 where the key changes nothing
+    direction : of the model's arrays;  step : of the differences, in the unit of the key; 0 where it changes nothing at rest
     displacement : (5,) [m, rad];  stiffness, damping : (5, 5) of the contacts;  contact_force : (2 Z,) inner races first [N]
     remark : why they may not be smooth; empty where they are
-    models : that were built for them
     """
 
-    key: Key
+    direction: Direction
     step: float
     displacement: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
     contact_force: np.ndarray
     remark: str
-    models: int
+
+    @property
+    def key(self) -> Key:
+        """By which."""
+        return self.direction.key
+
+    @property
+    def models(self) -> int:
+        """Models that were built."""
+        return self.direction.built
 
 
 @attrs.frozen(eq=False)
@@ -81,50 +92,41 @@ def static_gradient(model: Model, equilibrium: Equilibrium, key: Key) -> StaticG
     NoDerivative
         There is none, with the reason.
     """
-    variation = Variation(model, key)
+    direction = direction_of(model, key)
     try:
-        return _gradient(variation, equilibrium)
+        return _gradient(model, direction, equilibrium)
     except ConvergenceError as why:
         raise NoDerivative(f"the neighbouring states have no balance: {why}") from None
 
 
-def _gradient(variation: Variation, equilibrium: Equilibrium) -> StaticGradient:
-    model, q, ball = variation.model, equilibrium.displacement, equilibrium.ball
-    here = _state(model, q, ball)
-    step, remark = _step(variation, equilibrium, here)
+def _gradient(model: Model, direction: Direction, equilibrium: Equilibrium) -> StaticGradient:
+    system, q, ball = surrogate(model.system), equilibrium.displacement, equilibrium.ball
+    here = _state(system, q, ball)
+    step, remark = _step(system, direction, equilibrium, here) if direction.at_rest else (0.0, "")
     if step == 0.0:
         size = len(here.contacts.contact_force)
         nothing = np.zeros(5), np.zeros((5, 5)), np.zeros((5, 5)), np.zeros(size)
-        return StaticGradient(variation.key, 0.0, *nothing, "", variation.built)
-    models = {k: variation.at(k * step) for k in WEIGHTS}
-    residual = derivative({k: _state(one, q, ball).residual for k, one in models.items()}, step)
-    held = derivative({k: one.guess for k, one in models.items()}, step)
-    moved = _moved(model, here.tangent, residual, held)
-    states = {k: _state(one, q + k * step * moved, ball).contacts for k, one in models.items()}
+        return StaticGradient(direction, 0.0, *nothing, "")
+    systems = {k: direction.moved(system, k * step) for k in WEIGHTS}
+    residual = derivative({k: _state(one, q, ball).residual for k, one in systems.items()}, step)
+    moved = _moved(system, here.tangent, residual, direction.guess)
+    states = {k: _state(one, q + k * step * moved, ball).contacts for k, one in systems.items()}
     loaded = here.contacts.contact_force > 0.0
     if any(((one.contact_force > 0.0) != loaded).any() for one in states.values()):
         remark = _AT_THE_EDGE
-    stiffness = {k: models[k].system.stiffness_at(q, one) for k, one in states.items()}
+    stiffness = {k: systems[k].stiffness_at(q, one) for k, one in states.items()}
     slope = derivative(stiffness, step)
     rounding = _ROUNDING * np.abs(stiffness[1]).max() / step
     bent = np.abs((stiffness[1] - stiffness[-1]) / (2.0 * step) - slope).max()
-    if not remark and bent > _BENT * np.abs(slope).max() + rounding:
+    if not remark and (direction.bends or bent > _BENT * np.abs(slope).max() + rounding):
         remark = _BENDS
-    return StaticGradient(
-        variation.key,
-        step,
-        moved,
-        slope,
-        derivative({k: _damping(models[k], q + k * step * moved, one) for k, one in states.items()}, step),
-        derivative({k: one.contact_force for k, one in states.items()}, step),
-        remark,
-        variation.built,
-    )
+    damping = {k: systems[k].without(CAGE).damping_at(q + k * step * moved, one) for k, one in states.items()}
+    force = derivative({k: one.contact_force for k, one in states.items()}, step)
+    return StaticGradient(direction, step, moved, slope, derivative(damping, step), force, remark)
 
 
-def _state(model: Model, q: np.ndarray, ball: np.ndarray) -> _State:
+def _state(system: System, q: np.ndarray, ball: np.ndarray) -> _State:
     """As ``raceway.pipeline.settle`` evaluates it: the balance without friction, then slips at which no contact sticks."""
-    system = model.system
     balanced = system.without(CAGE, FRICTION)
     now = balanced.evaluate(q, ball=ball)
     residual = now.force + system.stiffness @ q - system.load
@@ -136,40 +138,45 @@ def _state(model: Model, q: np.ndarray, ball: np.ndarray) -> _State:
     return _State(residual, tangent, now)
 
 
-def _damping(model: Model, q: np.ndarray, now: Evaluation) -> np.ndarray:
-    return model.system.without(CAGE).damping_at(q, now)
-
-
-def _moved(model: Model, tangent: np.ndarray, residual: np.ndarray, held: np.ndarray) -> np.ndarray:
+def _moved(system: System, tangent: np.ndarray, residual: np.ndarray, held: np.ndarray) -> np.ndarray:
     """dq/dp (5,) from dr/dp at fixed q, and from that of the coordinates that are held."""
-    free = model.system.free > 0.0
+    free = system.free > 0.0
     found = np.where(free, 0.0, held)
     found[free] = np.linalg.solve(tangent[np.ix_(free, free)], -(residual + tangent @ found)[free])
     return found
 
 
-def _step(variation: Variation, equilibrium: Equilibrium, here: _State) -> tuple[float, str]:
+def _step(system: System, direction: Direction, equilibrium: Equilibrium, here: _State) -> tuple[float, str]:
     """Step of the differences, and a remark where no step is smooth; 0 where the key changes nothing of the statics at all."""
-    model, q, ball = variation.model, equilibrium.displacement, equilibrium.ball
-    tried = variation.tried
-    variation.scene(-tried)  # a key at the end of its range is refused, whatever it does
-    one = variation.at(tried)
+    q, ball, tried, value = equilibrium.displacement, equilibrium.ball, direction.tried, direction.key.value
+    one = direction.moved(system, tried)
     still = _state(one, q, ball)
-    moved = _moved(model, here.tangent, (still.residual - here.residual) / tried, (one.guess - model.guess) / tried)
-    if not (one.guess - model.guess).any() and still.same(here):
+    moved = _moved(system, here.tangent, (still.residual - here.residual) / tried, direction.guess)
+    if not direction.guess.any() and still.same(here):
         return 0.0, ""
     along = _state(one, q + tried * moved, ball)
     gap = here.contacts.gap
     room = np.maximum(np.abs(gap), _TOUCHING * np.abs(gap).max())
     rates = [np.abs(each.contacts.gap - gap) / tried for each in (still, along)]
     fastest = max(
-        float((np.maximum(*rates) / room).max()), *(_change(here, each, model.system.arm) / tried for each in (still, along))
+        float((np.maximum(*rates) / room).max()), *(_change(here, each, system.arm) / tried for each in (still, along))
     )
-    largest = _LARGEST * abs(variation.key.value) if variation.key.value else 1e3 * tried
+    largest = _LARGEST * abs(value) if value else 1e3 * tried
     # Two steps to either side.
     step = min(largest, 0.5 * _MOVED / fastest) if fastest > 0.0 else largest
     least = _ROUGH * largest / _LARGEST
-    return max(step, least), "" if step >= least else _AT_THE_EDGE
+    if step < least:
+        return least, _AT_THE_EDGE
+    place, next_place = system.table_places(q, here.contacts.ball), one.table_places(q + tried * moved, along.contacts.ball)
+    room = _KNOT * _to_a_knot(place, next_place, here.contacts.contact_force) * tried
+    return min(step, max(room, 10.0 * least)), ""
+
+
+def _to_a_knot(here: np.ndarray, there: np.ndarray, force: np.ndarray) -> float:
+    """The least distance of a loaded contact to a knot of its tables over the way from here to there, both (Z,) or (0,)."""
+    moves = (force[: len(here)] > 0.0) & (there != here)
+    left = np.abs(here - np.round(here))[moves] / np.abs(there - here)[moves]
+    return float(left.min(initial=np.inf))
 
 
 def _change(one: _State, two: _State, arm: float) -> float:

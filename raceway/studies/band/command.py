@@ -20,7 +20,7 @@ from raceway.commands.frame import (
     show,
     show_progress,
 )
-from raceway.commands.inputs import load, slug, tell_faults
+from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables
@@ -39,6 +39,7 @@ class BandOptions(NamedTuple):
     seed: int
     processes: int
     out: Path | None
+    pictures: bool
     plugins: tuple[Path, ...]
     as_json: bool
 
@@ -46,7 +47,7 @@ class BandOptions(NamedTuple):
 @click.command(short_help="The range of an answer over the tolerances of its scene.")
 @on_scene
 @click.option(
-    "--tolerance", "tolerances", multiple=True, metavar="A.B=TEXT", help="'±10 %', '±1 deg', '+2 µm -1 µm'; repeat for more [the scene's tolerances]."
+    "--tolerance", "tolerances", multiple=True, metavar="A.B=TEXT", help="'±10 %', '±1 deg', '+2 µm -1 µm', class=P4, balls=G5; repeat for more [the scene's tolerances]."
 )  # fmt: skip
 @click.option(
     "--count", "size", type=int, default=512, show_default=True, help="n, a power of 2: (d + 2) n samples for d tolerances."
@@ -54,13 +55,14 @@ class BandOptions(NamedTuple):
 @click.option("--seed", type=int, default=1, show_default=True, help="Of the samples.")
 @processes_at_a_time
 @out_folder
+@click.option("--pictures/--no-pictures", default=True, help="Write histograms and bars as PNG (default).")
 @plugin_files
 @common
 @record(BandOptions)
 def band(given: BandOptions) -> int:
     """95 % band of K, displacement and ball loads over tolerances, and the Sobol indices that say which of them causes it.
 
-    Writes band.json. Numbers are taken evenly from their ranges. Finished samples are kept in DIR/band-rows.jsonl and reused.
+    Writes band.json and band.png. Numbers are taken evenly from their ranges. Finished samples are kept in DIR/band-rows.jsonl and reused.
 
     \b
     Example:
@@ -81,6 +83,8 @@ def band(given: BandOptions) -> int:
     content = found.to_dict()
     files: list[str] = []
     failed = attempt(lambda: [found.save(folder)], files)
+    if failed is None and given.pictures and has_matplotlib():
+        failed = attempt(lambda: [found.picture(folder)], files)
     show(content, given.as_json, failed, lambda: _screen(content, files))
     return 0
 
@@ -91,16 +95,21 @@ def _screen(content: ReadTables, files: list[str]) -> RenderableType:
     from rich.text import Text
 
     from raceway.commands.screen import rows_table
+    from raceway.framework.shown import read_in
 
     keys = [one["key"] for one in content["tolerances"]]
     rows = []
     for name, one in content["quantities"].items():
-        row = {"quantity": f"{name.replace('_', ' ')} [{one['unit']}]", "nominal": f"{one['value']:.5g}"}
-        row |= {"2.5 %": f"{one['low']:.5g}", "97.5 %": f"{one['high']:.5g}"}
+        (value, unit), (low, _), (high, _) = (read_in(one[end], one["unit"]) for end in ("value", "low", "high"))
+        row = {"quantity": f"{name.replace('_', ' ')} [{unit}]", "nominal": f"{value:.5g}"}
+        row |= {"2.5 %": f"{low:.5g}", "97.5 %": f"{high:.5g}"}
         for k, key in enumerate(keys):
             row[f"total index, {key}"] = "" if one["total"] is None else f"{one['total'][k]:.3f}"
         rows.append(row)
-    lines = [f"{one['key']}: {one['low']:.6g} to {one['high']:.6g} {one['unit']}".rstrip() for one in content["tolerances"]]
+    lines = []
+    for one in content["tolerances"]:
+        (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
+        lines.append(f"{one['key']}: {low:.6g} to {high:.6g} {unit}".rstrip())
     lines.append(f"{content['samples']} samples")
     if content["lost"]:
         lines.append(f"{content['lost']} have no answer, so that no indices are told: {content['why_lost']}")

@@ -13,6 +13,7 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.framework.shown import Fact, Shown, number
 from raceway.pipeline.gradient.gradients import Gradients
+from raceway.pipeline.gradient.quantities import UNITS, values
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress
@@ -24,10 +25,11 @@ from raceway.storage.tables import Tables
 from raceway.studies.band.sobol import Indices, design, indices
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
-from raceway.studies.sensitivities.quantities import UNITS, values
 
 #: Samples of a piece of work, which is what a killed worker loses; limits of the band.
 _CHUNK, _LIMITS = 256, (0.025, 0.975)
+#: Bins of a histogram.
+_BINS = 24
 
 
 @attrs.frozen(eq=False, repr=False)
@@ -38,6 +40,7 @@ class Band(Shown):
     ----------
     nominal, low, high : quantity -> number, SI;  tolerances : what was varied
     first, total : quantity -> Sobol indices (d,) of the tolerances
+    histograms : quantity -> edges of bins (b + 1,), SI, and samples in them (b,)
     samples : that were computed;  lost : of them without an answer;  why : of the first of these
 
     Examples
@@ -55,6 +58,7 @@ class Band(Shown):
     high: dict[str, float]
     first: dict[str, list[float]]
     total: dict[str, list[float]]
+    histograms: dict[str, tuple[list[float], list[int]]]
     samples: int
     lost: int
     why: str
@@ -76,6 +80,7 @@ class Band(Shown):
                 "high": self.high[name],
                 "first_order": self.first.get(name),
                 "total": self.total.get(name),
+                "histogram": dict(zip(("edges", "counts"), self.histograms[name], strict=True)),
             }
             for name, value in self.nominal.items()
         }
@@ -95,6 +100,19 @@ class Band(Shown):
             A folder that cannot be written.
         """
         return write_json(self.to_dict(), folder / "band.json")
+
+    def picture(self, folder: Path) -> Path:
+        """Draw band.png: histograms with their limits, and Sobol indices.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        from raceway.plugins.reports.pictures import save_figure
+        from raceway.studies.band.picture import draw
+
+        return save_figure(draw(self.to_dict()), folder / "band.png", 100)
 
 
 def band_of(
@@ -180,7 +198,13 @@ def _summary(
         dict(zip(names, high.tolist(), strict=True)),
         first,
         total,
+        {name: _histogram(values) for name, values in zip(names, ends, strict=True)},
         len(rows),
         len(lost),
         lost[0] if lost else "",
     )
+
+
+def _histogram(values: np.ndarray) -> tuple[list[float], list[int]]:
+    counts, edges = np.histogram(values[np.isfinite(values)], _BINS)
+    return edges.tolist(), counts.tolist()

@@ -10,11 +10,11 @@ import numpy as np
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
+from raceway.pipeline.gradient.quantities import UNITS
 from raceway.scene.continuous import Key, continuous_keys, with_number
 from raceway.scene.tables import Scene
 from raceway.scene.units import number_in
 from raceway.storage.number_table import NumberTable
-from raceway.studies.sensitivities.quantities import UNITS
 
 #: Quantities that may be measured, with units: those of sensitivities, and the displacement across the axis at rest.
 MEASURED = UNITS | {"y": "m", "z": "m"}

@@ -11,6 +11,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.errors import SceneError
 from raceway.pipeline.gradient.gradients import Gradient, Gradients
+from raceway.pipeline.gradient.quantities import derivatives, values
 from raceway.pipeline.gradient.statics import static_gradient
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.pipeline.settle import settle
@@ -19,7 +20,6 @@ from raceway.scene.continuous import key_of, with_number
 from raceway.scene.tables import Scene
 from raceway.studies.fit.free import Free
 from raceway.studies.fit.observed import MEASURED, Observed
-from raceway.studies.sensitivities.quantities import derivatives, values
 
 #: Quantities of a motion, which need its orbit; place of displacements in the coordinates at rest.
 _MOTION, _PLACES = ("K", "C", "amplitude"), {"y": 1, "z": 2}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.bodies.model import build_model
 from raceway.commands.progress import telling
-from raceway.core.jit import working_clock
+from raceway.core.jit import working_processor_time
 from raceway.framework.registry import default_registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
@@ -58,7 +58,7 @@ def sensitivities(
     read = as_scene(scene, plugins=plugins)
     chosen = [key_of(read, path) for path in keys] or continuous_keys(read)
     with telling(progress) as told:
-        begun = working_clock()
+        begun = working_processor_time()
         model = build_model(read, make_plan(read, registry=default_registry()))
         equilibrium = settle(model)
-        return sensitivities_of(model, equilibrium, chosen, working_clock() - begun, told)
+        return sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told)

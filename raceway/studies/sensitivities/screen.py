@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from raceway.commands.screen import rows_table
+from raceway.framework.shown import read_in
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:
@@ -22,7 +23,8 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
     quantities = content["quantities"]
     heads = []
     for name, one in quantities.items():
-        heads.append(f"{name.replace('_', ' ')} {_in_units(one['value'], one['unit'])}")
+        value, unit = read_in(one["value"], one["unit"])
+        heads.append(f"{name.replace('_', ' ')} {value:.5g} {unit}")
     rows = []
     for key in (one for one in content["keys"] if one["influence"]):
         row = {"key": key["key"], "value": f"{key['value']:.6g} {key['unit']}".strip()}
@@ -46,12 +48,6 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
     lines += [f"written: {', '.join(files)}"] if files else []
     title = "\n".join([content["title"], *heads])
     return Group(rows_table(rows, title), *(Text(line) for line in lines))
-
-
-def _in_units(value: float, unit: str) -> str:
-    if unit == "N/m":
-        return f"{1e-6 * value:.5g} N/µm"
-    return f"{1e6 * value:.5g} µm" if unit == "m" else f"{value:.5g} {unit}"
 
 
 def _share(key: ReadTables, name: str) -> str:

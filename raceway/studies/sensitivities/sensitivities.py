@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.core.jit import working_clock
+from raceway.core.jit import working_processor_time
 from raceway.framework.shown import Fact, Shown, number
 from raceway.pipeline.gradient.gradients import Gradient, Gradients
+from raceway.pipeline.gradient.quantities import UNITS, derivatives, values
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.continuous import Key
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
-from raceway.studies.sensitivities.quantities import UNITS, derivatives, values
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -149,10 +149,10 @@ def sensitivities_of(
     run_s : processor time of the equilibrium, to which that of the orbit is added [s]
     on_progress : called as ``on_progress(what, done, total)``
     """
-    begun = working_clock()
+    begun = working_processor_time()
     gradients = Gradients(model, equilibrium)
     now = values(model, equilibrium, gradients.orbit)
-    run_s, begun = run_s + working_clock() - begun, working_clock()
+    run_s, begun = run_s + working_processor_time() - begun, working_processor_time()
     rows, nothing, refused, models = [], [], [], 0
     for done, key in enumerate(keys):
         if on_progress is not None:
@@ -171,7 +171,7 @@ def sensitivities_of(
         rows.append(Sensitivity(gradient, slopes, shares))
     first = next(iter(now))
     rows.sort(key=lambda row: -abs(row.influence.get(first, 0.0)))
-    took = working_clock() - begun
+    took = working_processor_time() - begun
     return Sensitivities(model.scene.title, now, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models)
 
 

@@ -1,4 +1,4 @@
-"""The numbers of a result that sensitivities are told of, and their derivatives by a key."""
+"""The numbers of a result whose derivatives are told, and these by a key."""
 
 from __future__ import annotations
 
