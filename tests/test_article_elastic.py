@@ -252,22 +252,25 @@ def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     monkeypatch.setattr("raceway.studies.article.elastic.told.time.monotonic", lambda: now[0])
     kinds = {1: "static", 3: "static", 4: "motion"}
     progress = Told({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
-    progress.begin(1, "static 400 N axial with elastic bodies")
+    progress.begin(1, "elastic at rest", "400 N axial")
+    assert told[-1][0] == "run 1 of 3: 12 min left, elastic at rest: 400 N axial"
     now[0] = 60.0
     progress("factoring ball, 26000 elements", 3, 10)
     words, done, total = told[-1]
-    assert (
-        words
-        == "static 400 N axial with elastic bodies (all runs: some 11 min left): factoring ball, 26000 elements 3 of 10"
-    )
+    assert words == "run 1 of 3: 11 min left, elastic at rest: factoring ball, 26000 elements 3 of 10"
     assert (done, total) == (60, 720)
     # The next one of its kind will take no longer than it did.
-    progress.begin(3, "static 1000 N axial with elastic bodies")
+    progress.begin(3, "elastic at rest", "1000 N axial")
     assert told[-1][1:] == (60, 600) and "9 min" in told[-1][0]
     now[0] = 80.0
-    progress.begin(4, "motion")
-    progress("integrating", 8, 80)
+    progress.begin(4, "elastic in motion", "bidirectional unbalance force")
+    progress("newmark, 80 steps", 8, 80)
     assert told[-1][1:] == (80, 560) and "8 min" in told[-1][0]
+    assert len(told[-1][0]) <= 76  # 80 columns less what stands before
+    # Longer than its plan: what is left is not known.
+    now[0] = 80.0 + 481.0
+    progress("newmark, 80 steps", 70, 80)
+    assert told[-1][0].startswith("run 3 of 3: end unknown, elastic in motion") and told[-1][1:] == (560, 560)
 
 
 def test_rows_of_bodies_name_their_runs():

@@ -130,7 +130,12 @@ def test_a_static_scene_has_one_line_for_what_it_cannot_tell(tmp_path):
     text = invoke("run", scene, "--out", tmp_path / "out").stdout
     assert "not estimated" not in text and text.count("static scene") == 1
     answer = text[text.index("Answer") : text.index("Equilibrium")]
-    assert all(words in answer for words in ("tangent kxx", "tangent kyy", "most loaded ball", "[excitation]"))
+    assert all(words in answer for words in ("tangent kxx", "tangent kyy", "all balls, each", "[excitation]"))
+    assert "loaded ball" not in text  # under an axial load alone all carry the same: told once
+    text = invoke("run", scene, "--set", "load.radial=[100.0, 0.0]", "--out", tmp_path / "out").stdout
+    assert (
+        "most loaded ball" in text[: text.index("Equilibrium")] and "least loaded ball" in text and "all balls" not in text
+    )
 
 
 def test_an_orbit_along_a_line_has_no_second_axis(tmp_path):
@@ -141,7 +146,9 @@ def test_an_orbit_along_a_line_has_no_second_axis(tmp_path):
 
 
 def test_a_pair_is_called_one_and_its_balls_have_rows(tmp_path):
-    text = " ".join(invoke("run", EXAMPLES / "duplex_db.toml", "--out", tmp_path).stdout.split())
+    text = " ".join(
+        invoke("run", EXAMPLES / "duplex_db.toml", "--set", "load.radial=[50.0, 0.0]", "--out", tmp_path).stdout.split()
+    )
     result = json.loads((tmp_path / "result.json").read_text())
     loads = [ball["load_inner_n"] for ball in result["equilibrium"]["balls"]]
     count = result["scene"]["bearing"]["ball_count"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from raceway.commands.screen.notes import short
-from raceway.commands.screen.result_answer import loaded_ball, resolved, tangent_rows
+from raceway.commands.screen.result_answer import loaded_balls, resolved, tangent_rows
 from raceway.commands.screen.text import Row, number, tilt_words
 from raceway.storage.tables import ReadTables
 
@@ -26,8 +26,7 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
         tilts = ", ".join(_small(moved[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
     rows += _mounted(found)
-    rows += [loaded_ball(result, "most")] if dynamic else []
-    rows.append(loaded_ball(result, "least"))
+    rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
     return rows + (tangent_rows(result) if dynamic else [])
 
 

@@ -178,10 +178,16 @@ def _stresses(out: Page, rows: list[Tables], section: bytes | None) -> None:
     lines = []
     for row in rows:
         for one in row.get("below_contact") or []:
-            lines.append([row["case"], one["race"], one["body"], f"{1e-6 * one['largest_shear_pa']:.1f}", f"{1e-6 * one['hertz_largest_shear_pa']:.1f}",
-                          per_cent(one["shear_deviation"]), f"{1e6 * one['depth_m']:.1f}", f"{1e6 * one['hertz_depth_m']:.1f}",
-                          per_cent(one["depth_deviation"]), "yes" if one["resolved"] else "no"])  # fmt: skip
-    columns = ["load", "race", "body", "shear MPa", "Hertz MPa", "off", "depth µm", "Hertz µm", "off", "mesh resolves it"]
+            found = [
+                f"{1e-6 * one['largest_shear_pa']:.1f}",
+                per_cent(one["shear_deviation"]),
+                f"{1e6 * one['depth_m']:.1f}",
+                per_cent(one["depth_deviation"]),
+            ]
+            shear, more, depth, deeper = found if one["resolved"] else ("not resolved", "", "", "")
+            lines.append([row["case"], one["race"], one["body"], shear, f"{1e-6 * one['hertz_largest_shear_pa']:.1f}", more,
+                          depth, f"{1e6 * one['hertz_depth_m']:.1f}", deeper, f"{one['cells_to_hertz_depth']:.1f}"])  # fmt: skip
+    columns = ["load", "race", "body", "shear MPa", "Hertz MPa", "off", "depth µm", "Hertz µm", "off", "elements down to it"]
     out.table(columns, lines, "Elastic bodies: largest shear stress and its depth")
     if section is not None:
         alternative = (
