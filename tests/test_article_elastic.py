@@ -94,7 +94,10 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
         "article-elastic.json", "article-elastic.csv", "article-elastic-rows.jsonl"
     }  # fmt: skip
     with (tmp_path / "article-elastic.csv").open(encoding="utf-8") as file:
-        assert [row["bodies"] for row in csv.DictReader(file)] == ["condensed", "rigid", "elastic"] * 2
+        table = csv.DictReader(file)
+        assert [row["bodies"] for row in table] == ["condensed", "rigid", "elastic"] * 2
+        names = table.fieldnames
+        assert not [name for name in names if any(other.startswith(f"{name}.") for other in names)]
     rows = {(row["phase"], row["bodies"]): row for row in content["rows"]}
     assert rows["static", "elastic"]["cost"]["elements"] == 3120
     assert all(row["cost"]["cpu_s"] > 0.0 and row["cost"]["peak_memory_bytes"] > 1e7 for row in rows.values())

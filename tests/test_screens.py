@@ -11,6 +11,7 @@ from rich.console import Console
 
 from raceway.commands.screen import Words, rows_table
 from raceway.commands.screen.notes import short
+from raceway.commands.screen.result_parts import cost_rows
 from raceway.pipeline.result import tilts_follow
 from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
@@ -232,3 +233,13 @@ def documented(tree):
         for n in nodes
         if n.body and isinstance(n.body[0], ast.Expr) and isinstance(n.body[0].value, ast.Constant)
     }
+
+
+def test_a_cost_says_whether_compiled_kernels_were_kept_and_the_processor_time():
+    cost = {"wall_s": 12.0, "cpu_s": 3.0, "compile_s": 9.0, "steps": 40, "peak_memory_bytes": 2**30, "threads": 1}
+    (_, wall, compiling) = cost_rows({**cost, "compiled_kept": True})
+    assert "3 CPU-s" in wall[2] and compiling[2].startswith("once; kept for the next run")
+    (_, _, compiling) = cost_rows({**cost, "compiled_kept": False})
+    assert compiling[2].startswith("not kept") and "kept for the next" not in compiling[2]
+    (_, _, compiling) = cost_rows({**cost, "compile_s": 0.0, "compiled_kept": True})
+    assert "in the cache" in compiling[2]

@@ -142,12 +142,17 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
 def cost_rows(cost: ReadTables) -> list[Row]:
     """Time and memory."""
     memory, threads = cost["peak_memory_bytes"] / 2**20, cost["threads"]
-    kept = "once; kept for the next run" if cost["compile_s"] else "kernels were in the cache"
-    told = f"{cost['steps']} steps, {memory:.0f} MiB, {threads} thread{'' if threads == 1 else 's'}"
+    kept = "kernels were in the cache (raceway cache)"
+    if cost["compile_s"]:
+        kept = "once; kept for the next run (raceway cache)"
+        if not cost.get("compiled_kept", True):
+            kept = "not kept: the cache cannot be written; the next run compiles again"
+    processor = f"{number(cost['cpu_s'], 'CPU-s', 3)}, " if "cpu_s" in cost else ""
+    told = f"{processor}{cost['steps']} steps, {memory:.0f} MiB, {threads} thread{'' if threads == 1 else 's'}"
     return [
         ("Cost", "", ""),
         ("wall time", number(cost["wall_s"], "s", 3), told),
-        ("compiling, apart", number(cost["compile_s"], "s", 3), f"{kept} (raceway cache)"),
+        ("compiling, apart", number(cost["compile_s"], "s", 3), kept),
     ]
 
 
