@@ -219,6 +219,16 @@ def test_the_page_of_invented_numbers_opens_without_a_network(monkeypatch):
         assert words in text
 
 
+def test_the_page_gives_no_shear_stress_that_the_mesh_does_not_resolve():
+    content = elastic_study().to_dict()
+    assert "410.0" in page(content, [], None, "").html()
+    for row in content["rows"]:
+        for side in row.get("below_contact") or []:
+            side["resolved"] = False
+    text = page(content, [], None, "").html()
+    assert "410.0" not in text and "not resolved" in text
+
+
 def test_deviations_are_those_of_rows_made_by_hand():
     """Pressures of elastic bodies are 2 % above Hertz's, of the ball with the least load 3 %; K 1 % above that of condensed bodies."""
     study = elastic_study()

@@ -73,7 +73,8 @@ def _subsurface(sides: Sequence[ReadTables]) -> list[Row]:
         if coarse:
             worst, key = min(((side, key) for side in coarse for key in _CELLS), key=lambda pair: pair[0][pair[1]])
             bodies = " and ".join(side["body"] for side in coarse)
-            told.append(f"not resolved by this mesh in {bodies}: {worst[key]:.2g} elements {_CELLS[key]}, not 4")
+            which = "not resolved" if fine else "by this mesh"
+            told.append(f"{which} in {bodies}: {worst[key]:.2g} elements {_CELLS[key]}, not 4")
         told.append(f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa at {1e6 * pair[0]['hertz_depth_m']:.0f} µm")
         rows.append((f"largest shear, {race}", f"{value} MPa" if fine else "not resolved", "; ".join(told)))
     return rows
