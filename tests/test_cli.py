@@ -121,7 +121,7 @@ def test_run_says_everything_and_writes_the_result(article):
     assert found.exit_code == 0, found.stderr
     text = " ".join(found.stdout.split())
     for words in (
-        "B7206C, 1 kN axial", "12 balls of 9.525 mm on 46 mm", "most loaded ball", "least loaded ball", "tangent kxx",
+        "B7206C, 1 kN axial", "12 balls of 9.525 mm on 46 mm", "all balls, each", "tangent kxx",
         "tangent kyy", "Z real", "Z imaginary", "|Z|", "equivalent stiffness K", "equivalent damping C", "phase lag",
         "orbit", "tilt locked", "secant: 1x force over 1x displacement", "time step", "second run, half as many steps",
         "compiling, apart", "energy drift",
@@ -369,6 +369,7 @@ def test_a_home_and_a_cache_that_cannot_be_written(tmp_path):
     assert found.returncode == 0, found.stderr
     assert "equivalent stiffness K" in found.stdout
     assert found.stderr.count("warning: compiled kernels cannot be kept") == 1
+    assert "not kept: the cache cannot be written" in " ".join(found.stdout.split())
     assert "RACEWAY_CACHE_DIR" in found.stderr
     assert "Traceback" not in found.stderr
 

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from raceway.commands.screen import Words, rows_table
 from raceway.commands.screen.notes import short
+from raceway.commands.screen.result_parts import cost_rows
 from raceway.pipeline.result import tilts_follow
 from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
@@ -130,7 +131,12 @@ def test_a_static_scene_has_one_line_for_what_it_cannot_tell(tmp_path):
     text = invoke("run", scene, "--out", tmp_path / "out").stdout
     assert "not estimated" not in text and text.count("static scene") == 1
     answer = text[text.index("Answer") : text.index("Equilibrium")]
-    assert all(words in answer for words in ("tangent kxx", "tangent kyy", "most loaded ball", "[excitation]"))
+    assert all(words in answer for words in ("tangent kxx", "tangent kyy", "all balls, each", "[excitation]"))
+    assert "loaded ball" not in text  # under an axial load alone all carry the same: told once
+    text = invoke("run", scene, "--set", "load.radial=[100.0, 0.0]", "--out", tmp_path / "out").stdout
+    assert (
+        "most loaded ball" in text[: text.index("Equilibrium")] and "least loaded ball" in text and "all balls" not in text
+    )
 
 
 def test_an_orbit_along_a_line_has_no_second_axis(tmp_path):
@@ -141,7 +147,9 @@ def test_an_orbit_along_a_line_has_no_second_axis(tmp_path):
 
 
 def test_a_pair_is_called_one_and_its_balls_have_rows(tmp_path):
-    text = " ".join(invoke("run", EXAMPLES / "duplex_db.toml", "--out", tmp_path).stdout.split())
+    text = " ".join(
+        invoke("run", EXAMPLES / "duplex_db.toml", "--set", "load.radial=[50.0, 0.0]", "--out", tmp_path).stdout.split()
+    )
     result = json.loads((tmp_path / "result.json").read_text())
     loads = [ball["load_inner_n"] for ball in result["equilibrium"]["balls"]]
     count = result["scene"]["bearing"]["ball_count"]
@@ -225,3 +233,13 @@ def documented(tree):
         for n in nodes
         if n.body and isinstance(n.body[0], ast.Expr) and isinstance(n.body[0].value, ast.Constant)
     }
+
+
+def test_a_cost_says_whether_compiled_kernels_were_kept_and_the_processor_time():
+    cost = {"wall_s": 12.0, "cpu_s": 3.0, "compile_s": 9.0, "steps": 40, "peak_memory_bytes": 2**30, "threads": 1}
+    (_, wall, compiling) = cost_rows({**cost, "compiled_kept": True})
+    assert "3 CPU-s" in wall[2] and compiling[2].startswith("once; kept for the next run")
+    (_, _, compiling) = cost_rows({**cost, "compiled_kept": False})
+    assert compiling[2].startswith("not kept") and "kept for the next" not in compiling[2]
+    (_, _, compiling) = cost_rows({**cost, "compile_s": 0.0, "compiled_kept": True})
+    assert "in the cache" in compiling[2]

@@ -96,7 +96,7 @@ def _elastic_row(run: Run) -> Tables:
     balls = [_ball(place, load, 1.0 + 0.005 * off * (place == 0), run.bodies != "rigid", 0.02 + 0.01 * (place == 2))
              for place, load in enumerate(loads)]  # fmt: skip
     stress = {"race": "inner", "body": "ball", "ball": 0, "load_n": 200.0, "largest_shear_pa": 4.1e8, "hertz_largest_shear_pa": 4e8,
-              "depth_m": 6.1e-5, "hertz_depth_m": 6e-5, "resolved": True}  # fmt: skip
+              "depth_m": 6.1e-5, "hertz_depth_m": 6e-5, "cells_to_hertz_depth": 5.0, "resolved": True}  # fmt: skip
     k, c = 2e8 * (1.0 + 0.01 * off), 100.0 * (1.0 + 0.5 * off)
     z = complex(k - 2.0 * 1256.6**2, 1256.6 * c)
     known = {"speed_rpm": 12000.0, "equivalent_stiffness": k, "equivalent_damping": c,

@@ -1,4 +1,4 @@
-"""Whether meshes have the size of the bearing that they stand for: a file in millimetres is the usual mistake."""
+"""Whether meshes are those of the bearing that they stand for: their size, of which millimetres are the usual mistake, and their sets."""
 
 from __future__ import annotations
 
@@ -14,10 +14,18 @@ from raceway.errors import MeshError
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.framework.contracts import Mesher
-    from raceway.scene.tables import Bearing
+    from raceway.scene.tables import Bearing, Supports
 
 #: Larger or smaller by more than this is another unit (inches for millimetres are 25), not another bearing.
 _OTHER_UNIT = 5.0
+#: Facets that elastic bodies need.
+_SETS = {
+    **{
+        f"{ring}_ring": {"raceway": "the groove, on which balls press", "seat": "its fit on the shaft or in the housing"}
+        for ring in ("inner", "outer")
+    },
+    "ball": {"surface": "its whole surface, which presses on the grooves"},
+}
 #: Coarse facets of a ball may miss its poles by a few percent.
 _OTHER_SIZE = 0.05
 
@@ -47,6 +55,30 @@ def check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh]) 
                     f"the mesh of '{name}' measures {found:.4g} m where {key} of the bearing is {expected:.4g} m",
                     stacklevel=3,
                 )
+
+
+def check_sets(mesher: Mesher, meshes: Mapping[str, HexMesh], supports: Supports) -> None:
+    """Refuse elastic bodies that are missing, and meshes without the sets on which contacts and seats act.
+
+    Raises
+    ------
+    MeshError
+        The key that names the body's file, the set, and the remedy.
+    """
+    for body, sets in _SETS.items():
+        path = getattr(mesher, body, None)
+        key, value = ("mesh.kind", mesher.name) if path is None else (f"mesh.{body}", path)
+        mesh = next((mesh for name, mesh in meshes.items() if name.startswith(body)), None)
+        if mesh is None:
+            what = "one ball, a copy of which stands at each place" if body == "ball" else "this ring"
+            raise MeshError.at(f"mesh.{body}", path, f"is required with elastic bodies: the file of {what}")
+        held = "seat" if getattr(supports, body.replace("_ring", "_seat"), "") == "rigid" else ""  # its nodes are enough
+        for name, where in sets.items():
+            try:
+                mesh.nodes(name) if name == held else mesh.facets(name)
+            except MeshError as why:
+                remedy = f'Name the file\'s own: [mesh.sets.{body}] {name} = "..."; or add it to the mesh'
+                raise MeshError.at(key, value, f"{why}. '{name}' is {where}. {remedy}") from why
 
 
 def _sizes(bearing: Bearing, name: str, points: np.ndarray) -> list[tuple[str, float, float]]:

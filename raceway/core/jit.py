@@ -35,8 +35,11 @@ if getattr(numba.config, "DISABLE_JIT", 0):
     raise RacewayError(
         "NUMBA_DISABLE_JIT is set: loops of hundreds of thousands of steps are compiled here, or take hours. Unset it."
     )
-#: Seconds spent in compiling (until a run takes them) and in reading the cache, and how many kernels of each.
-clock: dict[str, float] = {"compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0, "compile_processor_s": 0.0}
+#: Seconds spent in compiling (until a run takes them) and in reading the cache, how many kernels of each, and how many of those
+#: compiled could not be kept.
+clock: dict[str, float] = {
+    "compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0, "unkept": 0, "compile_processor_s": 0.0
+}  # fmt: skip
 
 
 def working_clock() -> float:
@@ -47,6 +50,11 @@ def working_clock() -> float:
 def working_processor_time() -> float:
     """Processor time of this thread [s] without what its kernels took to compile."""
     return time.thread_time() - clock["compile_processor_s"]
+
+
+def working_process_time() -> float:
+    """Processor time of all threads [s] without what kernels took to compile."""
+    return time.process_time() - clock["compile_processor_s"]
 
 
 def take_compile_seconds() -> float:
@@ -184,6 +192,7 @@ class Kernel(_Dispatcher):
     def _through_cache(self) -> None:
         folder = kernel_folder()
         if folder is None:
+            clock["unkept"] += 1
             super().compile(self.signature)
             return
         for attempt in (1, 2):
@@ -197,6 +206,7 @@ class Kernel(_Dispatcher):
                 if not self.stats.cache_hits:
                     files.note_digests()
                     if folder.unwritable:
+                        clock["unkept"] += 1
                         _warn_incomplete(current_folder(), folder.unwritable)
                 return
             except (numba.core.errors.NumbaError, TypeError, RacewayError):
@@ -212,6 +222,7 @@ class Kernel(_Dispatcher):
                         stacklevel=3,
                     )
         self._cache = NullCache()
+        clock["unkept"] += 1
         super().compile(self.signature)
 
     def _reason(self, why: Exception) -> str:

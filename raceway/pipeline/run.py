@@ -13,7 +13,7 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
-from raceway.core.jit import take_compile_seconds, working_clock
+from raceway.core.jit import clock, take_compile_seconds, working_clock, working_process_time
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.surrogate import compiled
@@ -93,7 +93,7 @@ def _run(
     patience: float,
     stay: bool,
 ) -> Result:
-    wall = working_clock()
+    wall, processor = working_clock(), working_process_time()
     plan = make_plan(scene, registry=registry)
     allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
@@ -111,10 +111,16 @@ def _run(
         found = _static(model, equilibrium)
     else:
         found = _dynamic(model, equilibrium, allowance, partial(_moved, model, equilibrium, progress, near, stay))
-    done = working_clock()
+    done, processor = working_clock(), working_process_time() - processor
     compile_s = take_compile_seconds()
     bodies = model.bearing.report(model, equilibrium) or None
-    times = {"wall_s": done - wall, "compile_s": compile_s, "build_s": built - wall, "solve_s": done - built}
+    times = {
+        "wall_s": done - wall,
+        "cpu_s": processor,
+        "compile_s": compile_s,
+        "build_s": built - wall,
+        "solve_s": done - built,
+    }
     return Result(
         model=model,
         equilibrium=equilibrium,
@@ -251,6 +257,7 @@ def _cost(simulations: list[Simulation], times: dict[str, float], error_s: float
     scale = 1 if sys.platform == "darwin" else 1024
     return {
         **times,
+        "compiled_kept": clock["unkept"] == 0,
         "build_s": max(times["build_s"], 0.0),
         "solve_s": times["solve_s"] - error_s,
         "error_s": error_s,

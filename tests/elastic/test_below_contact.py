@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-
 import numpy as np
 import pytest
 
@@ -102,20 +100,40 @@ def vars_of(frozen):
     return {field.name: getattr(frozen, field.name) for field in attrs.fields(type(frozen)) if field.init}
 
 
-def test_the_screen_tells_shear_and_whether_the_mesh_resolves_it(result):
-    from rich.console import Console
+def test_the_screen_tells_shear_where_the_mesh_resolves_it_and_no_number_elsewhere(result):
+    from raceway.commands.screen.result_model import bodies_rows
 
-    from raceway.commands.screen.result import run_screen
-
-    console = Console(width=200, record=True, file=io.StringIO())
-    console.print(run_screen(result.to_dict(), ()))
-    text = console.export_text()
     table = result.to_dict()["model"]["subsurface"]
-    for race, one in (("inner", table[0]), ("outer", table[2])):
-        assert f"largest shear, {race}  " in text
-        assert f"{1e-6 * one['largest_shear_pa']:.0f}, " in text
-        assert f"Hertz {1e-6 * one['hertz_largest_shear_pa']:.0f} MPa" in text
-    assert "not resolved" in text
+    rows = {name: (value, told) for name, value, told in bodies_rows({"subsurface": table})}
+    for race, pair in (("inner", table[:2]), ("outer", table[2:])):
+        value, told = rows[f"largest shear, {race}"]
+        fewest = min(side[key] for side in pair for key in side if key.startswith("cells_"))
+        assert value == "not resolved" and told.startswith("by this mesh in ball and ring")
+        assert f"{fewest:.2g} elements" in told and f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa" in told
+        assert told.count("MPa") == 1
+    fine = [{**side, "resolved": True} for side in table[:2]]
+    _, (_, value, told) = bodies_rows({"subsurface": fine})
+    assert value == ", ".join(f"{1e-6 * side['largest_shear_pa']:.0f}" for side in fine) + " MPa"
+    assert "not resolved" not in told and told.startswith("ball, ring, ")
+    _, (_, value, told) = bodies_rows({"subsurface": [fine[0], table[1]]})
+    assert value == f"{1e-6 * fine[0]['largest_shear_pa']:.0f} MPa" and "not resolved in ring" in told
+
+
+@pytest.mark.needs("pyvista")
+def test_the_picture_shows_elements_where_the_mesh_is_too_coarse_for_a_fit(result):
+    """Fitted curves would be extrapolated from one element: the stress axis belongs to Hertz's and the elements' values."""
+    from raceway.studies.view.contact_stress import drawn
+
+    sides = below_contacts(result.model.bearing, result.model, result.equilibrium)
+    figure, grid = drawn(result, sides)
+    of_elements = 1e-6 * np.concatenate([grid.cell_data[f"{name} stress [Pa]"] for name in ("von Mises", "largest shear")])
+    panels = [axes for axes in figure.axes if axes.get_title() == "on the contact's normal"]
+    lines = [line for axes in panels for line in axes.lines if line.get_linewidth() == 1.6]
+    assert len(lines) == 2 * len(sides)
+    for line in lines:
+        shown = np.asarray(line.get_xdata())[np.isfinite(line.get_xdata())]
+        assert len(shown) and np.isin(shown, of_elements).all()
+    assert not any(line.get_marker() == "+" for axes in figure.axes for line in axes.lines)
 
 
 def test_cells_near_a_place_have_a_node_there():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import load_scene, scene_from_dict
+from raceway.bodies.mesh_fit import check_sets
 from raceway.bodies.meshing import mesh_scene
 from raceway.errors import MeshError, SceneError
 from raceway.plugins.formats.abaqus import Abaqus
@@ -16,6 +17,7 @@ from raceway.plugins.formats.msh import Msh
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.scene.tables import Supports
 from tests.mesh.solids import write
 from validation.command_line import EXAMPLES
 from validation.cubes import block
@@ -170,6 +172,37 @@ def test_scenes_name_files_beside_them(given, tmp_path):
     ):
         with pytest.raises(SceneError, match=words):
             scene_from_dict({"bearing": {"preset": "B7206C"}, "mesh": mesh})
+
+
+def test_the_file_of_all_balls_is_no_ball(tmp_path):
+    one = block()
+    apart = np.concatenate([one.points, one.points + [0.1, 0.0, 0.0]])
+    both = attrs.evolve(one, points=apart, cells=np.concatenate([one.cells, one.cells + len(one.points)]))
+    Vtu().write(tmp_path / "balls.vtu", both)
+    with pytest.raises(MeshError, match=r"`mesh.ball` = .*2 parts.* file of one ball about its centre: x rolling") as told:
+        File(ball=str(tmp_path / "balls.vtu")).mesh(BEARING)
+    assert told.value.mistake.path == "mesh.ball"
+
+
+def test_elastic_bodies_name_the_file_and_the_set_that_it_lacks(given):
+    ring = {"raceway": "outside", "seat": "outside"}
+    whole = {"inner_ring": ring, "outer_ring": ring, "ball": {"surface": "outside"}}
+
+    def told(lacks, name, **supports):
+        sets = {body: {k: v for k, v in known.items() if (body, k) != (lacks, name)} for body, known in whole.items()}
+        mesher = File(inner_ring=given, outer_ring=given, ball=given, scale=1e-3, sets=sets)
+        check_sets(mesher, mesher.mesh(BEARING), Supports(**supports))
+
+    told("", "")
+    for body, name in (("ball", "surface"), ("inner_ring", "raceway"), ("outer_ring", "seat")):
+        with pytest.raises(MeshError, match=rf"has no (facet|node) set '{name}'.*\[mesh.sets.{body}\] {name} = ") as why:
+            told(body, name)
+        assert (why.value.mistake.path, why.value.mistake.value) == (f"mesh.{body}", given)
+    with pytest.raises(MeshError, match="has no facet set 'seat'"):
+        told("outer_ring", "seat", outer_seat=1e12)
+    rings = File(inner_ring=given, outer_ring=given, scale=1e-3, sets={"inner_ring": ring, "outer_ring": ring})
+    with pytest.raises(MeshError, match="`mesh.ball`.*required with elastic bodies"):
+        check_sets(rings, rings.mesh(BEARING), Supports())
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import attrs
 import numpy as np
 import pytest
 
+from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.superelements import kept
 from raceway.core.elastic.superelements.bearing import touchable
 from raceway.core.elastic.superelements.part import Part
@@ -110,3 +112,16 @@ def test_a_contact_on_nodes_that_are_held_is_said():
     assembly.free = assembly.free[~in_groove[assembly.free]]
     with pytest.raises(MeshError, match="outer_ring: no node of its groove below a contact is free: its seat reaches"):
         system.condensed.increment(1.0, 0.0, 0.0, np.zeros(system.size), np.zeros(3 * system.assembly.nodes), None, 0.0, 0.5)
+
+
+@pytest.mark.parametrize("ring", ["inner", "outer"])
+def test_a_seat_that_takes_in_the_groove_is_refused_before_anything_is_factored(ring, monkeypatch):
+    bearing = built().bearing.bearing
+    meshes = {body.name: mesh for body, mesh in zip(bearing.system.assembly.bodies, bearing._meshes, strict=True)}
+    mesh = meshes[f"{ring}_ring"]
+    seat = np.union1d(mesh.nodes("seat"), mesh.facet_nodes("raceway").ravel())
+    meshes[f"{ring}_ring"] = attrs.evolve(mesh, node_sets={**mesh.node_sets, "seat": seat})
+    monkeypatch.setattr(Part, "of", lambda *given: pytest.fail("factored"))
+    with pytest.raises(MeshError, match=rf"`supports.{ring}_seat`.*none is free.*\[mesh.sets.{ring}_ring\] seat = ") as why:
+        ElasticBearing(meshes, bearing.setup)
+    assert why.value.mistake.value == "rigid"

@@ -12,7 +12,8 @@ from raceway.bodies.basis import Basis, call_plugin, make_basis
 from raceway.bodies.elastic.points import ElasticPoints
 from raceway.bodies.elastic.report import ElasticBodies
 from raceway.bodies.elastic.resultants import ElasticResultants
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.mesh_fit import check_sets
+from raceway.bodies.meshing import mesh_scene, scene_mesher
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid.build import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
@@ -60,7 +61,9 @@ def build(scene: Scene, plan: Plan) -> ElasticBodies:
         compliances = elastic_bodies(attrs.evolve(scene, mesh=None), basis)
         beyond = np.concatenate([compliances.beyond(race, of) for race, of in enumerate(np.split(angles, 2))])
         setup = attrs.evolve(setup, angles=angles, beyond=beyond, params=lambda pair, area: params[pair])
-    bodies = ElasticBearing(mesh_scene(scene), setup)
+    meshes = mesh_scene(scene)
+    check_sets(scene_mesher(scene), meshes, scene.supports)
+    bodies = ElasticBearing(meshes, setup)
     if whole:
         _refuse_stiff_law(scene, basis, bodies)
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}

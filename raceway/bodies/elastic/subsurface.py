@@ -51,11 +51,21 @@ class BelowContact:
         """Largest shear stress [Pa] and its depth [m] by Hertz at the same load."""
         return largest_shear(self.semi_axes, self.peak_pressure, self.poisson)
 
+    @property
+    def cells(self) -> tuple[float, float, float]:
+        """Elements down to Hertz's depth, along the major and along the minor semi-axis of the ellipse."""
+        across, rolling = (float(x) for x in self.semi_axes / self.profile.lengths[0, :2])
+        return self.profile.cells_to(self.hertz[1]), across, rolling
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the mesh resolves the stresses."""
+        return min(self.cells) >= RESOLVED
+
     def table(self) -> Tables:
         """Plain numbers, for result.json."""
         (shear, depth), (hertz, hertz_depth) = self.profile.largest(), self.hertz
-        down = self.profile.cells_to(hertz_depth)
-        across, rolling = (length / cell for length, cell in zip(self.semi_axes, self.profile.lengths[0, :2], strict=True))
+        down, across, rolling = self.cells
         return {
             "race": self.race,
             "body": self.body,
@@ -66,9 +76,9 @@ class BelowContact:
             "hertz_largest_shear_pa": hertz,
             "hertz_depth_m": hertz_depth,
             "cells_to_hertz_depth": down,
-            "cells_per_semi_major": float(across),
-            "cells_per_semi_minor": float(rolling),
-            "resolved": bool(min(down, across, rolling) >= RESOLVED),
+            "cells_per_semi_major": across,
+            "cells_per_semi_minor": rolling,
+            "resolved": self.resolved,
         }
 
 

@@ -54,7 +54,7 @@ def _static(result: ReadTables) -> list[Row]:
     return [
         ("Answer of a static scene", "", "without a table [excitation] there is no K(w), C or orbit to identify"),
         *tangent_rows(result),
-        loaded_ball(result, "most"),
+        *loaded_balls(result, ["most"]),
     ]
 
 
@@ -72,8 +72,16 @@ def tangent_rows(result: ReadTables) -> list[Row]:
     return rows
 
 
-def loaded_ball(result: ReadTables, word: str) -> Row:
-    """The ``most`` or the ``least`` loaded ball, by row and number in its row, with load, azimuth and pressure."""
+def loaded_balls(result: ReadTables, words: Sequence[str]) -> list[Row]:
+    """The ``most`` and the ``least`` loaded ball, each where it is asked for; one row where all balls carry the same."""
+    loads = [ball["load_inner_n"] for ball in result["equilibrium"]["balls"]]
+    if number(min(loads), "N") == number(max(loads), "N") and min(loads) > 0.0:
+        return [_loaded_ball(result, "most", True)] if "most" in words else []
+    return [_loaded_ball(result, word, False) for word in words]
+
+
+def _loaded_ball(result: ReadTables, word: str, alike: bool) -> Row:
+    """By row and number in its row, with load, azimuth and pressure."""
     balls = result["equilibrium"]["balls"]
     pick = max if word == "most" else min
     index, ball = pick(enumerate(balls), key=lambda item: item[1]["load_inner_n"])
@@ -81,6 +89,8 @@ def loaded_ball(result: ReadTables, word: str) -> Row:
     name = f"row {ball['row']}, ball {place}" if "row" in ball else f"ball {place}"
     angle = ball["contact_angle_inner_deg"]
     pressure = f"inner race {_pressure(ball)}, {angle:.2f} deg" if angle is not None else "open"
+    if alike:
+        return "all balls, each", number(ball["load_inner_n"], "N"), pressure
     return f"{word} loaded ball", number(ball["load_inner_n"], "N"), f"{name} at {ball['azimuth_deg']:.4g} deg; {pressure}"
 
 

@@ -7,6 +7,13 @@ from collections.abc import Sequence
 from raceway.commands.screen.text import Row, number
 from raceway.storage.tables import ReadTables
 
+#: Counts of elements at a contact, and where they are counted: four of each resolve its stresses.
+_CELLS = {
+    "cells_to_hertz_depth": "down to Hertz's depth",
+    "cells_per_semi_major": "along the ellipse's major semi-axis",
+    "cells_per_semi_minor": "along the ellipse's minor semi-axis",
+}
+
 
 def bodies_rows(model: ReadTables | None) -> list[Row]:
     """Effect of elasticity, quality of the mesh, and error of the missing inertia; each where the result has it."""
@@ -50,17 +57,26 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
 
 
 def _subsurface(sides: Sequence[ReadTables]) -> list[Row]:
-    """The largest shear stress below the most loaded contact of each race, a row each."""
+    """The largest shear stress below the most loaded contact of each race, a row each; no number that the mesh does not resolve."""
     rows: list[Row] = []
     for race in dict.fromkeys(str(side["race"]) for side in sides):
         pair = [side for side in sides if side["race"] == race]
-        values = ", ".join(f"{1e-6 * side['largest_shear_pa']:.0f}" for side in pair)
-        bodies, depths = ", ".join(side["body"] for side in pair), ", ".join(f"{1e6 * side['depth_m']:.0f}" for side in pair)
-        exact = f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa at {1e6 * pair[0]['hertz_depth_m']:.0f} µm"
-        fewest = min(side["cells_to_hertz_depth"] for side in pair)
-        fine = "resolved" if all(side["resolved"] for side in pair) else "not resolved"
-        told = f"{bodies}, {depths} µm deep; {exact}; {fine}: {fewest:.2g} elements down to it"
-        rows.append((f"largest shear, {race}", f"{values} MPa", told))
+        fine, coarse = ([side for side in pair if bool(side["resolved"]) is wanted] for wanted in (True, False))
+        value = ", ".join(f"{1e-6 * side['largest_shear_pa']:.0f}" for side in fine)
+        told = []
+        if fine:
+            bodies, depths = (
+                ", ".join(side["body"] for side in fine),
+                ", ".join(f"{1e6 * side['depth_m']:.0f}" for side in fine),
+            )
+            told.append(f"{bodies}, {depths} µm deep")
+        if coarse:
+            worst, key = min(((side, key) for side in coarse for key in _CELLS), key=lambda pair: pair[0][pair[1]])
+            bodies = " and ".join(side["body"] for side in coarse)
+            which = "not resolved" if fine else "by this mesh"
+            told.append(f"{which} in {bodies}: {worst[key]:.2g} elements {_CELLS[key]}, not 4")
+        told.append(f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa at {1e6 * pair[0]['hertz_depth_m']:.0f} µm")
+        rows.append((f"largest shear, {race}", f"{value} MPa" if fine else "not resolved", "; ".join(told)))
     return rows
 
 

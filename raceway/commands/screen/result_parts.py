@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from raceway.commands.screen.notes import short
-from raceway.commands.screen.result_answer import loaded_ball, resolved, tangent_rows
+from raceway.commands.screen.result_answer import loaded_balls, resolved, tangent_rows
 from raceway.commands.screen.text import Row, number, tilt_words
 from raceway.framework.shown import read_in
 from raceway.storage.tables import ReadTables
@@ -27,8 +27,7 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
         tilts = ", ".join(_small(moved[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
     rows += _mounted(found)
-    rows += [loaded_ball(result, "most")] if dynamic else []
-    rows.append(loaded_ball(result, "least"))
+    rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
     return rows + (tangent_rows(result) if dynamic else [])
 
 
@@ -158,12 +157,17 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
 def cost_rows(cost: ReadTables) -> list[Row]:
     """Time and memory."""
     memory, threads = cost["peak_memory_bytes"] / 2**20, cost["threads"]
-    kept = "once; kept for the next run" if cost["compile_s"] else "kernels were in the cache"
-    told = f"{cost['steps']} steps, {memory:.0f} MiB, {threads} thread{'' if threads == 1 else 's'}"
+    kept = "kernels were in the cache (raceway cache)"
+    if cost["compile_s"]:
+        kept = "once; kept for the next run (raceway cache)"
+        if not cost.get("compiled_kept", True):
+            kept = "not kept: the cache cannot be written; the next run compiles again"
+    processor = f"{number(cost['cpu_s'], 'CPU-s', 3)}, " if "cpu_s" in cost else ""
+    told = f"{processor}{cost['steps']} steps, {memory:.0f} MiB, {threads} thread{'' if threads == 1 else 's'}"
     return [
         ("Cost", "", ""),
         ("wall time", number(cost["wall_s"], "s", 3), told),
-        ("compiling, apart", number(cost["compile_s"], "s", 3), f"{kept} (raceway cache)"),
+        ("compiling, apart", number(cost["compile_s"], "s", 3), kept),
     ]
 
 

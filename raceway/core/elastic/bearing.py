@@ -13,8 +13,9 @@ from raceway.core.elastic.body import Body, Frame
 from raceway.core.elastic.cage import NAMES, SHARE, Cage, cage_rows, cage_stiffness
 from raceway.core.elastic.contacts.gap import CIRCLE
 from raceway.core.elastic.contacts.nodal import NodalContact
-from raceway.core.elastic.equal_parts import equal_parts
+from raceway.core.elastic.equal_parts import equal_parts, free_nodes
 from raceway.core.elastic.stepped import Seen
+from raceway.core.elastic.superelements.bearing import touchable
 from raceway.core.elastic.superelements.solver import CondensedSolver
 from raceway.core.elastic.system import ElasticSystem
 from raceway.core.elastic.touching import nodal_contact, resultant_contact
@@ -62,6 +63,7 @@ class ElasticBearing:
         load[:5] += setup.load
         condensed = None
         if isinstance(contact, NodalContact):
+            _refuse_held_grooves(assembly, touchable(contact, assembly.nodes), (setup.seat_inner, setup.seat_outer))
             condensed = CondensedSolver(assembly, contact)
         self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed=condensed)
 
@@ -163,3 +165,16 @@ class ElasticBearing:
         shape = (4 * len(s.azimuth), 3 * assembly.nodes)
         matrix = coo_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
         return Cage(matrix, np.tile(springs, len(s.azimuth)), tuple(names), nodal)
+
+
+def _refuse_held_grooves(assembly: Assembly, under: np.ndarray, seats: tuple[float | str, float | str]) -> None:
+    """Rings without any free node among those that contacts may touch, ``under`` (nodes,) bool, before anything is factored."""
+    for index, (name, seat) in enumerate(zip(("inner", "outer"), seats, strict=True)):
+        groove = under[assembly.starts[index] : assembly.starts[index + 1]]
+        if groove.any() and not (groove & free_nodes(assembly, index)).any():
+            raise MeshError.at(
+                f"supports.{name}_seat",
+                seat,
+                f"it holds the set 'seat' of the {name} ring, and that has every node of the groove below the contacts: none is free. "
+                f'Take the groove out of the set in mesh.{name}_ring, or name the right one: [mesh.sets.{name}_ring] seat = "..."',
+            )

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from raceway.scene.tables import Bearing
 
 BODIES = ("inner_ring", "outer_ring", "ball")
+BALL = "file of one ball about its centre: x rolling, y across, z towards the outer contact"
 
 
 def ring_path(which: str) -> Any:
@@ -25,8 +26,7 @@ def ring_path(which: str) -> Any:
 
 def ball_path() -> Any:
     """The option that names the file of one ball, from which all are made."""
-    words = "file of one ball about its centre: x rolling, y across, z towards the outer contact"
-    return option(None, help=words, path=True)
+    return option(None, help=BALL, path=True)
 
 
 def file_unit(words: str) -> Any:

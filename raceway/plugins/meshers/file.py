@@ -12,6 +12,7 @@ from raceway.errors import MeshError, PluginError
 from raceway.framework.options import nearest, option
 from raceway.framework.sources import blamed
 from raceway.plugins.meshers._bodies import (
+    BALL,
     BODIES,
     ball_path,
     bodies,
@@ -84,7 +85,12 @@ class File:
                 raise MeshError(f"'{path}': {kind} set '{empty[0]}' is empty")
         mesh = attrs.evolve(mesh, points=self.scale * mesh.points, node_sets=nodes, facet_sets=facets)
         refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
-        refuse_doubled(mesh, f"{body} ({Path(path).name})")
+        try:
+            refuse_doubled(mesh, f"{body} ({Path(path).name})")
+        except MeshError as why:
+            if body != "ball":
+                raise
+            raise MeshError.at(f"mesh.{body}", path, f"{why}. It must be the {BALL}; copies are placed") from why
         return with_node_sets(mesh.renumbered())
 
 

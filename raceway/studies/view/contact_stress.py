@@ -63,11 +63,11 @@ def drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Any]:
         for row, (pair, (polygons, values)) in enumerate(zip(races, cuts, strict=True)):
             _draw(panels[row, column], pair, polygons, values[column], top, name)
     for row, pair in enumerate(races):
-        _along_the_normal(panels[row, 2], pair)
-    figure.suptitle(
-        f"{result.title}\nplane of the rolling direction and the contact's normal; ball above, ring below; + largest shear stress on the normal",
-        fontsize=12,
-    )
+        _along_the_normal(panels[row, 2], pair, grid)
+    told = "plane of the rolling direction and the contact's normal; ball above, ring below"
+    if any(side.resolved for side in sides):
+        told += "; + largest shear stress on the normal"
+    figure.suptitle(f"{result.title}\n{told}", fontsize=12)
     return figure, grid
 
 
@@ -128,36 +128,48 @@ def _draw(
         axes.axhline(depth, color=_MARK, linewidth=0.9, linestyle="--")
         up = "bottom" if sign > 0.0 else "top"
         axes.text(-0.97 * wide, depth, f"Hertz {abs(depth):.3g} µm", color=_MARK, va=up, fontsize=9)
-        axes.plot(0.0, sign * _UM * side.profile.largest()[1], "+", color=_MARK, markersize=9)
+        if side.resolved:
+            axes.plot(0.0, sign * _UM * side.profile.largest()[1], "+", color=_MARK, markersize=9)
     axes.figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
     axes.set_xlim(-wide, wide)
     axes.set_ylim(-wide, wide)
     axes.set_aspect("equal")
     axes.set_xlabel("rolling direction [µm]")
-    axes.set_ylabel("into the ball [µm]")
+    _depth_axis(axes)
     one = pair[0]
     axes.set_title(f"{name}\n{one.race} race, ball {one.ball}, {one.load:.4g} N", fontsize=11)
 
 
-def _along_the_normal(axes: Axes, pair: list[BelowContact]) -> None:
-    """Stresses on the contact's normal beside Hertz's at the same load."""
+def _depth_axis(axes: Axes) -> None:
+    """Depths below both surfaces, counted from where they touch."""
+    axes.yaxis.set_major_formatter(lambda height, _: f"{abs(height):g}")
+    axes.set_ylabel("depth: in ring ↓  in ball ↑ [µm]")
+
+
+def _along_the_normal(axes: Axes, pair: list[BelowContact], grid: Any) -> None:
+    """Stresses on the contact's normal beside Hertz's at the same load: fitted where the mesh resolves them, else of its elements."""
     for side, sign in zip(pair, (1.0, -1.0), strict=False):
-        depth, told = side.profile.depth, sign > 0.0
-        height = sign * _UM * depth
+        profile, told = side.profile, sign > 0.0
+        depth = profile.depth
         exact = axis_stresses(depth, side.semi_axes, side.peak_pressure, side.poisson)
         full = np.concatenate([exact, np.zeros_like(exact)], axis=1)
         shear = axis_shear(depth, side.semi_axes, side.peak_pressure, side.poisson)
+        # Above the first element's centre the fit extrapolates.
+        inside = depth >= (0.5 * profile.lengths[0, 2] if side.resolved else 0.0)
+        found = np.stack([profile.von_mises, profile.shear]) if side.resolved else _elements_on(side, grid)
         for values, hertz, colour, word in (
-            (side.profile.von_mises, von_mises(full), "#b5651d", "von Mises"),
-            (side.profile.shear, shear, "#0b5fa5", "largest shear"),
+            (found[0], von_mises(full), "#b5651d", "von Mises"),
+            (found[1], shear, "#0b5fa5", "largest shear"),
         ):
-            axes.plot(_MPA * values, height, color=colour, linewidth=1.6, label=f"{word}, mesh" if told else None)
-            axes.plot(
-                _MPA * hertz, height, color=colour, linewidth=1.0, linestyle="--", label=f"{word}, Hertz" if told else None
-            )
-        found, at = side.profile.largest()
-        resolved = "resolved" if side.table()["resolved"] else "not resolved by the mesh"
-        words = f"{side.body}: {_MPA * found:.4g} MPa at {_UM * at:.3g} µm\nHertz {_MPA * side.hertz[0]:.4g} at {_UM * side.hertz[1]:.3g}\n{resolved}"
+            mesh, theory = (f"{word}, mesh", f"{word}, Hertz") if told else (None, None)
+            axes.plot(_MPA * values[inside], sign * _UM * depth[inside], color=colour, linewidth=1.6, label=mesh)
+            axes.plot(_MPA * hertz, sign * _UM * depth, color=colour, linewidth=1.0, linestyle="--", label=theory)
+        words = f"Hertz {_MPA * side.hertz[0]:.4g} MPa at {_UM * side.hertz[1]:.3g} µm"
+        if side.resolved:
+            size, at = profile.largest()
+            words = f"{side.body}: {_MPA * size:.4g} MPa at {_UM * at:.3g} µm\n{words}"
+        else:
+            words = f"{side.body}: not resolved by this mesh;\nsteps are its elements\n{words}"
         axes.text(
             0.97,
             0.98 if told else 0.02,
@@ -172,5 +184,15 @@ def _along_the_normal(axes: Axes, pair: list[BelowContact]) -> None:
     axes.set_ylim(-wide, wide)
     axes.set_xlim(0.0, 1.9 * axes.get_xlim()[1])  # room for words
     axes.set_xlabel("MPa")
+    _depth_axis(axes)
     axes.set_title("on the contact's normal", fontsize=11)
     axes.legend(fontsize=8, loc="center right")
+
+
+def _elements_on(side: BelowContact, grid: Any) -> np.ndarray:
+    """(2, n) von Mises and largest shear stresses [Pa] of the elements at the depths of the profile, nan outside of all."""
+    places = side.axis.at_depth(side.profile.depth) + _BESIDE * np.asarray(side.semi_axes) @ side.axis.axes[:2]
+    body = grid.extract_cells(grid.cell_data["body"] == side.index)
+    cell = np.atleast_1d(body.find_containing_cell(places))
+    names = "von Mises stress [Pa]", "largest shear stress [Pa]"
+    return np.stack([np.where(cell < 0, np.nan, body.cell_data[name][cell]) for name in names])

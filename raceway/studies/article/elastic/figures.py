@@ -98,12 +98,12 @@ def _draw_loads(case: str, rows: list[Tables], axes: Axes) -> None:
         order = np.argsort(azimuth)
         axes.plot(azimuth[order], np.array(_loads(row))[order], mark, color=colour, fillstyle="none", markersize=6,
                   linestyle="-", linewidth=0.8, label=row["bodies"])  # fmt: skip
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.08 * max(max(_loads(row)) for row in rows))
     finish(axes, case, "azimuth [deg]", "ball load [N]", 3)
 
 
 def _stiffness(rows: list[Tables]) -> Picture:
-    parts = (("k", "K", 1e-6, "10⁶ N/m"), ("abs_z", "|Z|", 1e-6, "10⁶ N/m"), ("c", "C", 1.0, "N s/m"))
+    parts = (("k", "K", 1e-6, "N/µm"), ("abs_z", "|Z|", 1e-6, "N/µm"), ("c", "C", 1.0, "N s/m"))
     panels = []
     for key, name, unit, word in parts:
         told = "; ".join(f"{row['case']}, {row['bodies']} {unit * row['identified'][key]:.4g}" for row in rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,7 @@ def write(study: ElasticArticle, folder: Path, pictures: bool, command: str) -> 
     """
     content = study.to_dict()
     files = [write_json(content, folder / "article-elastic.json")]
-    files.append(write_csv([flat(row) for row in content["rows"]], folder / "article-elastic.csv"))
+    files.append(write_csv(_columns(content["rows"]), folder / "article-elastic.csv"))
     if pictures:
         drawn = all_pictures(content)
         files += save_pictures(drawn, folder)
@@ -36,6 +37,13 @@ def write(study: ElasticArticle, folder: Path, pictures: bool, command: str) -> 
         section = next((file.read_bytes() for file in stress if file.suffix == ".png"), None)
         files.insert(0, page(content, drawn, section, command).write(folder / "article-elastic.html"))
     return files
+
+
+def _columns(rows: Sequence[ReadTables]) -> list[Tables]:
+    """Flat rows without what is a table in other rows: its own columns stay empty where there is none."""
+    found = [flat(row) for row in rows]
+    inner = {name.rpartition(".")[0] for row in found for name in row}
+    return [{name: value for name, value in row.items() if name not in inner} for row in found]
 
 
 def flat(table: ReadTables, before: str = "") -> Tables:

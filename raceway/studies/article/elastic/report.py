@@ -110,16 +110,21 @@ def _pressures(out: Page, rows: list[Tables], drawn: dict[str, Picture]) -> None
         for race in RACES:
             found = (row.get("from_hertz") or {}).get(race)
             if found is not None:
-                lines.append([row["case"], row["bodies"], race, f"{found['load_n']:.1f}", f"{1e-6 * found['peak_pressure_pa']:.1f}",
+                lines.append([_case(row), row["bodies"], race, f"{found['load_n']:.1f}", f"{1e-6 * found['peak_pressure_pa']:.1f}",
                               f"{1e-6 * found['hertz_peak_pressure_pa']:.1f}", per_cent(found["most_loaded"]), _judged(found["largest"])])  # fmt: skip
-    columns = ["load", "bodies", "race", "ball load N", "peak MPa", "Hertz MPa", "most loaded ball", "largest of all"]
-    out.table(columns, lines, "Peak pressures against exact Hertz")
+    columns = ["load", "bodies", "race", "ball load N", "peak MPa", "Hertz MPa", "off Hertz", "most off, any ball"]
+    out.table(columns, lines, "Peak pressures against exact Hertz at the most loaded ball; last column: of all loaded balls")
     _picture(out, drawn, "article-elastic-pressures")
+
+
+def _case(row: ReadTables) -> str:
+    """The load case, broken between two loads or words of a force only: a narrow screen has a line for each."""
+    return str(row["case"]).replace(" N ", "\u00a0N\u00a0")
 
 
 def _judged(off: float) -> Cell:
     within = abs(off) <= ARTICLE_DEVIATION
-    return Cell(per_cent(off), "good" if within else "bad", "" if within else "above the article’s 2.42 %")
+    return Cell(per_cent(off), "good" if within else "bad", "" if within else "beyond the article’s 2.42 %")
 
 
 def _at_rest(out: Page, rows: list[Tables], reference: str, drawn: dict[str, Picture]) -> None:
@@ -128,7 +133,7 @@ def _at_rest(out: Page, rows: list[Tables], reference: str, drawn: dict[str, Pic
     for row in rows:
         if row["status"] == "completed":
             where, other = row["displacement"], row[f"from_{reference}"] or {}
-            lines.append([row["case"], row["bodies"], f"{1e6 * where['x']:.4f}", f"{1e6 * where['y']:.4f}".replace("-0.0000", "0.0000"), f"{1e-6 * row['kyy_n_per_m']:.2f}",
+            lines.append([_case(row), row["bodies"], f"{1e6 * where['x']:.4f}", f"{1e6 * where['y']:.4f}".replace("-0.0000", "0.0000"), f"{1e-6 * row['kyy_n_per_m']:.2f}",
                           *(per_cent(other.get(name)) for name in ("ball_loads", "x", "y", "kyy"))])  # fmt: skip
     columns = ["load", "bodies", "x µm", "y µm", "kyy N/µm", "ball loads", "x", "y", "kyy"]
     out.table(columns, lines, f"Displacements and stiffness; the last four columns are differences from {reference} bodies, ball loads over the largest")  # fmt: skip
@@ -145,11 +150,16 @@ def _motion(out: Page, rows: list[Tables], content: ReadTables, drawn: dict[str,
         "unbalance, turning with the rotor. The balance of energy is its drift over what was exchanged; stability is what result.json "
         "states: Floquet multipliers belong to steady orbits, which friction does not have."
     )
+    if content["turns"] == 1:
+        out.text(
+            "One turn only: how much of K and C is the transient of the start is not known, and C may be little else. Take `--turns 2`.",
+            kind="note",
+        )
     lines = []
     for row in rows:
         if row["status"] == "completed":
             found, other, state = row["identified"], row[f"from_{content['reference']}"] or {}, row["stability"]
-            lines.append([row["case"], row["bodies"], f"{1e-6 * found['k']:.3f}", f"{found['c']:.0f}", f"{1e-6 * found['abs_z']:.3f}",
+            lines.append([_case(row), row["bodies"], f"{1e-6 * found['k']:.3f}", f"{found['c']:.0f}", f"{1e-6 * found['abs_z']:.3f}",
                           *(per_cent(other.get(name)) for name in ("k", "c", "wc", "abs_z")),
                           _small(row["energy_balance"]), _small(row["error"]["transient"]), state["status"]])  # fmt: skip
     columns = [
@@ -173,15 +183,22 @@ def _motion(out: Page, rows: list[Tables], content: ReadTables, drawn: dict[str,
 def _stresses(out: Page, rows: list[Tables], section: bytes | None) -> None:
     out.section("Stresses below the most loaded contact")
     out.text(
-        "The largest shear stress on the contact’s normal, in ball and ring, and its depth, beside Hertz’s at the same load."
+        "The largest shear stress on the contact’s normal, in ball and ring, and its depth, beside Hertz’s at the same load. Not resolved: "
+        "fewer than four elements down to Hertz’s depth or along a semi-axis of the ellipse."
     )
     lines = []
     for row in rows:
         for one in row.get("below_contact") or []:
-            lines.append([row["case"], one["race"], one["body"], f"{1e-6 * one['largest_shear_pa']:.1f}", f"{1e-6 * one['hertz_largest_shear_pa']:.1f}",
-                          per_cent(one["shear_deviation"]), f"{1e6 * one['depth_m']:.1f}", f"{1e6 * one['hertz_depth_m']:.1f}",
-                          per_cent(one["depth_deviation"]), "yes" if one["resolved"] else "no"])  # fmt: skip
-    columns = ["load", "race", "body", "shear MPa", "Hertz MPa", "off", "depth µm", "Hertz µm", "off", "mesh resolves it"]
+            found = [
+                f"{1e-6 * one['largest_shear_pa']:.1f}",
+                per_cent(one["shear_deviation"]),
+                f"{1e6 * one['depth_m']:.1f}",
+                per_cent(one["depth_deviation"]),
+            ]
+            shear, more, depth, deeper = found if one["resolved"] else ("not resolved", "", "", "")
+            lines.append([_case(row), one["race"], one["body"], shear, f"{1e-6 * one['hertz_largest_shear_pa']:.1f}", more,
+                          depth, f"{1e6 * one['hertz_depth_m']:.1f}", deeper, f"{one['cells_to_hertz_depth']:.1f}"])  # fmt: skip
+    columns = ["load", "race", "body", "shear MPa", "Hertz MPa", "off", "depth µm", "Hertz µm", "off", "elements down to it"]
     out.table(columns, lines, "Elastic bodies: largest shear stress and its depth")
     if section is not None:
         alternative = (
@@ -203,7 +220,7 @@ def _cost(out: Page, content: ReadTables) -> None:
     for row in content["rows"]:
         cost = row["cost"]
         state = Cell("completed", "good") if row["status"] == "completed" else Cell(row["status"], "failed", row["reason"])
-        lines.append([row["case"], row["bodies"], _count(cost["elements"]), f"{cost['cpu_s']:.1f}", f"{cost['compile_s']:.1f}", f"{cost['wall_s']:.1f}",
+        lines.append([_case(row), row["bodies"], _count(cost["elements"]), f"{cost['cpu_s']:.1f}", f"{cost['compile_s']:.1f}", f"{cost['wall_s']:.1f}",
                       gib(cost), _count(cost["steps"]), _count(cost["newton_iterations"]), state])  # fmt: skip
     columns = ["run", "bodies", "elements", "CPU s", "and compiling s", "wall s", "peak GiB", "steps", "iterations", ""]
     out.table(columns, lines, "Every run; elements of condensed bodies are none of the run")
@@ -216,7 +233,7 @@ def _cost(out: Page, content: ReadTables) -> None:
 def _differences(out: Page, content: ReadTables) -> None:
     out.section("What differs between the bodies")
     out.listing(content["what_differs"])
-    warned = [[row["case"], row["bodies"], words] for row in content["rows"] for words in row.get("warnings") or []]
+    warned = [[_case(row), row["bodies"], words] for row in content["rows"] for words in row.get("warnings") or []]
     if warned:
         out.table(["run", "bodies", "warning"], warned, "Warnings of the runs")
 

@@ -163,7 +163,8 @@ def elastic_article(
     drawn = _drawn(runs)
 
     def compute(place: int, registry: Registry) -> Tables:
-        told.begin(place, runs[place].name)
+        run = runs[place]
+        told.begin(place, f"{run.bodies} {'at rest' if run.excitation is None else 'in motion'}", run.case)
         return row_of(scenes[place], registry, told, folder if place == drawn else None)
 
     items = [Item(key, run.name, place) for place, (key, run) in enumerate(zip(keys, runs, strict=True))]

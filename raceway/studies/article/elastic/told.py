@@ -11,6 +11,8 @@ OnProgress = Callable[[str, int, int], None]
 class Told:
     """Tells what one run does, how far it is, and when all of them will end as far as plans and the runs before know.
 
+    A run that takes longer than planned leaves the end unknown.
+
     Parameters
     ----------
     seconds : predicted time by number of every run that is to be made, in their order [s]
@@ -21,33 +23,32 @@ class Told:
     def __init__(self, seconds: Mapping[int, float], kinds: Mapping[int, Hashable], on_progress: OnProgress | None) -> None:
         self._seconds, self._kinds, self._tell = dict(seconds), kinds, on_progress
         self._place, self._name, self._begun = -1, "", time.monotonic()
+        self._order = {place: k for k, place in enumerate(self._seconds, 1)}
 
-    def begin(self, place: int, name: str) -> None:
-        """A run starts, and the one before has ended."""
+    def begin(self, place: int, name: str, case: str) -> None:
+        """A run starts, and the one before has ended; its ``case`` is told once, its short ``name`` with all that it does."""
         if self._place in self._seconds:
             taken = self._seconds[self._place] = time.monotonic() - self._begun
             for later in self._seconds:
                 if later > self._place and self._kinds[later] == self._kinds[self._place]:
                     self._seconds[later] = min(self._seconds[later], taken)
         self._place, self._name, self._begun = place, name, time.monotonic()
-        self("starting", 0, 0)
+        self(case, 0, 0)
 
     def __call__(self, what: str, done: int, total: int) -> None:
         """Told by the run: ``what`` is done, ``done`` of ``total``, 0 where nobody knows how many."""
         if self._tell is None:
             return
-        planned = self._seconds[self._place]
-        gone = sum(s for place, s in self._seconds.items() if place < self._place) + min(
-            time.monotonic() - self._begun, planned
-        )
+        planned, taken = self._seconds[self._place], time.monotonic() - self._begun
+        gone = sum(s for place, s in self._seconds.items() if place < self._place) + min(taken, planned)
         whole = sum(self._seconds.values())
+        left = "end unknown" if taken > planned else _words(whole - gone)
         far = f" {done} of {total}" if total else ""
-        # The time comes before what is done: a terminal cuts long lines.
-        self._tell(f"{self._name} ({_words(whole - gone)}): {what}{far}", round(gone), round(whole))
+        # A terminal cuts what is longer than 76 characters: the time first, then what is done.
+        run = f"run {self._order[self._place]} of {len(self._order)}"
+        self._tell(f"{run}: {left}, {self._name}: {what}{far}", round(gone), round(whole))
 
 
 def _words(left: float) -> str:
     """Seconds that are left, in words."""
-    if left < 90.0:
-        return f"all runs: some {left:.0f} s left"
-    return f"all runs: some {left / 60.0:.0f} min left"
+    return f"{left:.0f} s left" if left < 90.0 else f"{left / 60.0:.0f} min left"
