@@ -89,7 +89,7 @@ def three_kernels() -> list[float]:
 def run_of(tables: dict[str, Any]) -> list[float]:
     """Tangent and dynamic stiffness of a scene."""
     from raceway.pipeline.run import run
-    from raceway.scene.file import scene_from_dict
+    from raceway.scene.reading import scene_from_dict
 
     result = run(scene_from_dict(tables))
     found = [float(value) for value in np.ravel(result.to_dict()["equilibrium"]["stiffness"])]

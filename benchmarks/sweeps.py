@@ -20,7 +20,9 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
 from raceway.plugins.executors.serial import Serial
-from raceway.scene.file import load_scene, read_toml, scene_from_dict, with_value
+from raceway.scene.changes import with_value
+from raceway.scene.file import load_scene, read_toml
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.many.points import tables_at
 from raceway.studies.sweep import grid, open_store, prepare
 from raceway.studies.sweep import sweep as study

@@ -31,7 +31,7 @@ from raceway.commands.frame import (
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
 
 if TYPE_CHECKING:
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
 
 #: Commands that are imported when they are asked for: module, where the command has the name of its words, and short help.

@@ -7,7 +7,7 @@ import pytest
 
 from raceway.pipeline.ball_pass import ball_pass
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 
 
 def test_a_bearing_of_a_public_data_set_has_the_printed_frequencies():

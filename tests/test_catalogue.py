@@ -10,10 +10,10 @@ import pytest
 
 from raceway.errors import SceneError
 from raceway.pipeline.run import run
+from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
-from raceway.scene.file import scene_from_dict
 from raceway.scene.growth import grooves
-from raceway.scene.tables import Bearing
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.infer.printed import printed_by
 
 POUND = 4.4482216152605

@@ -12,7 +12,7 @@ import pytest
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.compare import study
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row

@@ -15,8 +15,7 @@ import pytest
 
 import raceway
 from raceway import scene_from_dict
-from raceway.scene.file import STUDY_TABLES
-from raceway.scene.tables import TABLES
+from raceway.scene.tables import STUDY_TABLES, TABLES
 from tests.snippets import PAGES, ROOT, Listing, anchors, links, listings
 
 _ENVIRONMENT = "makes a virtual environment"

@@ -19,7 +19,7 @@ from raceway.pipeline.allowance import Allowance
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.scene.unused import unused
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.

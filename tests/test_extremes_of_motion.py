@@ -9,7 +9,7 @@ from raceway.errors import StabilityError
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 #: A force that lifts balls off and presses others with many times the preload.

@@ -10,7 +10,8 @@ import raceway as rw
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.scene.continuous import with_number
-from raceway.scene.file import load_scene, rig_of
+from raceway.scene.file import load_scene
+from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
 from raceway.studies.fit.estimate import estimate, judged
 from raceway.studies.fit.free import Free, free_keys

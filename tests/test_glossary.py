@@ -9,9 +9,8 @@ import pytest
 from raceway import load_scene
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
-from raceway.scene.file import PLUGIN_TABLES
 from raceway.scene.schema import keys
-from raceway.scene.tables import TABLES
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from validation.command_line import ARTICLE
 
 DOCS = Path(__file__).parents[1] / "docs"

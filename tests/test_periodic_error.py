@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 

@@ -13,7 +13,7 @@ from raceway.framework.options import nearest
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import _stride
 from raceway.planning.recording import samples_per_turn
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from validation.command_line import EXAMPLES
 from validation.tables import b7206c
 

@@ -13,7 +13,8 @@ from raceway.framework.registry import default_registry
 from raceway.pipeline.error.free_vibration import hann_line
 from raceway.pipeline.motion import peak
 from raceway.pipeline.run import run
-from raceway.scene.file import read_toml, scene_from_dict
+from raceway.scene.file import read_toml
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.many.measured_run import measured
 from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.precision import study as module

@@ -5,7 +5,7 @@ import pytest
 
 from raceway.bodies.pressure import approach_at
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 
 STIFFNESS = 1e15
 

@@ -14,7 +14,7 @@ from raceway.errors import PluginError
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 

@@ -20,7 +20,7 @@ from raceway.errors import PluginError
 from raceway.integrators.newmark import Newmark
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.stability.systems import BASE
 
 SIX = np.zeros((6, 2))

@@ -24,7 +24,7 @@ from raceway.pipeline.run import run
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.joblib import Joblib
 from raceway.plugins.executors.serial import Serial
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.many.axes import parse_axes, points
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.work import Work

@@ -10,7 +10,9 @@ from raceway.commands.inputs import slug
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
 from raceway.plugins.reports.pictures import ball_loads
-from raceway.scene.file import load_scene, parse_change, scene_from_dict, titled
+from raceway.scene.changes import parse_change, titled
+from raceway.scene.file import load_scene
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.many.page import Page
 from raceway.studies.many.row_store import row_key
 from raceway.studies.sweep.selection import select

@@ -12,7 +12,8 @@ import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
-from raceway.scene.file import load_scene, rig_of
+from raceway.scene.file import load_scene
+from raceway.scene.reading import rig_of
 from raceway.studies.ross.installed import ross
 from raceway.studies.shaft.beam import Beam
 from raceway.studies.shaft.rotor import rotor, shaft

@@ -23,10 +23,9 @@ from typing import Any
 import attrs
 
 from raceway.framework.registry import Registry
-from raceway.scene.file import STUDY_TABLES
 from raceway.scene.schema import keys
 from raceway.scene.structure import table_of_list
-from raceway.scene.tables import TABLES
+from raceway.scene.tables import STUDY_TABLES, TABLES
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENE = ROOT / "docs" / "scene.md"
@@ -55,7 +54,7 @@ products, quotients and powers are written as `N s/m`, `kg m2` or `N/mm^3`. In P
 
 `raceway check SCENE` validates, `raceway schema` prints the same declarations as a JSON schema for editors, `--set
 table.key=value` changes one key for one run. Made by `python -m benchmarks.documents` from the declarations in
-`raceway/scene/tables.py` and in the plug-ins; do not edit by hand.
+`raceway/scene/bearing.py`, `raceway/scene/tables.py` and in the plug-ins; do not edit by hand.
 
 `raceway new-scene` writes a scene with comments to start from.
 

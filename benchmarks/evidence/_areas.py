@@ -35,8 +35,8 @@ AREAS = {
     "kernels": "core/jit core/signatures framework/plugin_kernel storage/kernel_files",
     "plan": "framework/probe pipeline/allowance planning",
     "scene": """
-        framework/options planning/implausible scene/__init__ scene/catalogue scene/file scene/given scene/requires scene/structure
-        scene/sets scene/tables scene/units scene/unused""",
+        framework/options planning/implausible scene/__init__ scene/catalogue scene/bearing scene/changes scene/file scene/given scene/presets scene/reading scene/requires scene/structure
+        scene/scene scene/sets scene/tables scene/units scene/unused""",
     "gradients": "pipeline/gradient scene/continuous studies/sensitivities",
     "band": "scene/tolerance studies/band",
     "article": "studies/article data/article",

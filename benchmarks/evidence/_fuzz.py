@@ -29,7 +29,7 @@ from raceway.planning.implausible import foreseen, implausible
 from raceway.planning.plan import Plan, make_plan
 from raceway.planning.recording import predicted_steps_per_turn, record_bytes
 from raceway.planning.wall_time import START_S
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Processor time [s] in which a scene is checked and planned, and run; and wall time that nothing may sleep through.
 CHECK_S, RUN_S, ASLEEP_S = 10.0, 60.0, 300.0

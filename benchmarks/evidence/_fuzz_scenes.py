@@ -9,7 +9,7 @@ from typing import Any
 
 from benchmarks.evidence._random_scenes import GARBAGE, Chance, Tables, plausible
 from raceway.framework.registry import default_registry
-from raceway.scene.file import PLUGIN_TABLES
+from raceway.scene.tables import PLUGIN_TABLES
 
 #: What takes the place of a number, beside ``GARBAGE``.
 EXTREME: tuple[Any, ...] = (

@@ -19,7 +19,7 @@ import attrs
 from benchmarks.evidence import Row, below
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.article.curves import ROTATING
 from raceway.studies.article.design import (
     FRICTION_ERROR,

@@ -19,7 +19,7 @@ from raceway.bodies.model import build_model
 from raceway.errors import RacewayError
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage import array_cache
 
 TITLE = "Error against cost on one scene: B7206C, 1000 N axial, 500 N radial, tilt locked"

@@ -10,8 +10,8 @@ from raceway import load_scene
 from raceway.bodies.condensed.kind import Condensed
 from raceway.bodies.meshing import mesh_scene
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import radial_growth, ring_inertia
+from raceway.scene.reading import scene_from_dict
 from validation.reference.rotating_ring import growth_by_elements
 
 TITLE = "Single numbers: pressure of a penalty, sticking, the inner ring as a solid, the elastic example"

@@ -19,7 +19,7 @@ from raceway.bodies.model import Model, build_model
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 
 TITLE = "Elastic bodies: coarse meshes with the calibrated law"
 COMMAND = "python -m benchmarks.evidence elastic_resultants"

@@ -15,9 +15,10 @@ from raceway.framework.registry import default_registry
 from raceway.front.evolve import evolve
 from raceway.front.run import run
 from raceway.scene.continuous import with_number
-from raceway.scene.file import load_scene, rig_of
+from raceway.scene.file import load_scene
+from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.studies.fit.front import fit
 from raceway.studies.measured.front import identify
 from raceway.studies.measured.recording import write_recording

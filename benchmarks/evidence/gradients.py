@@ -21,7 +21,8 @@ from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.catalogue import single_presets
 from raceway.scene.continuous import continuous_keys, with_number
-from raceway.scene.file import load_scene, scene_from_dict
+from raceway.scene.file import load_scene
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.sensitivities.front import sensitivities
 from raceway.studies.sensitivities.sensitivities import sensitivities_of
 

@@ -13,7 +13,8 @@ from benchmarks.evidence import Row
 from benchmarks.evidence._intervals import width as width_row
 from raceway.errors import RacewayError
 from raceway.framework.registry import default_registry
-from raceway.scene.file import load_scene, rig_of
+from raceway.scene.file import load_scene
+from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.inversion import values

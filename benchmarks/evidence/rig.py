@@ -16,9 +16,10 @@ from benchmarks.evidence import Row, below
 from benchmarks.evidence._intervals import width
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
-from raceway.scene.file import load_scene, rig_of
+from raceway.scene.file import load_scene
+from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig, Signals
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.studies.measured.from_files import from_files
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.recording import Recording, write_recording

@@ -8,7 +8,8 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from raceway.pipeline.run import run
-from raceway.scene.file import load_scene, scene_from_dict
+from raceway.scene.file import load_scene
+from raceway.scene.reading import scene_from_dict
 from validation.reference.mounted import FORCE, approach, axial, row, secant
 
 TITLE = "What the running speed changes: preload, held displacements, run-ups, fits over whirl speeds"

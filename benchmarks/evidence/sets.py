@@ -12,7 +12,7 @@ from raceway import RacewayError, build_model, make_plan, run, scene_from_dict
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import preload_table
 from raceway.pipeline.settle import settle
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 from raceway.studies.limits.study import AxialLimits, axial_limits
 from validation.reference.ring import Ring

@@ -20,7 +20,7 @@ from raceway.planning.closed_form import axial_approach
 from raceway.planning.plan import Plan
 from raceway.scene.growth import grooves, speed_growth
 from raceway.scene.inner_ring import ring_inertia
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 

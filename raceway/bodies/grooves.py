@@ -8,7 +8,7 @@ from raceway.bodies.basis import Basis
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError
 from raceway.scene.inner_ring import groove_depth, load_at_edge, shoulder_height
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 
 def contact_angles(

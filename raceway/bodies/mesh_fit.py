@@ -14,7 +14,10 @@ from raceway.errors import MeshError
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.framework.contracts import Mesher
-    from raceway.scene.tables import Bearing, Supports
+    from raceway.scene.bearing import Bearing
+
+    #: Larger or smaller by more than this is another unit (inches for millimetres are 25), not another bearing.
+    from raceway.scene.tables import Supports
 
 #: Larger or smaller by more than this is another unit (inches for millimetres are 25), not another bearing.
 _OTHER_UNIT = 5.0

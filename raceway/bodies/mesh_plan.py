@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from raceway.bodies.meshing import scene_mesher
 from raceway.errors import MeshError, Mistake, PluginError
 from raceway.framework.sources import blamed
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

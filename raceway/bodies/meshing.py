@@ -11,7 +11,7 @@ from raceway.bodies.mesh_fit import check_size
 from raceway.errors import MeshError, PluginError, SceneError
 from raceway.framework.sources import blamed
 from raceway.planning.closed_form import axial_approach
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh

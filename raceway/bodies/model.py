@@ -24,7 +24,7 @@ from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import bodies, traits_of
 from raceway.planning.plan import Plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

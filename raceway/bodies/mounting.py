@@ -20,7 +20,7 @@ from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
 from raceway.planning.recording import turns_of
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

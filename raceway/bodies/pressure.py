@@ -9,7 +9,7 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.surrogate import surrogate
 from raceway.framework.duties import traits_of
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Halvings of an interval of approaches: to the last bit.
 _HALVINGS = 80

@@ -17,7 +17,7 @@ from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs, LawReport
 from raceway.framework.duties import law_report, reach_of, renews
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium

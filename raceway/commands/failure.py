@@ -10,7 +10,7 @@ import numpy as np
 
 from raceway.errors import RacewayError
 from raceway.pipeline.result import without_nan, write_json
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.files import write_whole
 
 

@@ -16,7 +16,7 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
     from raceway.scene.given import Given
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
 
 def slug(title: str) -> str:
@@ -124,6 +124,6 @@ def columns_by_head(texts: tuple[str, ...]) -> dict[str, str]:
     for text in texts:
         head, sign, name = text.rpartition("=")
         if not sign or not head.strip() or not name.strip():
-            raise SceneError.at("--map", text, 'must have the form "HEAD=NAME", for instance "X [um]=y_um"')
+            raise SceneError.at("--map", text, 'must have the form "HEAD=NAME", for instance "X [µm]=y_um"')
         found[head.strip()] = name.strip()
     return found

@@ -82,8 +82,7 @@ def scene_text(preset: str, registry: Registry) -> str:
 
 
 def _lines(table: str, keys: dict[str, tuple[Any, bool]], registry: Registry) -> Iterator[str]:
-    from raceway.scene.file import PLUGIN_TABLES
-    from raceway.scene.tables import TABLES
+    from raceway.scene.tables import PLUGIN_TABLES, TABLES
 
     classes = [TABLES[table]] if table in TABLES else []
     if table in _KINDS:

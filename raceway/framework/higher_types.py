@@ -5,8 +5,8 @@ Each name stands for the class of the same name in the module beside it; type ch
 
 from typing import Any, TypeAlias
 
-Bearing: TypeAlias = Any  # raceway.scene.tables
-Scene: TypeAlias = Any  # raceway.scene.tables
+Bearing: TypeAlias = Any  # raceway.scene.bearing
+Scene: TypeAlias = Any  # raceway.scene.scene
 Balls: TypeAlias = Any  # raceway.planning.decisions
 Motion: TypeAlias = Any  # raceway.planning.decisions
 Decisions: TypeAlias = Any  # raceway.planning.parts

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from raceway.scene.given import Change, as_scene
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 
 def evolve(scene: Any, *changes: Change) -> Scene:

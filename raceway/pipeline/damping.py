@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import attrs
 
-from raceway.scene.tables import TIME_CONSTANTS, Scene
+from raceway.scene.scene import Scene
+from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

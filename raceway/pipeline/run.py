@@ -36,7 +36,7 @@ from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.planning.implausible import implausible
 from raceway.planning.plan import make_plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.scene.unused import unused
 from raceway.storage.tables import Tables
 

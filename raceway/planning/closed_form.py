@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, log, pi, sin, sqrt
 
 from raceway.scene.inner_ring import ring_inertia
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Of the axial displacement at most; a dozen do.
 _ITERATIONS = 60

@@ -12,7 +12,7 @@ from raceway.framework.duties import bodies, renews, traits_of
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.scene.growth import growth_faults
 from raceway.scene.inner_ring import ring_inertia
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Called as ``refuse(bad, path, value, why)``.
 _Refuse = Callable[[bool, str, object, str], None]

@@ -11,7 +11,7 @@ from raceway.planning.parts import Decisions
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.planning.steady_orbits import remembers_its_start
 from raceway.scene.inner_ring import ring_inertia
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Name of what repeats itself, for ``make_plan``'s ``force``.
 OTHER_TURNS = "other turns"

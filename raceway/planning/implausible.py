@@ -10,7 +10,7 @@ import attrs
 from raceway.errors import Mistake
 from raceway.framework.duties import bodies, traits_of
 from raceway.planning.recording import turns_of
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Above this a length [m] and below this a Young's modulus [Pa] is told: bearings of 2 m exist, and cages of soft plastics.
 _LENGTH, _YOUNG = 1.0, 1e9

@@ -17,7 +17,7 @@ from raceway.framework.duties import bodies, traits_of
 from raceway.framework.registry import Registry
 from raceway.planning.decisions import Balls
 from raceway.planning.steady_orbits import compares_with_steady_motion, has_orbits, remembers_its_start, searches_orbits
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 _LOOPS = "raceway.core.schemes."
 #: Libraries and who imports them.

@@ -20,7 +20,7 @@ from raceway.planning.machine import slowness
 from raceway.planning.modules import Module, as_dicts, optional_modules
 from raceway.planning.parts import Decisions, Part
 from raceway.planning.recording import refuse_memory
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 

@@ -6,7 +6,7 @@ from math import ceil, sqrt
 
 from raceway.errors import SceneError
 from raceway.framework.duties import bodies
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from raceway.framework.duties import traits_of
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 
 def searches_orbits(scene: Scene) -> bool:

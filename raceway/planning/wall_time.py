@@ -13,7 +13,7 @@ import attrs
 from raceway.planning.decisions import Balls, Motion
 from raceway.planning.recording import recorded_per_turn
 from raceway.planning.steady_orbits import remembers_its_start
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: How much less a step of an explicit method takes, whose steps iterate less.
 _EXPLICIT = 0.5

@@ -1,8 +1,10 @@
 """The scene: what the user said.
 
-tables      its tables as frozen attrs classes, SI;  sets: rows of balls by their names and one by one
+scene       the scene as a frozen tree of attrs objects, SI
+bearing     its table [bearing];  sets: rows of balls by their names and one by one;  tables: its other tables
 given       a scene as the user gave it: file, text, dict or Scene, with changes
-file        TOML to scene, with ``--set`` changes
+file        a TOML file to plain tables, or to a scene;  changes: ``--set`` changes of plain tables
+reading     plain tables to a scene;  presets: [bearing] with the numbers of presets and materials
 structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit
 schema      JSON schema of a scene file

@@ -21,7 +21,7 @@ from raceway.storage.tables import ReadTables, Tables
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
 #: A change: ``"load.axial=400"``, ``{"load.axial": 400}`` or ``{"load": {"axial": 400}}``.
 Change = str | Mapping[str, Any]
@@ -54,7 +54,7 @@ class Given:
         SceneError
             A change that is none, or that goes through a value as if it were a table.
         """
-        from raceway.scene.file import parse_change
+        from raceway.scene.changes import parse_change
 
         made: list[tuple[str, Any]] = []
         for change in changes:
@@ -74,7 +74,8 @@ class Given:
 
         Keys that the changes take their effect from are left out.
         """
-        from raceway.scene.file import numbers_only, titled, value_at
+        from raceway.scene.changes import titled, value_at
+        from raceway.scene.reading import numbers_only
         from raceway.scene.unused import without_inherited
 
         tables = numbers_only(self.merged(), registry)
@@ -93,19 +94,19 @@ class Given:
         SceneError
             With every mistake that was found.
         """
-        from raceway.scene.file import scene_from_dict
+        from raceway.scene.reading import scene_from_dict
 
         return attrs.evolve(scene_from_dict(self.plain(registry), registry), given=self)
 
     def _placed(self, tables: ReadTables, registry: Registry) -> Tables:
         """A copy with files that start at the folder."""
-        from raceway.scene.file import with_paths
+        from raceway.scene.reading import with_paths
 
         return copy.deepcopy(dict(tables)) if self.folder is None else with_paths(tables, self.folder, registry)
 
     def merged(self) -> Tables:
         """The tables with all changes, as they were said."""
-        from raceway.scene.file import with_value, without
+        from raceway.scene.changes import with_value, without
 
         tables = self.tables
         for key, value in self.changes:
@@ -126,7 +127,7 @@ def as_given(source: Any) -> Given:
         Something else; a file that is missing, unreadable or no TOML.
     """
     from raceway.scene.file import parse_toml, read_toml
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
     if isinstance(source, Scene):
         return source.given if source.given is not None else Given(copy.deepcopy(source.source))
@@ -163,7 +164,7 @@ def as_scene(source: Any, *changes: Change, plugins: Iterable[str | Path] = ()) 
     PluginError
         A plug-in file that is missing, fails to import or adds nothing.
     """
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
     registry = registry_with(plugins)
     if isinstance(source, Scene) and not changes:

@@ -14,7 +14,8 @@ from raceway.errors import Mistake
 from raceway.scene.inner_ring import groove_depth, radial_growth
 
 if TYPE_CHECKING:
-    from raceway.scene.tables import Bearing, Scene
+    from raceway.scene.bearing import Bearing
+    from raceway.scene.scene import Scene
 
 
 @attrs.frozen

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.core.contact.hertz import Ellipse
-    from raceway.scene.tables import Bearing
+    from raceway.scene.bearing import Bearing
 
 
 def ring_inertia(scene: Scene) -> tuple[float, float, float]:

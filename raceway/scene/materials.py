@@ -10,7 +10,7 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.tables import Material
+from raceway.scene.bearing import Material
 from raceway.storage.tables import Tables
 
 

@@ -13,11 +13,10 @@ import attrs
 
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import catalogue
-from raceway.scene.file import PLUGIN_TABLES as PLUGIN_TABLES
-from raceway.scene.file import STUDY_TABLES
 from raceway.scene.materials import materials
 from raceway.scene.structure import table_of_list
-from raceway.scene.tables import TABLES
+from raceway.scene.tables import PLUGIN_TABLES as PLUGIN_TABLES
+from raceway.scene.tables import STUDY_TABLES, TABLES
 from raceway.scene.units import PATTERN
 from raceway.storage.tables import Tables
 

@@ -25,7 +25,7 @@ from raceway.framework.options import (
 )
 
 if TYPE_CHECKING:
-    from raceway.scene.tables import Bearing
+    from raceway.scene.bearing import Bearing
 
 #: Rows that face "+" and "-", and how they stand: with the "+" rows on the side of -x the pressure lines diverge towards the
 #: axis, back to back; the other way round they stand face to face.

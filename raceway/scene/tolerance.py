@@ -14,7 +14,7 @@ import attrs
 from raceway.errors import Mistake, SceneError
 from raceway.scene.continuous import Key, key_of, with_number
 from raceway.scene.given import leaves
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.scene.tolerance_class import NAMES, ranges_of
 from raceway.scene.units import number_in
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Keys of the table [tolerances] that are names, no paths.
 NAMES = ("class", "balls")

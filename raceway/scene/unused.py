@@ -11,8 +11,8 @@ from raceway.errors import RacewayError
 from raceway.framework.duties import bodies
 from raceway.framework.options import unused_options
 from raceway.framework.registry import Registry
-from raceway.scene.file import scene_from_dict
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 
 

@@ -15,8 +15,9 @@ from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
-from raceway.scene.tables import TABLES, Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.tables import Tables
 from raceway.testing.asked import Changes
 from raceway.testing.suite import ConformityError

@@ -25,7 +25,7 @@ from raceway.pipeline.run import run
 from raceway.planning.decisions import decide_balls, decide_motion, decide_tilts
 from raceway.planning.parts import Decisions
 from raceway.planning.plan import make_plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.testing.asked import OTHERS, PLAIN
 from raceway.testing.bearings import is_key, registry_with, scene_of, settled, unbalanced
 from raceway.testing.drivers import FromPython, has_both

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
 
 @cache

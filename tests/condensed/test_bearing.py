@@ -15,7 +15,7 @@ from raceway.errors import SceneError
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage import array_cache
 from validation.command_line import EXAMPLES, invoke
 

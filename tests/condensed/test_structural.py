@@ -11,7 +11,7 @@ from raceway.core.condensed.modes import first_frequency
 from raceway.core.condensed.structural import reach, ring_compliance
 from raceway.core.contact.sphere import ball_compliance
 from raceway.core.mesh.ring_shape import ring_shape
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 
 YOUNG, POISSON = 212e9, 0.29
 HALF = 0.82e-3  # semi-major axis of a contact of B7206C at some 300 N [m]

@@ -12,7 +12,7 @@ from raceway.core.ring.kernels.layout import FRICTION, STICK
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 

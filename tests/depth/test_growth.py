@@ -9,8 +9,8 @@ from scipy.integrate import solve_bvp
 
 from raceway import SceneError, make_plan
 from raceway.core.ring.kernels.layout import REST_RADIAL
-from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import radial_growth, shoulder_height
+from raceway.scene.reading import scene_from_dict
 from validation.reference.rotating_ring import growth_by_elements
 
 

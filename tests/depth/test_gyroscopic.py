@@ -11,7 +11,7 @@ from raceway import SceneError, make_plan
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
 from raceway.core.ring.system import System
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 #: Sizes of displacements [m, rad] over which contact forces change by some percent.

@@ -8,7 +8,8 @@ import pytest
 
 from raceway import SceneError
 from raceway.pipeline.run import run
-from raceway.scene.file import load_scene, scene_from_dict
+from raceway.scene.file import load_scene
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 RPM = 12000.0

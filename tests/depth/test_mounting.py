@@ -16,7 +16,7 @@ from raceway.core.ring.kernels.layout import SHIFT
 from raceway.errors import ConvergenceError
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.scene.unused import unused
 from validation.reference.mounted import FORCE, approach, axial, row, secant
 from validation.tables import b7206c

@@ -7,7 +7,7 @@ import pytest
 
 from raceway import SceneError
 from raceway.core.ring.system import System
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.verify.study import verify
 
 DISTANCE = 16e-3

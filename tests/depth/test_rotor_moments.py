@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 #: Half the rig's disc [kg m2]: polar inertia about twice the transverse one.

@@ -18,8 +18,8 @@ from raceway.core.stepping.record import Schedule
 from raceway.pipeline.run import run
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.run_up import RunUp
-from raceway.scene.file import scene_from_dict
 from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.reading import scene_from_dict
 from validation.tables import b7206c
 
 

@@ -11,7 +11,7 @@ from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.footprint import Footprint, ellipse, footprint
 from raceway.core.mesh.place import azimuth
 from raceway.core.mesh.ring_shape import ring_shape
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 
 #: The coarsest meshes in use: a ball of 4 cells across, 36 cells around a ring.
 MESH = {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 36}

@@ -12,7 +12,7 @@ from raceway.bodies.model import build_model
 from raceway.core.elastic.statics import settle
 from raceway.pipeline.settle import settle as settle_model
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from tests.test_elastic_scene import TINY
 
 COARSE = {key: TINY[key] for key in ("bearing", "bodies", "mesh")} | {

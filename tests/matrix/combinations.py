@@ -13,7 +13,7 @@ import attrs
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 
 DISCRETISATIONS = ("resultant", "nodal")
 TILTS: tuple[str | float, ...] = ("locked", "free", 3e4)

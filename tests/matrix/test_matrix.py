@@ -20,7 +20,7 @@ import pytest
 from raceway.errors import SceneError
 from raceway.framework.registry import default_registry
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from tests.matrix.combinations import (
     Combination,
     NeedsOptions,

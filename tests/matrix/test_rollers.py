@@ -16,7 +16,7 @@ import pytest
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from tests.matrix.combinations import options
 
 PACKAGE = Path(__file__).parents[2] / "examples" / "cylindrical_rollers"

@@ -19,7 +19,7 @@ from raceway.errors import StabilityError
 from raceway.integrators.central_difference import CentralDifference
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from tests.test_elastic_scene import EXCITED, TINY
 
 #: Friction on rigid seats; dashpots, a shaft and elastic seats, whose ring rides on its bed, with the other element.

@@ -11,7 +11,7 @@ from raceway.bodies.model import build_model
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.system import ElasticSystem
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from tests.test_elastic_scene import TINY
 
 

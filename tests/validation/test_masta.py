@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.studies.verify.study import verify
 
 CASES = ("masta-dgbb-1", "masta-dgbb-3", "masta-dgbb-5")

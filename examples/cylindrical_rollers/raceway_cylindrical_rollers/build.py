@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
     from raceway.planning.plan import Plan
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
 
 @attrs.frozen(eq=False)

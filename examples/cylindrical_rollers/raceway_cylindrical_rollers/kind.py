@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from raceway.planning.decisions import Balls, Motion
     from raceway.planning.parts import Decisions
     from raceway.planning.plan import Plan
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
 #: Seconds of a step with 12 rollers, of a sample, and of a search over that of rigid balls.
 _TIMES = Times({"weightless": 3.0e-6, "inertial": 4.0e-6}, sample=8.0e-6, search=1.0)

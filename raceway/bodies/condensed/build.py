@@ -24,7 +24,7 @@ from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
 from raceway.planning.plan import Plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

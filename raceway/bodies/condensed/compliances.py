@@ -14,7 +14,7 @@ from raceway.core.condensed.structural import SURFACE, reach, ring_compliance
 from raceway.core.contact.sphere import ball_compliance
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.patches.compliances import RingBody, Solid
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Hashable

@@ -17,7 +17,7 @@ from raceway.planning.closed_form import highest_frequency
 from raceway.planning.decisions import Balls, Motion, uses_record
 from raceway.planning.parts import Decisions
 from raceway.planning.wall_time import START_S, Times, compiled_motion, runs
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from math import ceil, log, pi
 import attrs
 
 from raceway.errors import Mistake
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: The part by which balls feel each other.
 BETWEEN_BALLS = "effect of balls on each other through the rings"

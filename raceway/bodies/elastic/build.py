@@ -29,7 +29,7 @@ from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.plan import Plan
 from raceway.scene.inner_ring import radial_growth
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Loads of a ball over the mean one under which a law has to keep some compliance of its own.
 _ENOUGH = 5.0

@@ -16,7 +16,7 @@ from raceway.framework.options import one_of, option, positive
 from raceway.planning.decisions import Balls, Motion
 from raceway.planning.parts import Decisions
 from raceway.planning.wall_time import START_S
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Poisson's ratio from which contacts at surface points are too stiff by percents: measured with B7206C, which does not
 #: change with the mesh: 2 % at 0.49, 20 % at 0.499, 75 % at 0.4999.  One-point elements with hourglass control: 20 % at 0.45.

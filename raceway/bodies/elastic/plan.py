@@ -11,7 +11,7 @@ import attrs
 from raceway.bodies.mesh_plan import predicted_mesh, refined
 from raceway.errors import Mistake
 from raceway.planning.closed_form import axial_approach
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 #: Contact resultants: bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory

@@ -36,7 +36,7 @@ from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.planning.plan import Plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.core.contact.hertz import Ellipse

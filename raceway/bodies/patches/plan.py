@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 
 from raceway.errors import Mistake
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Points along each semi-axis where the scene says nothing.
 NODES = 4

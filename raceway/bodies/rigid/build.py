@@ -19,7 +19,7 @@ from raceway.core.signatures import LAW
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.framework.probe import probe_excitation, probe_law
 from raceway.planning.plan import Plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium

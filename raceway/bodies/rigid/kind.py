@@ -13,7 +13,7 @@ from raceway.planning.closed_form import highest_frequency
 from raceway.planning.decisions import Balls, Motion
 from raceway.planning.parts import Decisions
 from raceway.planning.wall_time import START_S, Times, compiled_motion
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing

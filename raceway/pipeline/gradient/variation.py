@@ -21,7 +21,7 @@ from raceway.errors import RacewayError
 from raceway.framework.duties import renews, same_bodies
 from raceway.pipeline.gradient.differences import derivative
 from raceway.scene.continuous import Key, with_number
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Least step of neighbouring models by unit, unless that is much of the number: arrays resolve it, and it changes a bearing little.
 _LEAST = {"m": 1e-7, "N": 0.1, "N m": 1e-4, "deg": 1e-2, "r/min": 1.0, "K": 0.1, "kg": 1e-4, "s": 1e-7, "N s/m": 0.1}

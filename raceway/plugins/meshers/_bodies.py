@@ -13,7 +13,7 @@ from raceway.framework.options import option, positive
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.framework.contracts import Mesher
-    from raceway.scene.tables import Bearing
+    from raceway.scene.bearing import Bearing
 
 BODIES = ("inner_ring", "outer_ring", "ball")
 BALL = "file of one ball about its centre: x rolling, y across, z towards the outer contact"

@@ -24,7 +24,7 @@ from raceway.plugins.meshers._bodies import (
 
 if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
-    from raceway.scene.tables import Bearing
+    from raceway.scene.bearing import Bearing
 
 
 @attrs.frozen

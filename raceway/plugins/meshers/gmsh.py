@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.mesh.size import Prediction
-    from raceway.scene.tables import Bearing
+    from raceway.scene.bearing import Bearing
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 #: Endings of files and OpenCASCADE's readers for them; a .geo is executed instead.

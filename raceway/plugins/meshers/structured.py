@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.mesh.ring_mesh import RingShape
     from raceway.core.mesh.size import Prediction
-    from raceway.scene.tables import Bearing
+    from raceway.scene.bearing import Bearing
 
 #: Load of a ball [N] whose ellipse the patches follow where neither the scene nor the option says it.
 BALL_LOAD = 300.0

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from raceway.framework.registry import Registry
-from raceway.scene.file import with_value
+from raceway.scene.changes import with_value
 from raceway.storage.tables import Tables
 from raceway.studies.article.curves import Curves
 from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILTS, Design, Setting

@@ -11,7 +11,8 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry
-from raceway.scene.file import read_toml, with_value
+from raceway.scene.changes import with_value
+from raceway.scene.file import read_toml
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis, parse_axis, points
 from raceway.studies.many.points import tables_at

@@ -14,7 +14,7 @@ import attrs
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.article.design import article_tables
 

@@ -14,7 +14,7 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.follow.instead import FAILED, Instead, from_rest, instead_of
 from raceway.studies.many.engine import Item, local, work_through

@@ -13,7 +13,7 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.simulate import OnProgress
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.article import causes, expected
 from raceway.studies.article.claims import verdicts

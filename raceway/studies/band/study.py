@@ -19,7 +19,7 @@ from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import with_number
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.scene.tolerance import Tolerance
 from raceway.storage.tables import Tables
 from raceway.studies.band.sobol import Indices, design, indices

@@ -10,7 +10,7 @@ import numpy as np
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.errors import MeshError, SceneError
 from raceway.plugins.reports.pictures import new_figure, save_figure
-from raceway.scene.tables import Bearing
+from raceway.scene.bearing import Bearing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

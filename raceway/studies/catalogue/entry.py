@@ -7,9 +7,9 @@ import attrs
 from raceway.framework.registry import Registry
 from raceway.pipeline.ball_pass import ball_pass
 from raceway.scene.catalogue import Preset, geometry_of
-from raceway.scene.file import scene_from_dict
 from raceway.scene.materials import materials
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 

@@ -13,7 +13,7 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.findings import Row

@@ -9,7 +9,7 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.scene.continuous import key_of, with_number
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: Size of a change at a number that is 0, by unit: what a bearing shows.
 _SIZES = {"m": 1e-6, "N": 10.0, "N m": 0.1, "deg": 1.0, "r/min": 10.0, "K": 1.0, "kg": 0.1, "s": 1e-6, "N s/m": 10.0}

@@ -8,8 +8,8 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.continuous import continuous_keys
-from raceway.scene.file import rig_of
-from raceway.scene.tables import Scene
+from raceway.scene.reading import rig_of
+from raceway.scene.scene import Scene
 from raceway.studies.fit.estimate import Estimate, estimate
 from raceway.studies.fit.fitted import Derived, Fitted, Series
 from raceway.studies.fit.free import free_keys

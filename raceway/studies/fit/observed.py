@@ -12,7 +12,7 @@ from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.pipeline.gradient.quantities import UNITS
 from raceway.scene.continuous import Key, continuous_keys, with_number
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.scene.units import number_in
 from raceway.storage.number_table import NumberTable
 

@@ -17,7 +17,7 @@ from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import key_of, with_number
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.studies.fit.free import Free
 from raceway.studies.fit.observed import MEASURED, Observed
 

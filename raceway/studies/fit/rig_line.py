@@ -19,7 +19,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
 from raceway.scene.continuous import with_number
 from raceway.scene.rig import Rig
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.studies.fit.free import Free
 from raceway.studies.fit.observed import COVERAGE
 from raceway.studies.measured.angle import turning

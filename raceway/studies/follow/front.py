@@ -9,9 +9,10 @@ from typing import Any
 from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, registry_with
+from raceway.scene.changes import parse_value, with_value
 from raceway.scene.continuous import key_of
-from raceway.scene.file import parse_value, scene_from_dict, with_value
 from raceway.scene.given import Change, plain_tables
+from raceway.scene.reading import scene_from_dict
 from raceway.scene.units import number_in
 from raceway.storage.tables import Tables
 from raceway.studies.follow.parameter import Parameter

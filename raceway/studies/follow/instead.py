@@ -35,7 +35,7 @@ from raceway.integrators.newmark import Newmark
 from raceway.pipeline.result import Result
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 OnProgress = Callable[[str, int, int], None]

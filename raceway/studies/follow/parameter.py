@@ -28,7 +28,7 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import with_number
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 
 #: A place between the ends where nothing special is to be expected.
 _BETWEEN = 0.382

@@ -17,7 +17,7 @@ from raceway.planning.plan import make_plan
 
 if TYPE_CHECKING:
     from raceway.core.ring.system import System
-    from raceway.scene.tables import Scene
+    from raceway.scene.scene import Scene
 
 RACES = ("inner", "outer")
 

@@ -20,8 +20,8 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.duties import traits_of
 from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 #: Peak pressure of a ball bearing's static load rating [Pa].  Source: ISO 76:2006, 4200 MPa for ball bearings.

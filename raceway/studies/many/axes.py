@@ -10,7 +10,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.scene.file import parse_value
+from raceway.scene.changes import parse_value
 from raceway.scene.given import tidy
 from raceway.storage.tables import Tables
 

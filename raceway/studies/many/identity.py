@@ -8,7 +8,7 @@ from importlib.metadata import version
 
 from raceway import __version__
 from raceway.framework.registry import Registry
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.row_store import program_key
 

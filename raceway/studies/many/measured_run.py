@@ -9,7 +9,7 @@ from pathlib import Path
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key

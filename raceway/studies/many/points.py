@@ -12,8 +12,9 @@ import attrs
 
 from raceway.errors import PluginError, SceneError
 from raceway.framework.registry import Registry
-from raceway.scene.file import PLUGIN_TABLES, numbers_only, scene_from_dict, value_at, with_value
-from raceway.scene.tables import TABLES
+from raceway.scene.changes import value_at, with_value
+from raceway.scene.reading import numbers_only, scene_from_dict
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.scene.units import is_quantity
 from raceway.scene.unused import without_inherited
 from raceway.storage.tables import ReadTables, Tables

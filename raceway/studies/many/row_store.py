@@ -16,7 +16,7 @@ import attrs
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.cache_folder import source_key
 from raceway.storage.tables import ReadTables, Tables
 

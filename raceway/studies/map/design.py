@@ -10,8 +10,8 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import Registry
-from raceway.scene.file import scene_from_dict
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import Axis, is_number, parse_axes
 from raceway.studies.many.points import tables_at

@@ -9,7 +9,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.scene.inner_ring import shoulder_height
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 

@@ -83,7 +83,7 @@ def identify(given: IdentifyOptions) -> int:
       raceway identify orbit.csv --scene examples/test_rig.toml \\
           --map "Ch 1=y_um" --map "Ch 2=z_um"
     """
-    from raceway.scene.file import rig_of
+    from raceway.scene.reading import rig_of
 
     registry = registry_with(given.plugins)
     loaded = load(given.scene, given.changes, registry)

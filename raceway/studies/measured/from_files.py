@@ -8,7 +8,7 @@ from pathlib import Path
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.rig import Rig
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.studies.measured.identify import Found, identify
 from raceway.studies.measured.orders import Order
 from raceway.studies.measured.recording import recording_of

@@ -10,8 +10,8 @@ from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import SceneError
 from raceway.framework.registry import registry_with
 from raceway.pipeline.result import write_json
-from raceway.scene.file import rig_of
 from raceway.scene.given import as_scene
+from raceway.scene.reading import rig_of
 from raceway.storage.files import writable
 from raceway.studies.measured.from_files import from_signals, refuse_no_load
 from raceway.studies.measured.identified import Identified

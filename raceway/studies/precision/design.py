@@ -23,8 +23,8 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.contracts import Integrator
 from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import points
 from raceway.studies.many.points import axes_of, refuse_mistakes, tables_at

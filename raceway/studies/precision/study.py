@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry, default_registry
-from raceway.scene.file import parse_change
+from raceway.scene.changes import parse_change
 from raceway.scene.given import tidy
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.measured_run import measured_once

@@ -48,7 +48,7 @@ def rig(
     Example:
       raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03
     """
-    from raceway.scene.file import rig_of
+    from raceway.scene.reading import rig_of
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)

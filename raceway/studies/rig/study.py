@@ -13,7 +13,7 @@ from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key

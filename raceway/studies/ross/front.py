@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from raceway.commands.inputs import slug
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
-from raceway.scene.file import parse_value
+from raceway.scene.changes import parse_value
 from raceway.scene.given import tidy
 from raceway.storage.tables import Tables
 from raceway.studies.many.points import numbers_at

@@ -19,7 +19,8 @@ from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
 from raceway.scene.given import as_scene
-from raceway.scene.tables import Identifying, Integration, Rotor, Scene
+from raceway.scene.scene import Scene
+from raceway.scene.tables import Identifying, Integration, Rotor
 from raceway.studies.ross.harmonic_load import harmonic_load
 from raceway.studies.ross.secant import secant
 

@@ -12,7 +12,8 @@ from raceway.errors import SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
-from raceway.scene.tables import Identifying, Rotor, Scene
+from raceway.scene.scene import Scene
+from raceway.scene.tables import Identifying, Rotor
 from raceway.studies.shaft.shaft_load import shaft_load
 
 

@@ -63,7 +63,7 @@ def stability(given: StabilityOptions) -> int:
     registry = registry_with(given.plugins)
     tables = None
     if given.scene is not None:
-        from raceway.scene.file import scene_from_dict
+        from raceway.scene.reading import scene_from_dict
 
         tables, mistakes = changed_tables(given.scene, given.changes, registry)
         if mistakes:

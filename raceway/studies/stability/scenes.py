@@ -16,7 +16,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.closed_form import series_factor
 from raceway.planning.plan import make_plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 from raceway.studies.stability.case import (
     AS_EXPECTED,

@@ -9,8 +9,8 @@ import numpy as np
 
 from raceway.framework.registry import Entry, Registry
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.points import tables_at
 

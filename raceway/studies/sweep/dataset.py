@@ -14,8 +14,8 @@ import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
-from raceway.scene.file import scene_from_dict
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.files import scratch_file, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import is_number

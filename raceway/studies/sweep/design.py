@@ -13,7 +13,8 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.scene.file import parse_value, read_toml
+from raceway.scene.changes import parse_value
+from raceway.scene.file import read_toml
 from raceway.scene.given import tidy
 from raceway.storage.tables import ReadTables, Tables
 from raceway.storage.user_files import size_of, why_unreadable

@@ -12,7 +12,7 @@ import numpy as np
 
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.scene.file import parse_value
+from raceway.scene.changes import parse_value
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.axes import is_number, shown
 

@@ -10,8 +10,9 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import Registry
-from raceway.scene.file import PLUGIN_TABLES, scene_from_dict
-from raceway.scene.tables import TABLES, Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.identity import plugins_of
 from raceway.studies.many.points import tables_at

@@ -10,7 +10,7 @@ import attrs
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.row_store import row_key

@@ -10,7 +10,7 @@ from raceway.bodies.model import Model, build_model
 from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
+from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.many.reference import Case, Number
 

@@ -16,8 +16,8 @@ from raceway.core.contact.hertz import ellipse
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
-from raceway.scene.file import scene_from_dict
-from raceway.scene.tables import Scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.studies.many.reference import Case, Number
 
 if TYPE_CHECKING:

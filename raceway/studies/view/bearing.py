@@ -14,7 +14,7 @@ from raceway.studies.view.surfaces import Surface
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
-    from raceway.scene.tables import Bearing as Dimensions
+    from raceway.scene.bearing import Bearing as Dimensions
     from raceway.storage.tables import Tables
 
 _MM = 1e3

@@ -10,8 +10,9 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry
-from raceway.scene.file import scene_from_dict, with_value
-from raceway.scene.tables import Scene
+from raceway.scene.changes import with_value
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import CLAIMED, FRICTION
 from raceway.studies.many.points import tables_at

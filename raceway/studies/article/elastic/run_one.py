@@ -13,7 +13,7 @@ from raceway.core.jit import working_process_time
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.measured_run import reset_peak
 

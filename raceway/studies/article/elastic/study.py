@@ -13,7 +13,7 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.planning.plan import make_plan
-from raceway.scene.tables import Scene
+from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 from raceway.studies.article.elastic import deviations
 from raceway.studies.article.elastic.design import STEPS, Design, Run

@@ -1,0 +1,242 @@
+"""The table [bearing]: dimensions, rows and materials of a rolling bearing, checked."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import acos, asin, cos, degrees, pi, radians, sin
+from typing import TYPE_CHECKING
+
+import attrs
+
+from raceway.errors import MeshError
+from raceway.framework.options import (
+    at_least,
+    between,
+    finite,
+    inside,
+    length,
+    one_of,
+    option,
+    optional,
+    positive,
+)
+from raceway.scene.sets import GEOMETRY, Row, arrangement, check_set, places_of, signs_of, travel
+
+if TYPE_CHECKING:
+    pass
+
+
+@attrs.frozen
+class Material:
+    material: str | None = option(None, help="name in the table of materials; other keys override its numbers")
+    young: float = option(212e9, unit="Pa", help="Young's modulus", rule=positive())
+    poisson: float = option(0.29, help="Poisson's ratio", rule=inside(-1.0, 0.5))
+    density: float = option(7810.0, unit="kg/m3", help="density", rule=positive())
+    thermal_expansion: float = option(
+        12.5e-6,
+        unit="1/K",
+        help="linear, where [mounting] gives temperatures; the default is that of bearing steel",
+        rule=at_least(0.0),
+    )
+
+
+@attrs.frozen
+class Bearing:
+    ball_diameter: float = option(unit="m", help="D", rule=length())
+    pitch_diameter: float = option(unit="m", help="d_m", rule=length())
+    ball_count: int = option(help="Z", rule=at_least(1))
+    conformity_inner: float = option(help="groove radius / ball diameter, inner", rule=inside(0.5, 1.0))
+    conformity_outer: float = option(help="groove radius / ball diameter, outer", rule=inside(0.5, 1.0))
+    contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0)))
+    radial_clearance: float | None = option(
+        None, unit="m", help="internal radial clearance as catalogues give it, on the diameter", rule=optional(at_least(0.0))
+    )
+    bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
+    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
+    width: float | None = option(None, unit="m", help="width", rule=optional(length()))
+    shoulder_height: float | None = option(
+        None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(length())
+    )
+    inner_profile: tuple[tuple[float, float], ...] | None = option(
+        None, unit="m", help="section of the inner ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+    )
+    outer_profile: tuple[tuple[float, float], ...] | None = option(
+        None, unit="m", help="section of the outer ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+    )
+    first_ball_azimuth_deg: float = option(0.0, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=finite())
+    tilt_arm: str = option(
+        "groove",
+        help="arm of tilts and moments: 'groove' (radius of the inner groove centres) or 'pitch' (half the pitch diameter)",
+        rule=one_of("groove", "pitch"),
+    )
+    arrangement: str = option(
+        "single",
+        help="'single' row, or a set: a pair back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by their makers' names",
+        rule=arrangement(),
+    )
+    row: tuple[Row, ...] = option(
+        (),
+        help="rows one by one, in tables [[bearing.row]]: places, directions, preloads, and what differs from this bearing",
+    )
+    preload: float = option(
+        0.0,
+        unit="N",
+        help="axial preload of rows that brace each other, mounted: at standstill, before anything grows",
+        rule=at_least(0.0),
+    )
+    second_preload: float | None = option(
+        None,
+        unit="N",
+        help="of the rows that face the other way than the first, where it is another force: mounted under the difference as an axial load",
+        rule=optional(positive()),
+    )
+    preload_of: str = option(
+        "set",
+        help="'set': the force between the rows of either direction; 'row': each row was ground flush under it, as makers do",
+        rule=one_of("set", "row"),
+    )
+    preload_kind: str = option(
+        "rigid",
+        help="'rigid': the rows' offset stays as mounted; 'spring': the force on the rows that face the other way than the first "
+        "stays, their outer rings slide together",
+        rule=one_of("rigid", "spring"),
+    )
+    spring_travel: float | None = option(
+        None,
+        unit="m",
+        help="by which those rings can slide against the spring from where they were mounted, either way; default: any",
+        rule=optional(travel()),
+    )
+    row_distance: float | None = option(
+        None,
+        unit="m",
+        help="axial distance of neighbouring rows, between the planes of their inner groove centres; default: the width of one bearing",
+        rule=optional(length()),
+    )
+    preset: str | None = option(None, help="name in the catalogue; other keys override it")
+    rings: Material = attrs.field(factory=Material, metadata={"help": "material of both rings"})
+    balls: Material = attrs.field(factory=Material, metadata={"help": "material of the balls"})
+
+    def __attrs_post_init__(self) -> None:
+        d, dm = self.ball_diameter, self.pitch_diameter
+        if d >= dm:
+            raise ValueError(f"`ball_diameter` = {d:g} m must be smaller than `pitch_diameter` = {dm:g} m")
+        if self.ball_count > 1 and sin(pi / self.ball_count) * dm < d:
+            most = int(pi / asin(d / dm))
+            raise ValueError(
+                f"`ball_count` = {self.ball_count} balls of {d:g} m do not fit a pitch circle of {dm:g} m: at most {most}"
+            )
+        if self.bore is not None and self.bore >= dm - d:
+            raise ValueError(f"`bore` = {self.bore:g} m cuts the inner raceway: it must be below d_m - D = {dm - d:g} m")
+        if self.outer_diameter is not None and self.outer_diameter <= dm + d:
+            raise ValueError(
+                f"`outer_diameter` = {self.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = {dm + d:g} m"
+            )
+        if self.shoulder_height is not None and self.shoulder_height >= 0.5 * d:
+            raise ValueError(
+                f"`shoulder_height` = {self.shoulder_height:g} m must be below half the ball's diameter, {0.5 * d:g} m: "
+                "no groove is deeper than its ball's centre"
+            )
+        self._check_clearance()
+        check_set(self)
+        self._check_profiles()
+
+    def _check_profiles(self) -> None:
+        for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
+            if profile is not None:
+                from raceway.core.mesh.ring_shape import ring_shape
+
+                try:
+                    ring_shape(self, inner)
+                except MeshError as why:
+                    raise ValueError(str(why)) from None
+
+    @property
+    def preloaded(self) -> bool:
+        """Whether rows press against each other as mounted."""
+        return self.preload > 0.0 or any(row.preload for row in self.row)
+
+    @property
+    def signs(self) -> str:
+        """'+' or '-' for each row: the way that it faces."""
+        signs = signs_of(self.arrangement)
+        if not self.row:
+            return signs
+        own = signs if self.arrangement != "single" else "+" * len(self.row)
+        return "".join(row.direction or sign for row, sign in zip(self.row, own, strict=True))
+
+    @property
+    def rows(self) -> tuple[tuple[float, float], ...]:
+        """(side, axial place [m]) of each row: side +1 is seated by a positive axial motion of the inner ring."""
+        word = self.arrangement if self.arrangement != "single" or not self.row else self.signs
+        rows = places_of(word, self.row_distance or self.width or 0.0)
+        if not self.row:
+            return rows
+        places = [place if row.position is None else row.position for row, (_, place) in zip(self.row, rows, strict=True)]
+        return tuple((1.0 if sign == "+" else -1.0, place) for sign, place in zip(self.signs, places, strict=True))
+
+    @property
+    def of_rows(self) -> tuple[Bearing, ...]:
+        """The bearing of each row by itself."""
+        return _of_rows(self)
+
+    @property
+    def equal_rows(self) -> bool:
+        """Whether the rows differ in nothing but places, directions, preloads and azimuths."""
+        if not self.row:
+            return True
+        alike = {attrs.evolve(one, first_ball_azimuth_deg=0.0) for one in self.of_rows}
+        return len(alike) == 1
+
+    @property
+    def balls_in_all(self) -> int:
+        """Balls of all rows."""
+        return sum(one.ball_count for one in self.of_rows)
+
+    def of_row(self, row: Row | None) -> Bearing:
+        """The bearing of one row of a set."""
+        given = {key: getattr(row, key) for key in GEOMETRY} if row is not None else {}
+        given = {key: value for key, value in given.items() if value is not None}
+        if "contact_angle_deg" in given:
+            given["radial_clearance"] = None
+        if not {"ball_diameter", "pitch_diameter"}.isdisjoint(given):
+            # Dimensions of the set's bearing belong to its balls.
+            lost = ("bore", "outer_diameter", "width", "shoulder_height", "inner_profile", "outer_profile")
+            given = {**dict.fromkeys(lost), **given}
+        plain = {"arrangement": "single", "row": (), "preload": 0.0, "second_preload": None, "row_distance": None}
+        return attrs.evolve(self, **{**plain, **given})
+
+    def _check_clearance(self) -> None:
+        clearance, angle = self.radial_clearance, self.contact_angle_deg
+        distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+        if clearance is None:
+            return
+        if clearance >= 2.0 * distance:
+            raise ValueError(
+                f"`radial_clearance` = {clearance:g} m must be below twice the groove-centre distance, {2 * distance:g} m"
+            )
+        if not angle:
+            return
+        fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
+        if abs(fitting - clearance) > 1e-3 * distance:
+            own = degrees(acos(1.0 - clearance / (2.0 * distance)))
+            raise ValueError(
+                f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
+                f"clearance gives {own:.3f} deg, that angle {fitting:.4g} m. Give one of them"
+            )
+
+    @property
+    def contact_angle(self) -> float:
+        """Free contact angle [rad]: given, or from the radial clearance."""
+        if self.radial_clearance and not self.contact_angle_deg:
+            distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+            return acos(1.0 - self.radial_clearance / (2.0 * distance))
+        return radians(self.contact_angle_deg or 0.0)
+
+
+@lru_cache(maxsize=256)
+def _of_rows(bearing: Bearing) -> tuple[Bearing, ...]:
+    """The bearing of each row by itself; the same one for rows that have no table."""
+    if not bearing.row:
+        return (bearing.of_row(None),) * len(signs_of(bearing.arrangement))
+    return tuple(bearing.of_row(row) for row in bearing.row)

@@ -1,0 +1,206 @@
+"""Makes a scene of plain tables: presets, plug-ins' options; all mistakes at once, each with its path."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.errors import Mistake, PluginError, SceneError
+from raceway.framework.options import (
+    nearest,
+)
+from raceway.framework.registry import Registry, default_registry
+from raceway.scene.given import Given
+from raceway.scene.requires import check_requires
+from raceway.scene.rig import Rig
+from raceway.scene.structure import structure, table_without_units
+from raceway.scene.tolerance import check_tolerances
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from raceway.scene.given import Given
+from raceway.scene.presets import _with_preset
+from raceway.scene.scene import Scene
+from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, STUDY_TABLES, SWAPPED_TABLES, TABLES
+
+
+def scene_from_dict(
+    tables: ReadTables, registry: Registry | None = None, known_parts: dict[Hashable, Any] | None = None
+) -> Scene:
+    """A scene from plain tables, as a TOML file would give them.
+
+    Parameters
+    ----------
+    tables : by name, values in the keys' units or as text with one
+    registry : plug-ins that the scene may use; None: those of this process
+    known_parts : of scenes that were read before with the same registry, by the tables they stood in; the parts that this
+        scene shares with them are taken from there, and its own are added
+
+    Raises
+    ------
+    SceneError
+        With every mistake that was found.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}}).load.axial  # [N]
+    400.0
+    """
+    registry = registry or default_registry()
+    mistakes: list[Mistake] = []
+    title, said = _known_tables(tables, registry, mistakes)
+    plain = numbers_only(said, registry)
+    if "bearing" in plain:
+        plain["bearing"] = _with_preset(plain["bearing"], mistakes)
+    parts: Tables = {}
+    known_parts = {} if known_parts is None else known_parts
+
+    def read(name: str, table: object, make: Callable[[], object]) -> Any:
+        mark, before = (name, repr(table)), len(mistakes)  # not the table itself: 1, 1.0 and true are equal, and not alike
+        if mark in known_parts:
+            return known_parts[mark]
+        part = make()
+        if len(mistakes) == before:
+            known_parts[mark] = part
+        return part
+
+    for name, cls in TABLES.items():
+        if name in PLUGIN_TABLES or (name == "bearing" and name not in plain):
+            continue
+        table = plain.get(name, {})
+        parts[name] = read(name, table, partial(structure, table, cls, name, mistakes))
+    for name, (kind, default) in PLUGIN_TABLES.items():
+        parts[name] = None
+        if name in plain or name not in OPTIONAL_TABLES:
+            table = plain.get(name, {})
+            parts[name] = read(name, table, partial(_plugin_table, name, kind, default, table, registry, mistakes))
+    for name, cls in STUDY_TABLES.items():
+        if name in plain:
+            structure(plain[name], cls, name, mistakes)
+    if mistakes:
+        raise SceneError(mistakes)
+    scene = Scene(title=title, source=plain, given=Given(said), **parts)
+    if faults := check_tolerances(scene):
+        raise SceneError(faults)
+    return scene
+
+
+def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
+    """Title, and a copy of the known tables."""
+    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "tolerances", "requires", "title"]
+    for name in tables:
+        if name not in known:
+            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
+    title = tables.get("title", "untitled")
+    if not isinstance(title, str) or not title.strip():
+        mistakes.append(Mistake("title", title, "must be a string that is not empty"))
+        title = "untitled"
+    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
+    for name in list(plain):
+        if name != "title" and not isinstance(plain[name], dict):
+            mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
+            plain[name] = {}
+    check_requires(plain.get("requires", {}), registry, mistakes)
+    if "bearing" not in plain:
+        mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
+    return title, plain
+
+
+def _plugin_table(
+    name: str, kind: str, default: str | None, table: Tables, registry: Registry, mistakes: list[Mistake]
+) -> Any:
+    """The plug-in's options, or the core's table with the plug-in in its last attribute."""
+    word = table.get("kind", default)
+    names = registry.names(kind)
+    if word is None:
+        mistakes.append(Mistake(f"{name}.kind", None, f"is required: one of {', '.join(names) or '(none installed)'}"))
+        return None
+    if not isinstance(word, str):
+        mistakes.append(Mistake(f"{name}.kind", word, f"must be a string: one of {', '.join(names)}"))
+        return None
+    core = TABLES.get(name)
+    own = [] if core is None else [f.name for f in attrs.fields(core) if "plugin" not in f.metadata]
+    shared = {key: value for key, value in table.items() if key in own}
+    try:
+        plugin = registry.find(kind, word).plugin
+    except PluginError as error:
+        mistakes.append(Mistake(f"{name}.kind", word, str(error)))
+        if core is not None:
+            structure({k: v for k, v in shared.items() if k != "kind"}, core, name, mistakes)
+        return None
+    options = {key: value for key, value in table.items() if key not in own and key != "kind"}
+    known = [*own, *(a.name for a in attrs.fields(plugin))]
+    if name in SWAPPED_TABLES:
+        others = {a.name for e in registry.all() if e.kind == kind for a in attrs.fields(e.plugin)}
+        options = {key: value for key, value in options.items() if key in known or key not in others}
+    for key in [k for k in options if k not in known]:
+        rule = f"unknown key{nearest(key, known)}; known for kind '{word}': {', '.join(k for k in known if k != 'kind')}"
+        mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))
+    method = structure(options, plugin, name, mistakes)
+    if core is None:
+        return method
+    frame: Any = structure({**shared, "kind": word}, core, name, mistakes)
+    slot = next(f.name for f in attrs.fields(core) if "plugin" in f.metadata)
+    return None if frame is None or method is None else attrs.evolve(frame, **{slot: method})
+
+
+def rig_of(scene: Scene) -> Rig:
+    """The table ``[rig]`` of a scene.
+
+    Raises
+    ------
+    SceneError
+        There is none.
+    """
+    if "rig" not in scene.source:
+        raise SceneError.at(
+            "rig", None, "is required: a table [rig] with shaft, disc and sensor (see examples/test_rig.toml)"
+        )
+    mistakes: list[Mistake] = []
+    rig = structure(scene.source["rig"], Rig, "rig", mistakes)
+    if rig is None:
+        raise SceneError(mistakes)
+    return rig
+
+
+def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
+    """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
+    result = copy.deepcopy(dict(tables))
+    for name in PLUGIN_TABLES:
+        plugin = _plugin(name, tables, registry)
+        for field in () if plugin is None else attrs.fields(plugin):
+            value = result[name].get(field.name)
+            if field.metadata.get("path") and isinstance(value, str) and not Path(value).is_absolute():
+                result[name][field.name] = str(folder / value)
+    return result
+
+
+def numbers_only(tables: ReadTables, registry: Registry) -> Tables:
+    """A copy of the tables in which numbers that are text with a unit are numbers in the keys' own units."""
+    result = dict(tables)
+    for name, table in tables.items():
+        if isinstance(table, dict):
+            classes = (TABLES.get(name), STUDY_TABLES.get(name), _plugin(name, tables, registry))
+            for cls in (one for one in classes if one is not None):
+                result[name] = table_without_units(result[name], cls)
+    return result
+
+
+def _plugin(name: str, tables: ReadTables, registry: Registry) -> type | None:
+    """The class of the plug-in that a table names, if there is one."""
+    table = tables.get(name)
+    if name not in PLUGIN_TABLES or not isinstance(table, dict):
+        return None
+    kind, default = PLUGIN_TABLES[name]
+    word = table.get("kind", default)
+    if not isinstance(word, str) or word not in registry.names(kind) or (kind, word) in registry.shadowed():
+        return None
+    return registry.find(kind, word).plugin

@@ -1,0 +1,215 @@
+"""The scene: what the user said, as a frozen tree of attrs objects, validated, SI."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.framework.shown import Fact, Shown
+from raceway.scene.given import Given
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    import os
+
+    from raceway.scene.given import Given
+from raceway.scene.bearing import Bearing
+from raceway.scene.changes import told
+from raceway.scene.tables import (
+    TABLES,
+    TIME_CONSTANTS,
+    Contact,
+    Identifying,
+    Integration,
+    Kinematics,
+    Load,
+    Mounting,
+    Rotor,
+    Supports,
+)
+
+
+@attrs.frozen(repr=False)
+class Scene(Shown):
+    """One scene: what is computed, in SI units, every key checked.
+
+    Attributes
+    ----------
+    title : str, says in its second line what was changed since it was read
+    bearing, supports, rotor, load, contact, kinematics, mounting, integrator, identifier : tables of the scene file
+    excitation, bodies, mesh : plug-ins with their options; excitation and mesh may be None
+    source : the tree of plain tables it was made from, presets resolved
+    given : what the user said, presets not resolved, from which ``with_`` goes on
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+    >>> scene.load.axial  # [N]
+    1000.0
+    >>> scene
+    untitled
+      bearing  preset = B7206C
+      load     axial = 1000
+    """
+
+    title: str
+    bearing: Bearing
+    supports: Supports
+    rotor: Rotor
+    load: Load
+    excitation: Any
+    bodies: Any
+    mesh: Any
+    contact: Contact
+    kinematics: Kinematics
+    mounting: Mounting
+    integrator: Integration
+    identifier: Identifying
+    source: Tables = attrs.field(repr=False, eq=False)
+    given: Given | None = attrs.field(default=None, repr=False, eq=False)
+
+    @classmethod
+    def from_toml(cls, source: str | os.PathLike[str]) -> Scene:
+        """Read a scene from a TOML file, or from TOML text.
+
+        Parameters
+        ----------
+        source : path of a file (str or Path), or the text itself
+
+        Raises
+        ------
+        SceneError
+            With every mistake that was found.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> rw.Scene.from_toml('bearing.preset = "B7206C"').bearing.ball_count
+        12
+        """
+        from raceway.scene.given import as_scene
+
+        return as_scene(source)
+
+    @classmethod
+    def from_dict(cls, tables: ReadTables) -> Scene:
+        """Read a scene from a dict of tables, as a TOML file would give them.
+
+        Raises
+        ------
+        SceneError
+            With every mistake that was found.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "supports": {"tilt": "free"}}).supports.tilt
+        'free'
+        """
+        from raceway.scene.given import as_scene
+
+        return as_scene(tables)
+
+    def with_(self, **tables: Any) -> Scene:
+        """This scene with some keys changed; the plug-ins of this process are known.
+
+        Parameters
+        ----------
+        tables : by name, each a dict that is merged into the table; None takes a table or key out
+
+        Raises
+        ------
+        SceneError
+            With every mistake that was found.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> scene = rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+        >>> scene.with_(load={"axial": 400.0}, supports={"tilt": "free"}).load.axial
+        400.0
+        """
+        from raceway.scene.given import as_scene
+
+        return as_scene(self, tables)
+
+    @property
+    def spin_speed(self) -> float:
+        """Speed of the inner ring [rad/s]."""
+        rpm = self.kinematics.spin_speed_rpm
+        if rpm is None:
+            rpm = getattr(self.excitation, "speed_rpm", 0.0) if self.excitation is not None else 0.0
+        return rpm * pi / 30.0
+
+    @property
+    def time_constant(self) -> float:
+        """Of the contacts' dashpots c = tau k [s]; 0 where there are none of this kind, of a band the low end."""
+        contact = self.contact
+        if contact.in_a_band:
+            return TIME_CONSTANTS[0]
+        if contact.loss_factor is not None and self.excitation is not None:
+            return contact.loss_factor / (2.0 * pi * float(self.excitation.frequency_hz))
+        return contact.time_constant or 0.0
+
+    @property
+    def spin_changes(self) -> bool:
+        """Whether the spin speed is that of an excitation that changes its speed, and changes with it."""
+        excitation = self.excitation
+        changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
+        return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        """What was said, a table a row; defaults and a preset's numbers are left out."""
+        from raceway.scene.given import as_given, leaves
+
+        rows: list[Fact] = []
+        for name, table in as_given(self).merged().items():
+            if isinstance(table, dict):
+                said = [f"{key} = {told(value)}" for key, value in leaves(table)]
+                rows.append((name, "", ", ".join(said) or "defaults"))
+        return self.title, rows
+
+    def to_dict(self) -> Tables:
+        """Every key of the scene file with its value, defaults too; loads again as the same scene."""
+        tables: Tables = {"title": self.title}
+        for name in TABLES:
+            part = getattr(self, name)
+            if part is not None:
+                tables[name] = _plain(part)
+        for name in ("bodies", "excitation", "mesh"):
+            plugin = getattr(self, name)
+            if plugin is not None:
+                tables[name] = {"kind": plugin.name, **_plain(plugin)}
+        return tables
+
+
+def _plain(part: attrs.AttrsInstance) -> Tables:
+    out: Tables = {}
+    cls: type = type(part)
+    for name, plugin in _keys(cls):
+        value = getattr(part, name)
+        if plugin:
+            out.update(_plain(value))
+        elif isinstance(value, float | str):
+            out[name] = value
+        elif attrs.has(type(value)):
+            out[name] = _plain(value)
+        elif value is not None and value != ():
+            out[name] = _lists(value)
+    return out
+
+
+@cache
+def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
+    """Names of a table's keys, and whether it is the slot of a plug-in."""
+    return tuple((field.name, "plugin" in field.metadata) for field in attrs.fields(cls))
+
+
+def _lists(value: Any) -> object:
+    if isinstance(value, tuple):
+        return [_lists(part) for part in value]
+    return _plain(value) if attrs.has(type(value)) else value
