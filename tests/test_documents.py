@@ -78,7 +78,7 @@ SLOW = {
     "precision",
     "rig",
 }
-SLOW |= {"band", "film", "fit", "follow", "ross", "sensitivities", "stability", "sweep", "view"}
+SLOW |= {"film", "fit", "follow", "ross", "sensitivities", "stability", "sweep", "view"}
 #: Listings of Python in other hands: tests/test_docs.py; ROSS is in the environment of make docs, whose tutorial does the same.
 ELSEWHERE = {"plugins": "", "ross": "ross"}
 #: Languages of listings that nothing runs: text, and what the site reads.

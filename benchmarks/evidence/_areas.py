@@ -38,7 +38,7 @@ AREAS = {
         framework/options planning/implausible scene/__init__ scene/catalogue scene/bearing scene/changes scene/file scene/given scene/presets scene/reading scene/requires scene/structure
         scene/scene scene/sets scene/tables scene/units scene/unused""",
     "gradients": "pipeline/gradient scene/continuous studies/sensitivities",
-    "band": "scene/tolerance studies/band",
+    "band": "scene/tolerance scene/tolerance_class studies/band",
     "article": "studies/article data/article",
     "catalogue": """
         data/materials data/printed data/series pipeline/ball_pass scene/materials studies/catalogue studies/infer""",

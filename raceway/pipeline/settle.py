@@ -74,10 +74,12 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
     weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
     scaled = weight[:, None] * system.reduced(stiffness + system.stiffness) * weight
     values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
-    if values[-1] > 0.0 and values[0] > 1e-12 * values[-1]:
+    loose = values <= 1e-12 * max(values[-1], 0.0)
+    if not loose.any():
         return
-    motion = np.abs(vectors[:, 0])
-    names = [COORDINATES[chosen[k]] for k in np.argsort(-motion) if motion[k] > 0.3 * motion.max()]
+    # Of several free motions any combination is one: the parts of all of them, equal ones in the order of coordinates.
+    motion = np.round(np.linalg.norm(vectors[:, loose], axis=1), 3)
+    names = [COORDINATES[chosen[k]] for k in np.argsort(-motion, kind="stable") if motion[k] > 0.3 * motion.max()]
     held = "supports.tilt" if names[0].startswith("tilt") else "an axial load"
     why = lost_preload(model) or f"Hold it ({held}) or load more balls."
     raise ConvergenceError(

@@ -124,7 +124,7 @@ def test_a_map_that_maps_nothing_is_refused(columns, words):
 
 def test_a_map_without_a_name_is_refused(tmp_path):
     found = invoke("identify", "a.csv", "--scene", SCENE, "--map", "y_um", "--out", tmp_path)
-    assert found.exit_code == 2 and '"X [um]=y_um"' in found.stderr
+    assert found.exit_code == 2 and '"X [µm]=y_um"' in found.stderr
 
 
 def test_a_shaker_s_record_is_read_and_told_what_is_missing(tmp_path):

@@ -225,7 +225,7 @@ def test_options_that_contradict_each_other_or_make_no_sense(tmp_path):
 def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
     quiet = attrs.evolve(silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
-    path = write_recording(attrs.evolve(own, y=300.0 * own.y, z=300.0 * own.z), tmp_path / "far.csv")
+    path = write_recording(attrs.evolve(own, y=3000.0 * own.y, z=3000.0 * own.z), tmp_path / "far.csv")
     found = invoke("identify", path, "--scene", SCENE, "--set", "load.axial=2000", "--out", tmp_path)
     assert found.exit_code == 1
     assert "Are unbalance, sensor's place and run-out right?" in found.stderr
