@@ -2,6 +2,7 @@
 
 import json
 
+import attrs
 import numpy as np
 import pytest
 
@@ -193,3 +194,12 @@ def test_the_command_goes_on_with_what_is_kept(tmp_path):
     told = (tmp_path / "band.json").read_text()
     assert invoke(*words).exit_code == 0
     assert (tmp_path / "band-rows.jsonl").read_text() == kept and (tmp_path / "band.json").read_text() == told
+
+
+def test_a_nominal_answer_outside_its_band_and_rough_indices_are_told():
+    band = rw.band({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}, {"load.axial": "±5 %"}, count=16)
+    assert not [text for text in band.remarks if "outside" in text]
+    elsewhere = attrs.evolve(band, nominal={name: 10.0 * value for name, value in band.nominal.items()})
+    assert any("lies outside the band" in text and "kxx" in text for text in elsewhere.remarks)
+    rough = attrs.evolve(band, total={"kxx": [1.2]})
+    assert any("--count" in text for text in rough.remarks)

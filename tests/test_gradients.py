@@ -205,3 +205,16 @@ def test_the_command_writes_what_it_shows(tmp_path):
     found = rw.sensitivities(file, ["load.axial"])
     line = (tmp_path / "sensitivities.csv").read_text().splitlines()[1].split(",")
     assert line[0] == "load.axial" and float(line[3]) == pytest.approx(found["load.axial"].influence["kxx"], rel=1e-12)
+
+
+def test_derivatives_of_an_unstable_orbit_are_told_to_be_such():
+    found = rw.sensitivities(rw.load_scene("examples/folds.toml", ["excitation.speed_rpm=21784"]), ["load.axial"])
+    assert "disturbances grow" in found.warnings[0]
+    assert not rw.sensitivities(
+        rw.load_scene("examples/folds.toml", ["excitation.speed_rpm=12000"]), ["load.axial"]
+    ).warnings
+
+
+def test_a_key_that_is_asked_for_and_has_no_derivative_is_refused():
+    found = invoke("sensitivities", "examples/b7206.toml", "--by", "contact.friction")
+    assert found.exit_code == 2 and "`contact.friction` = 0" in found.stderr

@@ -26,7 +26,7 @@ from raceway.core.periodic.rates import renew, stiff
 from raceway.core.periodic.search import Found, find
 from raceway.core.periodic.steady import refuse
 from raceway.core.periodic.sweep import spread
-from raceway.core.periodic.told import first_line
+from raceway.core.periodic.told import first_line, orbits, unstable
 from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.surrogate import surrogate
@@ -106,6 +106,14 @@ class SteadyOrbit:
             raise SceneError.at("kinematics.orbiting", True, why)
         tolerance = float(getattr(model.scene.integrator.method, "tolerance", _TOLERANCE))
         return cls(model, find(problem, q, equilibrium.stiffness, min(tolerance, _TOLERANCE)))
+
+    @property
+    def warning(self) -> str:
+        """What a person must know of an orbit that is unstable; empty where it is not."""
+        told = orbits([self.found])[0]
+        if told["stable"]:
+            return ""
+        return f"the steady orbit is unstable, {unstable(told)}: a ring leaves it, and what holds of it holds of no lasting motion"
 
     @cached_property
     def line(self) -> np.ndarray:

@@ -113,5 +113,6 @@ def _screen(content: ReadTables, files: list[str]) -> RenderableType:
     lines.append(f"{content['samples']} samples")
     if content["lost"]:
         lines.append(f"{content['lost']} have no answer, so that no indices are told: {content['why_lost']}")
+    lines += [f"warning: {text}" for text in content["remarks"]]
     lines += [f"written: {', '.join(files)}"] if files else []
     return Group(rows_table(rows, content["title"]), *(Text(line) for line in lines))

@@ -30,6 +30,8 @@ from raceway.studies.many.row_store import RowStore, row_key
 _CHUNK, _LIMITS = 256, (0.025, 0.975)
 #: Bins of a histogram.
 _BINS = 24
+#: By so much a Sobol index of few samples may lie beyond 0 and 1 before that is told.
+_ROUGH = 0.05
 
 
 @attrs.frozen(eq=False, repr=False)
@@ -63,6 +65,21 @@ class Band(Shown):
     lost: int
     why: str
 
+    @property
+    def remarks(self) -> list[str]:
+        """Where band or indices must not be taken at their word."""
+        far = [name for name, value in self.nominal.items() if not self.low[name] <= value <= self.high[name]]
+        found = []
+        if far:
+            found.append(
+                f"the nominal {', '.join(far)} lies outside the band: the answer jumps within the tolerances, to another motion or other "
+                "contacts; raceway follow shows where"
+            )
+        shares = [one for some in (self.first, self.total) for name in some for one in some[name]]
+        if any(abs(one - 0.5) > 0.5 + _ROUGH for one in shares):
+            found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, take a larger --count")
+        return found
+
     def _shown(self) -> tuple[str, list[Fact]]:
         rows = [
             (name, number(value, UNITS[name]), f"95 % of samples from {self.low[name]:.5g} to {self.high[name]:.5g}")
@@ -89,7 +106,11 @@ class Band(Shown):
             for one in self.tolerances
         ]
         content = {"title": self.title, "quantities": quantities, "tolerances": varied}
-        return dict(without_nan(content | {"samples": self.samples, "lost": self.lost, "why_lost": self.why}))
+        return dict(
+            without_nan(
+                content | {"samples": self.samples, "lost": self.lost, "why_lost": self.why, "remarks": self.remarks}
+            )
+        )
 
     def save(self, folder: Path) -> Path:
         """Write band.json.

@@ -136,7 +136,10 @@ class Walk:
                 opens, length = located(branch, one, two, size, lambda point: openness(point.solved)[0])
                 curve.labels.append(Label(OPENS, row_of(opens, self.arc + length, self.mass)))
         except (ConvergenceError, ValueError) as why:
-            curve.notes.append(f"between {one.parameter:.6g} and {two.parameter:.6g}: not located ({why})")
+            span = f"between {one.parameter:.6g} and {two.parameter:.6g}"
+            curve.notes.append(
+                f"{span} a fold, peak or change of stability or contact is not located, take a smaller --aim ({why})"
+            )
 
     def _meshed(self, point: Point) -> Point:
         """The same orbit on a mesh that is fit for the fastest vibration at the present speed."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from raceway.bodies.model import build_model
 from raceway.commands.progress import telling
 from raceway.core.jit import working_processor_time
+from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
@@ -44,7 +45,7 @@ def sensitivities(
     Raises
     ------
     SceneError
-        With every mistake of the scene; a key that is not continuous; bodies whose contacts have no derivative.
+        With every mistake of the scene; a key that is not continuous or has no derivative; bodies whose contacts have no derivative.
     ConvergenceError
         No equilibrium or no steady orbit.
 
@@ -56,9 +57,13 @@ def sensitivities(
     0.54
     """
     read = as_scene(scene, plugins=plugins)
+    keys = list(keys)
     chosen = [key_of(read, path) for path in keys] or continuous_keys(read)
     with telling(progress) as told:
         begun = working_processor_time()
         model = build_model(read, make_plan(read, registry=default_registry()))
         equilibrium = settle(model)
-        return sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told)
+        found = sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told)
+    if keys and found.refused:
+        raise SceneError([Mistake(key.path, key.value, why) for key, why in found.refused])
+    return found

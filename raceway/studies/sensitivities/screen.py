@@ -31,7 +31,8 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
         for name in quantities:
             row[f"{name.replace('_', ' ')} [% per %]"] = _share(key, name)
         rows.append(row)
-    lines = [f"cost: {_cost(content['cost'])}"]
+    lines = [f"warning: {text}" for text in content["warnings"]]
+    lines += [f"cost: {_cost(content['cost'])}"]
     zero = [key["key"] for key in content["keys"] if not key["influence"]]
     lines += [f"0, so without a share; derivatives in the files: {', '.join(zero)}"] if zero else []
     rough: dict[str, list[str]] = {}

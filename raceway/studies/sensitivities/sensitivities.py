@@ -58,6 +58,7 @@ class Sensitivities(Shown):
     values : quantity -> number, SI;  rows : of keys that change something
     without_effect : keys that change nothing;  refused : (key, why it has no derivative)
     run_s, gradients_s : processor time of equilibrium and orbit, and of all derivatives [s];  models : built for these
+    warnings : what to know of the answer itself
 
     Examples
     --------
@@ -75,6 +76,7 @@ class Sensitivities(Shown):
     run_s: float
     gradients_s: float
     models: int
+    warnings: tuple[str, ...] = ()
 
     def __getitem__(self, path: str) -> Sensitivity:
         return next(row for row in self.rows if row.key.path == path)
@@ -98,6 +100,7 @@ class Sensitivities(Shown):
                     "keys": [_table(row) for row in self.rows],
                     "without_effect": [key.path for key in self.without_effect],
                     "refused": [{"key": key.path, "value": key.value, "reason": why} for key, why in self.refused],
+                    "warnings": list(self.warnings),
                     "cost": {"run_s": self.run_s, "gradients_s": self.gradients_s, "models": self.models},
                 }
             )
@@ -172,7 +175,9 @@ def sensitivities_of(
     first = next(iter(now))
     rows.sort(key=lambda row: -abs(row.influence.get(first, 0.0)))
     took = working_processor_time() - begun
-    return Sensitivities(model.scene.title, now, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models)
+    warning = "" if gradients.orbit is None else gradients.orbit.warning
+    warnings = (warning,) if warning else ()
+    return Sensitivities(model.scene.title, now, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models, warnings)
 
 
 def _table(row: Sensitivity) -> Tables:
