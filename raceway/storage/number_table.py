@@ -25,6 +25,7 @@ LARGEST = 2**29
 _PART, _SHOWN = 2**22, 60
 #: Longest interval that is bridged, over the usual one.
 _GAP = 5.0
+_NO_TABLE = "cannot be read: it is not a text file of comma-separated values"
 
 
 @attrs.frozen(eq=False)
@@ -73,8 +74,6 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
     try:
         with open(path, encoding=_encoding(path)) as stream:
             line, header, sign = _header(stream)
-            if not header:
-                raise ValueError("is empty: a header line and samples are needed")
             judge(header)
             most = _lines_of(path)
             values, lines = np.empty((most, len(header))), np.empty(most, dtype=np.int64)
@@ -88,8 +87,24 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
                 values[count:end], lines[count:end] = _values(rows, numbers, len(header), sign), numbers
                 count = end
     except (UnicodeDecodeError, csv.Error):
-        raise ValueError("cannot be read: it is not a text file of comma-separated values") from None
+        raise ValueError(_NO_TABLE) from None
     return NumberTable(header, values[:count], lines[:count])
+
+
+def read_heads(path: Path) -> list[str]:
+    """The header of a file, as ``read_numbers`` reads it.
+
+    Raises
+    ------
+    ValueError, OSError
+        As ``read_numbers``.
+    """
+    size_of(path, LARGEST)
+    try:
+        with open(path, encoding=_encoding(path)) as stream:
+            return _header(stream)[1]
+    except (UnicodeDecodeError, csv.Error):
+        raise ValueError(_NO_TABLE) from None
 
 
 def _lines_of(path: Path) -> int:
@@ -119,7 +134,7 @@ def _header(stream: TextIO) -> tuple[int, list[str], str]:
         if text.strip():
             sign = _sign(text)
             return number, [word.strip() for word in next(csv.reader([text], delimiter=sign))], sign
-    return number, [], ","
+    raise ValueError("is empty: a header line and samples are needed")
 
 
 def _sign(header: str) -> str:

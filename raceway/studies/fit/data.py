@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.framework.options import nearest
-from raceway.storage.number_table import NumberTable, read_numbers
+from raceway.storage.number_table import NumberTable, read_heads, read_numbers
 from raceway.studies.measured.heads import quantity_of
+from raceway.studies.measured.signals import reading
 
 
 def over_time(data: Any, columns: Mapping[str, str] | None) -> bool:
@@ -24,11 +24,11 @@ def over_time(data: Any, columns: Mapping[str, str] | None) -> bool:
     """
     if hasattr(data, "data_vars"):
         return True
-    heads = read(data, heads_only=True)[0].header
+    heads = _heads(Path(data)) if isinstance(data, str | Path) else read(data)[0].header
     return any(quantity_of((columns or {}).get(head, head)) == "time" for head in heads)
 
 
-def read(data: Any, heads_only: bool = False) -> tuple[NumberTable, str]:
+def read(data: Any) -> tuple[NumberTable, str]:
     """Numbers below their heads, and their source: a CSV file's path, or "data".
 
     Raises
@@ -37,7 +37,9 @@ def read(data: Any, heads_only: bool = False) -> tuple[NumberTable, str]:
         What is wrong with them, with the line.
     """
     if isinstance(data, str | Path):
-        return _from_file(Path(data), heads_only), str(data)
+        path = Path(data)
+        with reading(path):
+            return read_numbers(path, lambda heads: None), str(data)
     if hasattr(data, "columns") and hasattr(data, "to_numpy"):
         data = {str(name): data[name].to_numpy() for name in data.columns}
     if not isinstance(data, Mapping):
@@ -47,29 +49,9 @@ def read(data: Any, heads_only: bool = False) -> tuple[NumberTable, str]:
     return _from_arrays({str(head): values for head, values in data.items()}), "data"
 
 
-class _Read(Exception):  # noqa: N818
-    """The heads of a file are known."""
-
-
-def _from_file(path: Path, heads_only: bool) -> NumberTable:
-    seen: list[str] = []
-
-    def judge(heads: list[str]) -> None:
-        seen.extend(heads)
-        if heads_only:
-            raise _Read
-
-    try:
-        return read_numbers(path, judge)
-    except _Read:
-        return NumberTable(seen, np.empty((0, len(seen))), np.empty(0, dtype=int))
-    except FileNotFoundError:
-        near = sorted(p.name for p in path.parent.glob("*.csv")) if path.parent.is_dir() else []
-        raise SceneError.at(str(path), None, f"no such file{nearest(path.name, near)}") from None
-    except OSError as why:
-        raise SceneError.at(str(path), None, f"cannot be read: {why.strerror or why}") from None
-    except ValueError as why:
-        raise SceneError.at(str(path), None, str(why)) from None
+def _heads(path: Path) -> list[str]:
+    with reading(path):
+        return read_heads(path)
 
 
 def _from_arrays(given: Mapping[str, Any]) -> NumberTable:

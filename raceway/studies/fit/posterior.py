@@ -85,7 +85,7 @@ def require_emcee() -> None:
         It is missing.
     """
     try:
-        import emcee  # noqa: F401
+        import emcee  # noqa: F401  (whether it is there, before the fit takes its time)
     except ImportError as why:
         raise RacewayError(f"the posterior needs emcee: {extra('fit')} ({why})") from None
 

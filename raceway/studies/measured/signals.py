@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,20 @@ def signals_of(given: Any, columns: Mapping[str, str] | None = None) -> Signals:
     return _from_arrays(arrays, columns)
 
 
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """What is wrong with a CSV file, as a ``SceneError`` of its path."""
+    try:
+        yield
+    except FileNotFoundError:
+        near = sorted(p.name for p in path.parent.glob("*.csv")) if path.parent.is_dir() else []
+        raise SceneError.at(str(path), None, f"no such file{nearest(path.name, near)}") from None
+    except OSError as why:
+        raise SceneError.at(str(path), None, f"cannot be read: {why.strerror or why}") from None
+    except ValueError as why:
+        raise SceneError.at(str(path), None, str(why)) from None
+
+
 def read_signals(path: Path, columns: Mapping[str, str] | None = None) -> Signals:
     """The record in a CSV file.
 
@@ -87,16 +102,9 @@ def read_signals(path: Path, columns: Mapping[str, str] | None = None) -> Signal
     SceneError
         What is wrong with the file, with the line.
     """
-    try:
+    with reading(path):
         table = read_numbers(path, lambda heads: _needed(heads, columns, "line 1: "))
         return _from_table(table, str(path), columns, "line 1: ")
-    except FileNotFoundError:
-        near = sorted(p.name for p in path.parent.glob("*.csv")) if path.parent.is_dir() else []
-        raise SceneError.at(str(path), None, f"no such file{nearest(path.name, near)}") from None
-    except OSError as why:
-        raise SceneError.at(str(path), None, f"cannot be read: {why.strerror or why}") from None
-    except ValueError as why:
-        raise SceneError.at(str(path), None, str(why)) from None
 
 
 def _from_arrays(arrays: Mapping[str, Any], columns: Mapping[str, str] | None) -> Signals:
