@@ -32,6 +32,20 @@ _COLUMNS = {
         "pitch_scatter",
     ),
 }
+#: 90 % of stiffnesses, axial and radial, lie within this, and what was compared (``python -m benchmarks.meaning catalogue``).
+_UNCERTAINTY = ("stiffness_error", "radial_stiffness_error", "stiffness_basis")
+_KNOWN = (
+    STIFFNESS_90["tables"], 0.08,
+    '"axial stiffnesses printed for pairs of series 70, from grooves that those of 7206 give, and the reverse; radial: the printed '
+    'factors of 15 and 30 deg, which are rounded"',
+)  # fmt: skip
+_UNCERTAIN = {
+    "79": (
+        0.2, 0.2,
+        '"no stiffness of this series is printed: what one groove for all sizes leaves of a series of another maker, if it is taken '
+        'from his other series"',
+    )
+}  # fmt: skip
 _ERRORS = ("dynamic_rating_error", "static_rating_error")
 
 
@@ -41,7 +55,7 @@ def text(series: str, sizes: list[Inferred]) -> str:
     lines = [
         "# Written by `python -m benchmarks.presets`; do not edit by hand.  Lengths in m; scatters and errors are relative.",
         f'title = "angular-contact ball bearing of series {series}"',
-        f"stiffness_error = {STIFFNESS_90['tables']:g}  # 90 % of the printed axial stiffnesses of pairs of series 70 are met within this",
+        *(f"{key} = {value}" for key, value in zip(_UNCERTAINTY, _UNCERTAIN.get(series, _KNOWN), strict=True)),
         f"order = {_list(order)}",
         "# Computed over printed, less 1: of the printed ratings at the bearing's own contact angle.",
         f"printed = {_list(_ERRORS)}",

@@ -23,7 +23,6 @@ from raceway.commands.frame import (
     on_scene,
     out_folder,
     plugin_files,
-    programs,
     record,
     show,
     show_progress,
@@ -130,7 +129,6 @@ class RunOptions(NamedTuple):
     "--patience", type=click.FloatRange(min=0.0), default=20.0, show_default=True, metavar="FACTOR",
     help="Stop a run that takes this many times its planned time; inf: never.",
 )  # fmt: skip
-@programs
 @plugin_files
 @explained
 @common

@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.pipeline.ball_pass import ball_pass
+from raceway.bodies.model import build_model
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
+from raceway.pipeline.ball_pass import ball_pass, ball_pass_table
 from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
 from raceway.scene.reading import scene_from_dict
 
 
@@ -51,3 +55,20 @@ def test_each_row_of_a_pair_has_its_own():
     rows = run(scene_from_dict({"bearing": pair, "load": {"axial": 400.0}})).ball_pass["rows"]
     assert len(rows) == 2
     assert rows[0]["contact_angle_deg"] > rows[1]["contact_angle_deg"] > 15.0
+
+
+def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
+    """Centrifugal forces and orbiting balls go round at the free angle."""
+    tables = {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": 2000.0},
+        "kinematics": {"spin_speed_rpm": 15000.0, "orbiting": True},
+    }
+    scene = scene_from_dict(tables)
+    model = build_model(scene, make_plan(scene))
+    row = ball_pass_table(model, settle(model))["rows"][0]
+    cage, b = row["ftf_in_forces"] * scene.spin_speed, scene.bearing
+    assert model.system.scalars[CAGE] == pytest.approx(cage, rel=1e-14)
+    centrifugal = model.geometry.ball_mass(b.balls.density) * 0.5 * b.pitch_diameter * cage**2
+    assert model.system.table[:, CENTRIFUGAL] == pytest.approx(centrifugal, rel=1e-13)
+    assert row["ftf"] > 1.005 * row["ftf_in_forces"]

@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from raceway import load_scene, scene_from_dict
+from raceway import SceneError, check, load_scene, make_plan, plan, scene_from_dict
 from raceway.cli import main
 from raceway.errors import BeyondPlanError
 from raceway.pipeline.allowance import PATIENCE, Allowance
@@ -77,7 +77,7 @@ def test_a_search_that_is_stopped_tells_no_error(monkeypatch):
             raise BeyondPlanError("stopped far beyond the plan")
         check(self, what, done, total)
 
-    monkeypatch.setattr("raceway.pipeline.error.steady_motion._last_turn", lambda *_: None)
+    monkeypatch.setattr("raceway.pipeline.error.steady_motion.last_turn", lambda *_: None)
     scene = scene_from_dict(article(800.0, start="ramp", turns=24))
     whole = run(scene)
     monkeypatch.setattr(Allowance, "check", stop)
@@ -110,7 +110,7 @@ def test_only_many_times_the_plan_is_beyond_it(monkeypatch):
 
 def test_short_plans_count_as_three_seconds(monkeypatch):
     clock = Clock(monkeypatch)
-    plan = type("Plan", (), {"predicted_wall_s": 0.01, "at_least": False})()
+    plan = type("Plan", (), {"predicted_wall_s": 0.01, "predicted_bytes": 0, "at_least": False})()
     allowance = Allowance.of(plan, PATIENCE)
     clock.now = 59.0
     assert not allowance.spent
@@ -131,3 +131,29 @@ def test_a_search_for_steady_motions_is_stopped_between_their_points(tmp_path):
     )
     assert found.exit_code == 1, found.output
     assert "stopped far beyond the plan, in periodic" in json.loads(found.stdout)["errors"][0]["message"]
+
+
+def test_memory_beyond_the_plan_stops_a_run(monkeypatch):
+    """Growth since the run began counts: what a process held before is not its own."""
+    held = [3e9]
+    monkeypatch.setattr("raceway.pipeline.allowance.resident_bytes", lambda: held[0])
+    plan = type("Plan", (), {"predicted_wall_s": 1.0, "predicted_bytes": 1e9, "at_least": False})()
+    allowance, endless = Allowance.of(plan, PATIENCE), Allowance.of(plan, float("inf"))
+    held[0] = 4.9e9
+    allowance.check("equilibrium", 3, 0)
+    held[0] = 5.1e9
+    endless.check("equilibrium", 3, 0)
+    with pytest.raises(BeyondPlanError, match=r"its memory is over 2 times the planned 0.93 GiB.*--patience inf"):
+        allowance.check("equilibrium", 3, 0)
+
+
+def test_plan_refuses_what_check_refuses():
+    scene = {"bearing": {"preset": "B7206C"}}
+    with pytest.raises(SceneError, match="nothing loads the bearing"):
+        plan(scene)
+    assert [one.path for one in check(scene).mistakes] == ["load.axial"]
+
+
+def test_the_plan_of_elastic_bodies_states_their_memory():
+    assert make_plan(elastic_scene(**QUICK)).to_dict()["predicted_bytes"] > 2e8
+    assert make_plan(load_scene(ARTICLE)).to_dict()["predicted_bytes"] is None

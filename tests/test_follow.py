@@ -221,6 +221,23 @@ def test_the_article_s_bearing_through_its_folds(curve):
     assert [row.parameter for row in curve.unstable[0]] == folds
 
 
+@pytest.mark.slow
+def test_a_branch_that_an_internal_resonance_ends_names_it():
+    """README's scene, lighter, tilt free, undamped: five times 5184 r/min is the ring's lowest natural frequency, 25 918 r/min."""
+    scene = rw.evolve(
+        "examples/b7206.toml", {"load.axial": 400.0, "supports.tilt": "free", "excitation.kind": "unidirectional"}
+    )
+    curve = rw.follow(scene, "excitation.speed_rpm=5000:6000")
+    assert "its 5x harmonic outweighs the 1x line" in curve.end
+
+
+@pytest.mark.slow
+def test_balls_that_graze_their_races_do_not_lose_the_curve():
+    scene = rw.evolve("examples/b7206.toml", {"load.axial": 400.0, "supports.tilt": "free"})
+    curve = rw.follow(scene, "excitation.speed_rpm=500:30000")
+    assert len(curve.rows) > 50 and curve.end
+
+
 def test_k_and_multipliers_by_other_methods(curve):
     """The reference ring's forces in harmonic balance, and a turn of DOP853 with its variational equations."""
     fold = next(label.point for label in curve.labels if label.kind == FOLD)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear.natural_modes import natural_modes
 from raceway.core.linear.statics import solve_static
 from raceway.errors import ConvergenceError
+from validation.natural_modes import natural_modes
 from validation.reference import annulus, elastic
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
+from contextlib import redirect_stdout
+from io import StringIO
 
 import numpy as np
 import pytest
+from rich.console import Console
 
-from raceway.errors import ConvergenceError
+from raceway.commands.screen.result import run_screen
+from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.options import nearest
+from raceway.pipeline.facts import facts
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import _stride
+from raceway.planning.implausible import implausible
 from raceway.planning.recording import samples_per_turn
 from raceway.scene.reading import scene_from_dict
 from validation.command_line import EXAMPLES
@@ -64,6 +71,141 @@ def test_balls_that_unload_during_a_turn_are_told():
 
 def test_a_moment_on_locked_tilts_has_no_effect_and_says_so():
     assert any("`load.moment` has no effect" in w for w in computed(load={"moment": [3.0, 0.0]}).warnings)
+
+
+def static(**tables):
+    return run(scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 300.0}, **tables})).warnings
+
+
+def of_one_kind(warnings, words):
+    """The one warning with these words, no other one with it."""
+    (text,) = warnings
+    assert words in text
+    return text
+
+
+SET = {"preset": "7014C", "arrangement": "DB", "preload": 500.0}
+FAST = {"ring_growth": True, "spin_speed_rpm": 20000.0}
+
+
+def test_a_ring_without_a_fit_is_as_loose_as_one_whose_fit_is_lost():
+    """16.3 um: plane-stress annuli of a bore of 70 mm and a land of 85.7 mm on a solid shaft, both turning."""
+    kyy = []
+    for fit in (0.0, 1e-6, 5e-6):
+        result = run(scene_from_dict({"bearing": SET, "kinematics": FAST, "mounting": {"shaft_interference": fit}}))
+        text = of_one_kind(result.warnings, "has grown 16.3 µm more")
+        assert f"loose on its shaft by {16.3 - 1e6 * fit:.1f} µm" in text
+        kyy.append(result.stiffness[1, 1])
+    assert kyy[0] == kyy[1] == kyy[2]
+    assert not static(bearing=SET, kinematics=FAST, mounting={"shaft_interference": 20e-6})
+    # A hollow shaft grows more, by a share of a quarter of the bore's square; the finest tolerance of a fit is no loss.
+    hollow = of_one_kind(static(bearing=SET, kinematics=FAST, mounting={"shaft_bore": 35e-3}), "loose on its shaft")
+    assert float(hollow.split(" by ")[1].split()[0]) < 16.0
+    assert not static(bearing=SET, kinematics={**FAST, "spin_speed_rpm": 2000.0})
+
+
+def test_an_aluminium_housing_that_lets_its_ring_go_is_told():
+    """62 mm, 11 ppm/K more than steel, 40 K: 27 um, of which the fit takes 10."""
+    aluminium = {"young": 70e9, "poisson": 0.33, "density": 2700.0, "thermal_expansion": 23e-6}
+    warm = {"outer_temperature": 40.0, "inner_temperature": 40.0, "ball_temperature": 40.0, "housing_material": aluminium}
+    steel = scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 300.0}}).bearing.rings.thermal_expansion
+    for fit in (0.0, 10e-6):
+        lost = 1e6 * (62e-3 * 40.0 * (23e-6 - steel) - fit)
+        text = of_one_kind(
+            static(mounting={**warm, "housing_interference": fit}), "the outer ring is loose in its housing by "
+        )
+        assert float(text.split("housing by ")[1].split()[0]) == pytest.approx(lost, rel=5e-3)
+    assert not static(mounting={**warm, "housing_interference": 30e-6})
+
+
+def test_a_check_tells_of_the_loose_ring():
+    assert any("loose on its shaft" in text for text in implausible(scene_from_dict({"bearing": SET, "kinematics": FAST})))
+
+
+def test_a_row_that_lifts_off_is_told():
+    pair = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}
+    assert of_one_kind(static(bearing=pair, load={"axial": 3000.0}), "row 2 lifts off")
+    assert of_one_kind(static(bearing=pair, load={"axial": -3000.0}), "row 1 lifts off")
+    assert not static(bearing=pair, load={"axial": 300.0, "radial": [300.0, 0.0]})
+
+
+@pytest.mark.parametrize(("axial", "angle"), [(0.0, 0.0), (1.0, 0.03), (100.0, 2.56)])
+def test_a_row_that_the_radial_load_unseats_is_told(axial, angle):
+    text = of_one_kind(static(load={"axial": axial, "radial": [2000.0, 0.0]}), "the bearing unseats")
+    assert f"loaded ball is {angle:.2f} deg, 15 deg without loads" in text
+    # At least one ball stands at atan(F_a / F_r) or below.
+    assert angle <= np.degrees(np.arctan2(axial, 2000.0)) + 0.005
+
+
+def test_rows_that_run_at_a_low_angle_by_their_make_or_growth_are_no_unseated_ones():
+    own = {
+        "ball_diameter": 9.525e-3,
+        "pitch_diameter": 46e-3,
+        "ball_count": 9,
+        "conformity_inner": 0.52,
+        "conformity_outer": 0.52,
+    }
+    assert not static(bearing={**own, "radial_clearance": 10e-6}, load={"radial": [2000.0, 0.0]})
+    assert not static(load={"axial": 600.0, "radial": [2000.0, 0.0]})
+    # Without loads a raceway wider by 12 um leaves 5 deg of 15.
+    assert not static(kinematics={"radial_expansion": 12e-6}, load={"axial": 100.0})
+
+
+def test_a_contact_pressure_beyond_static_ratings_is_told():
+    text = of_one_kind(
+        [w for w in static(load={"axial": 1e6}) if "groove's edge" not in w], "10657 MPa on the inner race, ball 0"
+    )
+    assert "4200 MPa" in text
+    # Of 12 equal balls at the angle of this load the limit is met near 39 kN.
+    low, high = (any("contact pressure" in w for w in static(load={"axial": load})) for load in (37e3, 41e3))
+    assert (low, high) == (False, True)
+    pair = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}
+    assert any("inner race, row 2, ball 0:" in w for w in static(bearing=pair, load={"axial": -5e4}))
+    moving = computed(
+        load={"axial": 20e3}, excitation={**EXCITED, "amplitude": "constant", "unbalance": None, "force": 20e3}
+    ).warnings
+    assert any("during a turn the contact pressure" in w for w in moving) and not any(
+        w.startswith("the contact pr") for w in moving
+    )
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"contact": {"friction": 1.5}}, "`contact.friction` = 1.5 is more than 1: "),
+        ({"rotor": {"mass": 1e6}}, "`rotor.mass` = 1e+06 kg is more than 10000 kg"),
+        ({"mounting": {"shaft_interference": 2.0}}, None),
+    ],
+)
+def test_implausible_numbers_are_told(tables, words):
+    if words is None:  # so large a fit is refused before
+        with pytest.raises(SceneError, match="close the bearing"):
+            static(**tables)
+    else:
+        assert any(words in text for text in static(**tables))
+
+
+def test_an_error_that_is_not_known_is_a_warning_with_its_reason():
+    (text,) = [w for w in computed(integrator={"turns": 1}).warnings if "the error of Z" in w]
+    assert (
+        text
+        == "the error of Z is not estimated: that of the transient is not known (a single turn tells nothing of a transient)"
+    )
+    assert not computed(integrator={"turns": 3}).warnings
+
+
+def test_numbers_that_a_part_of_the_error_is_as_large_as_are_no_numbers():
+    soft = computed(contact={"kind": "penalty", "stiffness": 1e15})
+    assert soft.error["contact"] > 1.0 > soft.error["total"] and soft.error["unresolved"] == ["contact"]
+    assert soft.warnings[0].startswith("Z is not resolved: the error of contact is ")
+    values = {name: value for name, value, _ in facts(soft)}
+    assert values["stiffness K"] == values["|Z|"] == values["damping C"] == "not resolved"
+    with redirect_stdout(StringIO()) as shown:
+        Console(width=160).print(run_screen(soft.to_dict(), []))
+    for name in ("equivalent stiffness K", "|Z|", "Z real"):
+        assert re.search(rf"{re.escape(name)} +not resolved +the error of Z \(contact\) is as large as Z", shown.getvalue())
+    other = computed(contact={"kind": "penalty", "stiffness": 1e14})
+    assert other.error["unresolved"] == [] and other.warnings == ()
 
 
 def test_damping_comes_with_its_absolute_error():

@@ -58,7 +58,7 @@ def test_what_the_screen_of_a_run_shows_is_in_its_result(tmp_path):
     assert found.exit_code == 0, found.stderr
     text, result = " ".join(found.stdout.split()), json.loads((tmp_path / "result.json").read_text())
     equilibrium, identification = result["equilibrium"], result["identification"]
-    assert f"kyy, tilt free {1e-6 * equilibrium['kyy_tilts_follow_n_per_m']:.5g} N/µm" in text
+    assert f"kyy tilts follow {1e-6 * equilibrium['kyy_tilts_follow_n_per_m']:.5g} N/µm tilt free" in text
     assert f"contact angle {equilibrium['free_contact_angle_deg']:.5g} deg, from the clearance" in text
     wide = identification["dynamic_stiffness_imag_error"]
     # Im Z = w C: both errors are one.
@@ -151,11 +151,15 @@ def test_a_pair_is_called_one_and_its_balls_have_rows(tmp_path):
         invoke("run", EXAMPLES / "duplex_db.toml", "--set", "load.radial=[50.0, 0.0]", "--out", tmp_path).stdout.split()
     )
     result = json.loads((tmp_path / "result.json").read_text())
-    loads = [ball["load_inner_n"] for ball in result["equilibrium"]["balls"]]
+    loads = [ball["load_outer_n"] for ball in result["equilibrium"]["balls"]]
     count = result["scene"]["bearing"]["ball_count"]
     row, ball = divmod(int(np.argmax(loads)), count)
-    assert "pair DB, back to back: two rows of these balls, 16 mm apart, mounted with 290 N (rigid)" in text
+    assert "pair DB, back to back: two rows of these balls, 16 mm apart, preload 290 N before mounting (rigid)" in text
+    assert result["equilibrium"]["largest_ball_load_race"] == "outer"
     assert f"most loaded ball {max(loads):.5g} N row {row + 1}, ball {ball} at" in text
+    inner = result["equilibrium"]["balls"][int(np.argmax(loads))]["load_inner_n"]
+    assert f"; outer race {1e-6 * result['equilibrium']['largest_pressure_outer_pa']:.0f} MPa" in text
+    assert f"; inner race {inner:.5g} N, " in text
     assert f"preload {result['equilibrium']['preload']['running_n']:.5g} N" in text
 
 

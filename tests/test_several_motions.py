@@ -118,6 +118,22 @@ def test_a_branch_that_closes_leads_to_the_stable_motion():
     assert multiplier == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("damping", [1e-6, 1e-3, 1.0])
+def test_the_least_damping_does_not_hide_the_stable_motion(damping):
+    """800 N: a crossing of branches that any damping parts; the motion beyond it is continued from the undamped ring."""
+    tables = article(800.0, kind="periodic", tolerance=1e-9)
+    alone = solved(tables).identification.dynamic_stiffness
+    tables["contact"] = {"damping": damping}
+    result = solved(tables)
+    orbit, z = result.simulation.orbits[0], result.identification.dynamic_stiffness
+    assert [one["stable"] for one in result.simulation.orbits] == [True, False, False]
+    assert orbit["found"] == "from no damping" and orbit["multiplier"] < 1.0
+    assert result.identification.equivalent_stiffness == pytest.approx(65.2e6, rel=1e-4)
+    # Of first order in c is the phase alone: w c times a number of the size of balls and harmonics.
+    assert 0.0 < z.imag < 100.0 * 2.0 * np.pi * 250.0 * damping
+    assert z.real == pytest.approx(alone.real, rel=1e-5)
+
+
 @pytest.mark.slow
 def test_a_transient_on_an_unstable_orbit_says_so():
     result = solved(article(500.0, turns=60))

@@ -88,6 +88,9 @@ _NOTES = {
     "bodies": "What deforms; `formulation` and `hourglass` belong to `elastic` bodies ([how they move](elastic_dynamics.md)).",
     "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh, elastic bodies need one; meshing by itself needs no other table than "
     "[bearing] and this one.",
+    "kinematics": "`gyroscopic` and `ring_growth` are hypotheses, and no default fits all bearings. What the others would change in K and kyy "
+    "is in [`error.model`](physics.md#hypotheses-left-at-their-defaults) and beside K on the screen, as long as the scene does not state them: "
+    'a key that is written, `gyroscopic = "none"` too, is a decision.',
     "mounting": "How rings are fitted and how warm they run, as given numbers: what that does to the grooves is added to the preload "
     "([sets](sets.md)).",
     "rig": "Read by `raceway study rig` and `raceway identify` ([the rig](rig.md)); a run takes no notice of it.",

@@ -62,7 +62,10 @@ def _inferred(found: Tables) -> list[Row]:
 
 def _known(found: Tables) -> list[Row]:
     count = found["internals_printed"]
-    note = f"{count} bearings of one maker, each inferred from what is printed of it and from the balls of the {count - 1} others"
+    note = (
+        f"{count} bearings of one maker, each inferred from what is printed of it and from the balls of the {count - 1} others, by its "
+        "own grooves; the tables, by which the 249 designations were made, are another practice: raceway infer gmn --maker NSK"
+    )
     rows = []
     for word, key in (
         ("Z right", "ball_count_right"),

@@ -7,7 +7,6 @@ from typing import Any
 from benchmarks.evidence import Row
 from benchmarks.evidence.condensed_calibrated import quantities, tables
 from benchmarks.evidence.condensed_seats import NODAL
-from raceway.pipeline.error.contact import contact_error
 from validation.scenes import settled
 
 TITLE = "Condensed bodies: the calibration of contact resultants"
@@ -25,7 +24,9 @@ def _rows(wall: float, tilt: str) -> list[Row]:
     bore, outer = WALLS[wall]
     plain: dict[str, Any] = tables(tilt, bearing={"preset": "B7206C", "bore": 1e-3 * bore, "outer_diameter": 1e-3 * outer})
     (model, ours), (_, theirs) = (settled({**plain, **more}) for more in ({}, NODAL))
-    stated = float(contact_error(model, ours)[0] or 0.0) + float(model.bearing.mesh_error(model, ours)[0] or 0.0)
+    stated = float(model.bearing.contact_error(model, ours)[0] or 0.0) + float(
+        model.bearing.mesh_error(model, ours)[0] or 0.0
+    )
     one, two, out = quantities(ours), quantities(theirs), []
     for name in ("x", "y", "kxx", "kyy", "kzz"):
         apart = one[name] / two[name] - 1.0

@@ -13,13 +13,25 @@ import numpy as np
 import raceway as rw
 from benchmarks.evidence import Row, below
 from benchmarks.evidence.ross import ROOT, interpreters
-from raceway.core.contact.film import REGIMES, film
+from raceway.core.contact.film import REGIMES, film, thermal_reduction
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
 from raceway.scene.tables import TIME_CONSTANTS
-from validation.film import OIL, ROLLED, motion, pair, preload_by_hand, regimes, rolled, rolled_by_regime, scene, springs
+from validation.film import (
+    OIL,
+    ROLLED,
+    inlet_film,
+    motion,
+    pair,
+    preload_by_hand,
+    regimes,
+    rolled,
+    rolled_by_regime,
+    scene,
+    springs,
+)
 
 TITLE = "Oil films and damping"
 COMMAND = "python -m benchmarks.evidence film"
@@ -56,19 +68,22 @@ def _formulas() -> list[Row]:
 
 
 def _published() -> list[Row]:
-    """A steel ball that rolls down a plate; printed answers."""
-    note = (
-        "exercise of a tribology course, in the notation of Stachowiak and Batchelor; the worked examples of Hamrock and of Harris were not "
-        "found where this project can look things up"
-    )
+    """A steel ball that rolls down a plate: the law against printed answers; and the heat of the inlet against its equations."""
     result = []
     for path, answer in ROLLED:
         found = film(**rolled(path))
-        regime, own = REGIMES[found.regime[0]], 1e6 * float(found.minimum[0])
-        value = rolled_by_regime(path)[0]
-        told = f"; the law takes {regime}, {own:.3f} µm"
-        name = f"h_min of a ball rolling down a plate, after {path:g} m, piezoviscous-elastic [µm]"
-        result.append(Row(name, value, f"{answer}, as printed", f"{value:.3f}" == answer, COMMAND, note + told))
+        value, name = 1e6 * float(found.minimum[0]), f"h_min of the law, a ball rolling down a plate, after {path:g} m [µm]"
+        note = (
+            f"the law's regime is {REGIMES[found.regime[0]]}; the exercise, of a tribology course in the notation of Stachowiak and "
+            f"Batchelor, takes piezoviscous-elastic without asking, of which the formula gives {rolled_by_regime(path)[0]:.3f}"
+        )
+        result.append(Row(name, value, f"{answer}, as printed", f"{value:.3f}" == answer, COMMAND, note))
+    note = "both of Wilson and Sheu's print: Murch and Wilson's fit; Grubin's inlet with the heat of shear, integrated here"
+    for loading in (0.1, 1.0, 10.0, 100.0):
+        off = abs(float(thermal_reduction(np.array(loading))) / inlet_film(loading) - 1.0)
+        result.append(
+            below(f"thermal reduction at L = {loading:g} against the integrated inlet, relative", off, 0.15, COMMAND, note)
+        )
     return result
 
 

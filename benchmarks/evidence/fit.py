@@ -102,7 +102,7 @@ def _records() -> Iterator[Row]:
         inside = np.zeros(len(names))
         half = []
         for seed in range(_SEEDS):
-            found = fit(record(k, c, m, seed), free=free, mass=0.0 if "mass" in names else m)
+            found = fit(record(k, c, m, seed), free=free, mass=None if "mass" in names else m)
             inside += [abs(found[name] - true[name]) <= found.half_width(name) for name in names]
             half.append([found.half_width(name) / true[name] for name in names])
         for place, name in enumerate(names):

@@ -17,7 +17,7 @@ TITLE = "Pages in headless chromium: whole, readable, without a network"
 PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "view"
 #: Words of the command, its page.
 PAGES = {
-    "view": (("view", "examples/b7206.toml", "--html", "--animate"), "view.html"),
+    "view": (("view", "examples/b7206.toml", "--html"), "view.html"),
     "map": (("study", "map"), "map.html"),
 }
 #: Pages as the tests make them: the article's around invented curves, the rig's of one speed and load; what is looked at.

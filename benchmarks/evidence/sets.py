@@ -158,8 +158,8 @@ def _running() -> list[Row]:
     running = preload_table(model, settle(model))
     strains = [scene.bearing.rings.thermal_expansion * value for value in warm.values()]
     shifts = [press(_ring(), 0.5 * _PRELOAD)] * 2 + [press(_ring(), _PRELOAD)]
-    grown = [s + side * (strains[0] - strains[1]) * x for s, side, x in zip(shifts, sides, places, strict=True)]
-    reference = RowSet([warmed(_ring(), *strains) for _ in sides], sides, places, grown)
+    rings = [warmed(_ring(), (strains[0], strains[1], strains[2]), side, x) for side, x in zip(sides, places, strict=True)]
+    reference = RowSet(rings, sides, places, shifts)
     expected = reference.rows(reference.settle(np.zeros(3)))[2]
     off = abs((running["running_n"] if running else 0.0) / expected - 1.0)
     name = "TBT, inner rings +14 K, outer +5 K, balls +11 K: relative difference of the running preload"

@@ -78,7 +78,7 @@ def _told() -> list[Row]:
     z, multiplier, gap = by_integration(closed, 0.0)
     first = closed.simulation.orbits[0]["stable"]
     out.append(below("article, 800 N, 'periodic': distance of a turn's end from its beginning, by integration, over the amplitude", gap,
-                     1e-10, COMMAND, f"K = {1e-6 * z.real:.5g} N/um, multiplier {multiplier:.6f}, {'' if first else 'not '}the stable one of {len(closed.simulation.orbits)} told"))  # fmt: skip
+                     1e-10, COMMAND, f"Re Z = {1e-6 * z.real:.5g} N/um, multiplier {multiplier:.6f}, {'' if first else 'not '}the stable one of {len(closed.simulation.orbits)} told"))  # fmt: skip
     return out
 
 

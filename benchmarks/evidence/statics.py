@@ -9,10 +9,10 @@ import numpy as np
 from benchmarks.evidence import Row, below, near
 from raceway import load_scene
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear.natural_modes import natural_modes
 from raceway.core.linear.statics import solve_static
 from raceway.core.mesh.quality import quality
 from raceway.plugins.meshers.structured import Structured
+from validation.natural_modes import natural_modes
 from validation.reference import annulus, elastic
 
 TITLE = "Static solver and natural frequencies"

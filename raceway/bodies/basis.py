@@ -34,7 +34,7 @@ class Basis:
     inner, outer : Hertz contacts; of rows that differ those of all balls, with numbers (Z,)
     azimuth : (Z,) at time zero, rows one after the other [rad];  row : (Z,) to which row of the set each ball belongs
     axial, ball_load : rough axial approach [m] and load of a ball [N] under the axial load alone
-    growth : of the grooves of the running, warm rows beyond the mounted ones'
+    growth : of the grooves of the running, warm rows beyond those before mounting
     """
 
     geometry: BallBearing
@@ -85,11 +85,12 @@ def make_basis(scene: Scene) -> Basis:
     axial, ball_load = axial_approach(scene)
     azimuths = np.concatenate(azimuth)
     return Basis(
-        geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), _growth(scene, row)
+        geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), growth_of(scene, row)
     )
 
 
-def _growth(scene: Scene, row: np.ndarray) -> Growth:
+def growth_of(scene: Scene, row: np.ndarray) -> Growth:
+    """Of the grooves; ``row`` (Z,) is each ball's."""
     rows = np.array([[*attrs.astuple(grooves(scene, k)), 0.0] for k in range(len(scene.bearing.rows))])
     # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
     common = rows[0].copy()

@@ -12,9 +12,11 @@ class Equilibrium:
 
     Attributes
     ----------
-    displacement : (5,) x, y, z [m], tilts [rad];  stiffness : (5, 5) tangent of the contacts
-    damping : (5, 5) of the contacts there, of slow motions [N s/m, N s/rad, N m s/m, N m s/rad]; 0 for elastic bodies, which know
-        it in motion only
+    displacement : (5,) x, y, z [m], tilts [rad]
+    stiffness : (5, 5) tangent of the contacts, rows on a spring following: how the constant loads change by the displacement
+    damping : (5, 5) of the contacts there, of slow motions, w -> 0 [N s/m, N s/rad, N m s/m, N m s/rad]; 0 for elastic bodies, which
+        know it in motion only
+    stiffness_rows_held, damping_rows_held : the same with rows on a spring held where they stand, as within a motion
     ball : (Z, 2) positions in the meridian planes [m]
     gap, contact_force : (2 Z,) inner races first [m, N]
     angle_inner, angle_outer : (Z,) contact angles [rad], nan where a contact is open
@@ -24,6 +26,8 @@ class Equilibrium:
     displacement: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
+    stiffness_rows_held: np.ndarray
+    damping_rows_held: np.ndarray
     ball: np.ndarray
     gap: np.ndarray
     contact_force: np.ndarray

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -22,6 +22,7 @@ from raceway.core.ring.surrogate import compiled
 from raceway.core.stepping.record import Motion, Record
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
+from raceway.framework.doors import door
 from raceway.framework.duties import bodies, traits_of
 from raceway.planning.plan import Plan
 from raceway.scene.scene import Scene
@@ -45,6 +46,8 @@ class Bearing(ABC):
     guess : (5,) first guess of the equilibrium, with a held axial displacement
     """
 
+    #: Contact pressure [Pa] on which static load ratings are based; 4.0e9 of rollers (ISO 76: ball and race then dent by 1e-4 D).
+    static_pressure: ClassVar[float] = 4.2e9
     basis: Basis
     system: Ring
     guess: np.ndarray
@@ -218,6 +221,7 @@ class Model:
         return float(self.system.mass[1, 1]) if self.scene.integrator.method.inertial else 0.0
 
 
+@door
 def build_model(scene: Scene, plan: Plan) -> Model:
     """Arrays and kernels of a scene, by its kind of bodies.
 

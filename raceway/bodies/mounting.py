@@ -1,21 +1,23 @@
-"""What a bearing is mounted with: the preload of a set, an axial displacement that is held.
+"""What a bearing is set with: the preload of a set, an axial displacement that is held.
 
-Both are set at standstill, before anything has grown; speed and temperature then change the forces that they give.
+Both are set *before mounting*: of the loose bearing, at standstill and without fits.  *Mounted*, its fits change the forces that they
+give; *running*, speed and temperatures do, too.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, first_guess
+from raceway.bodies.basis import Basis, first_guess, growth_of
 from raceway.bodies.running import renew
 from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.ring import Ring, Spin
+from raceway.core.ring.ring import Evaluation, Growth, Ring, Spin
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
@@ -39,24 +41,25 @@ _SAMPLES, _SPEEDS = 1001, 17
 def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
     guess = first_guess(scene, basis)
-    growth, preloaded = basis.growth, scene.bearing.preloaded
-    if preloaded:
-        system.table[:, ring.SHIFT] = _mounted_shifts(scene, basis, system.as_mounted(growth))
+    growth, place = basis.growth, None
+    if scene.bearing.preloaded:
+        system.table[:, ring.SHIFT] = _ground_shifts(scene, basis, system.standing(growth))
         guess[0] = 0.0
-    sprung = preloaded and scene.bearing.preload_kind == "spring"
+    if scene.bearing.preloaded and scene.bearing.preload_kind == "spring":
+        system.sliding = np.flatnonzero(system.table[:, ring.SIDE] != system.table[0, ring.SIDE])
+        place = partial(_follow_spring, scene, basis, float(system.table[system.sliding[0], ring.SHIFT]))
     if scene.supports.axial == "displacement":
-        mounted = _under(system.as_mounted(growth), scene.load.axial)
+        loose = _under(system.standing(growth), scene.load.axial)
         start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
-        guess = _follow_spring(scene, basis, mounted, start) if sprung else mounted.settle(start)[0]
-    place = partial(_follow_spring, scene, basis) if sprung else None
+        guess = loose.settle(start)[0] if place is None else place(loose, start)
     if renews(scene.contact.law) and isinstance(system, System):
         guess = renew(scene, basis, system, guess, place)
-    if sprung and system.spin is not None:
-        system.spin = _follow_speed(scene, basis, system, system.spin, guess)
+    if place is not None and system.spin is not None:
+        system.spin = _follow_speed(scene, system, guess, place)
     return guess if place is None else place(system, guess)
 
 
-def _mounted_shifts(scene: Scene, basis: Basis, mounted: R) -> np.ndarray:
+def _ground_shifts(scene: Scene, basis: Basis, loose: R) -> np.ndarray:
     """(Z,) axial approach of every ball's row that the preload builds in [m].
 
     Notes
@@ -68,19 +71,18 @@ def _mounted_shifts(scene: Scene, basis: Basis, mounted: R) -> np.ndarray:
     given = [row.preload for row in bearing.row] or [None] * len(bearing.rows)
     own = [bearing.preload if force is None else force for force in given]
     sides = {side: [k for k, (other, _) in enumerate(bearing.rows) if other == side] for side in (1.0, -1.0)}
-    found, known = np.zeros(mounted.ball_count), dict[tuple[object, ...], float]()
+    found, known = np.zeros(loose.ball_count), dict[tuple[object, ...], float]()
     if bearing.preload_of == "row":
         groups = [([k], own[k]) for k in range(len(own))]
     else:
         first = bearing.rows[0][0]
-        other = bearing.preload if bearing.second_preload is None else bearing.second_preload
-        groups = [(sides[first], bearing.preload), (sides[-first], other)]
+        groups = [(sides[first], bearing.preload), (sides[-first], bearing.other_preload)]
     for rows, force in groups:
         same = (len(rows) if bearing.equal_rows else tuple(rows), force)
         balls = np.flatnonzero(np.isin(basis.row, rows))
         if same not in known:
             start = np.array([0.05 * basis.geometry.centre_distance, 0.0, 0.0, 0.0, 0.0])
-            known[same] = _under(_some(mounted, balls, facing=True), force).settle(start)[0][0] if force > 0.0 else 0.0
+            known[same] = _under(_some(loose, balls, facing=True), force).settle(start)[0][0] if force > 0.0 else 0.0
         found[balls] = known[same]
     return found
 
@@ -92,61 +94,50 @@ def _under(system: R, axial: float) -> R:
 
 
 def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
-    """Some rows of a system; ``facing``: as one bearing in its own plane, not preloaded, which positive axial motions seat.
-
-    Parameters
-    ----------
-    balls : (n,) indices of theirs
-    """
+    """Rows of a system by their balls (n,); ``facing``: as one bearing in its own plane, not preloaded, that faces "+"."""
     table = system.table[balls].copy()
     if facing:
         table[:, [ring.SIDE, ring.LEVER, ring.SHIFT]] = 1.0, 0.0, 0.0
     return system.of_balls(balls, table)
 
 
-def _second(system: Ring) -> np.ndarray:
-    """(n,) indices of the balls whose rows face the other way than the first."""
-    return np.flatnonzero(system.table[:, ring.SIDE] != system.table[0, ring.SIDE])
-
-
-def _follow_speed(scene: Scene, basis: Basis, system: Ring, spin: Spin, guess: np.ndarray) -> Spin:
+def _follow_speed(scene: Scene, system: Ring, guess: np.ndarray, place: Callable[[Ring, np.ndarray], np.ndarray]) -> Spin:
     """The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds."""
     from scipy.interpolate import CubicSpline
 
-    assert isinstance(spin, ChangingSpeed)
-    spin = attrs.evolve(spin, shift=None)
+    assert isinstance(system.spin, ChangingSpeed)
+    spin = attrs.evolve(system.spin, shift=None)
     duration = turns_of(scene) / scene.excitation.frequency_hz
     met = spin.speed(np.linspace(0.0, duration, _SAMPLES))
     speeds = np.linspace(met.min(), met.max(), _SPEEDS)
     shifts = []
     for speed in speeds:
         steady = spin.constants(system, float(speed))
-        _follow_spring(scene, basis, steady, guess)
-        shifts.append(steady.table[_second(system)[0], ring.SHIFT])
+        place(steady, guess)
+        shifts.append(steady.table[steady.sliding, ring.SHIFT][0])
     return attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
 
 
-def _follow_spring(scene: Scene, basis: Basis, system: Ring, guess: np.ndarray) -> np.ndarray:
-    """(5,) equilibrium at which the rows that face the other way than the first carry the spring's force; builds their place into
-    the system.
+def _follow_spring(scene: Scene, basis: Basis, origin: float, system: Ring, guess: np.ndarray) -> np.ndarray:
+    """(5,) equilibrium at which the sliding rows carry the spring's force; builds their place into the system.
 
     Notes
     -----
-    With the shift s of these rows, whose force on the ring is f, and K the tangents: their axial force g = side f_x grows by
-    dg/ds = k_xx - k_xq K^-1 k_qx, the ring following.  Newton's method in s within a bracket.
+    The spring's travel counts from ``origin``, the shift [m] of the first of them before mounting.  With their shift s, their force f
+    on the ring and K the tangents, g = side f_x grows by dg/ds = k_xx - k_xq K^-1 k_qx: Newton's method in s within a bracket.
 
     Raises
     ------
     ConvergenceError
         No such place, or one beyond the spring's travel.
     """
-    bearing, second = scene.bearing, _second(system)
-    wanted = bearing.preload if bearing.second_preload is None else bearing.second_preload
+    second, wanted = system.sliding, scene.bearing.other_preload
+    assert second is not None, "the scene's rows are on a spring"
     side, free = float(system.table[second[0], ring.SIDE]), system.free > 0.0
     low, high = -np.inf, np.inf
     step = _STEP * basis.geometry.centre_distance
     apart = system.table[second, ring.SHIFT] - system.table[second[0], ring.SHIFT]
-    mounted = shift = float(system.table[second[0], ring.SHIFT])
+    shift = float(system.table[second[0], ring.SHIFT])
     q = guess
     for _ in range(_LIMIT):
         system.table[second, ring.SHIFT] = shift + apart
@@ -155,7 +146,7 @@ def _follow_spring(scene: Scene, basis: Basis, system: Ring, guess: np.ndarray) 
         whole, rows = still.evaluate(q, ball=ball), _some(still, second).evaluate(q, ball=ball[second])
         excess = side * float(rows.force[0]) - wanted
         if abs(excess) <= _TOLERANCE * wanted:
-            _refuse_travel(scene, shift - mounted)
+            _refuse_travel(scene, shift - origin)
             return q
         low, high = (low, shift) if excess > 0.0 else (shift, high)
         tangent = system.reduced(whole.stiffness + system.stiffness)
@@ -166,8 +157,9 @@ def _follow_spring(scene: Scene, basis: Basis, system: Ring, guess: np.ndarray) 
             bounded = np.isfinite(low) and np.isfinite(high)
             trial = 0.5 * (low + high) if bounded else shift - np.copysign(step, excess)
         shift = trial
+    key = "preload" if scene.bearing.second_preload is None else "second_preload"
     raise ConvergenceError(
-        f"no place of the second row was found at which it carries the spring of `bearing.preload` = {wanted:g} N under these "
+        f"no place of the second row was found at which it carries the spring of `bearing.{key}` = {wanted:g} N under these "
         "loads: raise the preload, or take preload_kind = 'rigid'.",
         {"q": q},
     )
@@ -178,7 +170,7 @@ def _refuse_travel(scene: Scene, slid: float) -> None:
     travel = scene.bearing.spring_travel
     if travel is not None and abs(slid) > travel:
         raise ConvergenceError(
-            f"the rings on the spring would slide {1e6 * abs(slid):.3g} µm from where they were mounted, beyond "
+            f"the rings on the spring would slide {1e6 * abs(slid):.3g} µm from where the preload sets them before mounting, beyond "
             f"`bearing.spring_travel` = {travel:g} m: they meet their stop, and the preload is no longer the spring's. Give it more "
             "travel, load it less, or take preload_kind = 'rigid'."
         )
@@ -189,32 +181,38 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
 
     Notes
     -----
-    ``mounted_n`` is what the rows of either direction carry against each other at standstill, before anything grows and without
-    loads, ``running_n`` the same of the turning, warm set, ``rows_n`` the axial forces of the rows under the constant loads.
+    Before mounting the rows of the first direction and of the other one (``second``) carry what the preload sets, under its
+    difference as an axial load.  Mounted and running, both without loads, the rows of either direction carry the same.  ``rows_n``
+    are the axial forces of the rows under the constant loads.
     """
-    bearing = model.scene.bearing
+    bearing, system = model.scene.bearing, model.system
     if not bearing.preloaded:
         return None
-    mounted = bearing.preload
+    first, second = bearing.preload, bearing.other_preload
     if bearing.preload_of == "row":
-        mounted = _unloaded(model, model.system.as_mounted(model.basis.growth))
-    running = running_preload(model)
-    rows = _row_forces(model, model.system, equilibrium.displacement, equilibrium.ball)
+        first = second = _unloaded(model, system.standing(model.basis.growth))
+    fitted = model.scene.mounting.fitted or first != second
+    mounted = _unloaded(model, _mounted(model)) if fitted else first
+    rows = _row_forces(model, system, equilibrium.displacement, equilibrium.ball)
     return {
-        "kind": bearing.preload_kind, "of": bearing.preload_of, "mounted_n": mounted, "running_n": running, "rows_n": rows,
+        "kind": bearing.preload_kind, "of": bearing.preload_of, "before_mounting_n": first, "second_before_mounting_n": second,
+        "mounted_n": mounted, "running_n": _unloaded(model, system), "rows_n": rows,
     }  # fmt: skip
 
 
-def running_preload(model: Model) -> float:
-    """What the rows of a turning, warm set carry against each other without any load [N]; 0 where all are loose."""
-    bearing = model.scene.bearing
-    if bearing.preload_kind == "spring":
-        return bearing.preload
-    return _unloaded(model, model.system)
+def _mounted(model: Model) -> Ring:
+    """The bearing with its fits, at standstill and at the temperature of assembly."""
+    scene, growth = model.scene, model.basis.growth
+    still = attrs.evolve(scene.kinematics, spin_speed_rpm=0.0, radial_expansion=0.0, ring_growth=False, ball_growth=False)
+    cold = attrs.evolve(scene.mounting, inner_temperature=0.0, outer_temperature=0.0, ball_temperature=0.0)
+    fits = growth_of(attrs.evolve(scene, kinematics=still, mounting=cold), model.basis.row)
+    return model.system.standing(Growth(growth.common - fits.common, growth.own - fits.own))
 
 
 def _unloaded(model: Model, system: Ring) -> float:
-    """Axial force of the rows that face the first one's way, without any load [N]."""
+    """What the rows of either direction carry against each other without any load [N]; 0 where all are loose."""
+    if system.sliding is not None:
+        return model.scene.bearing.other_preload
     try:
         q, ball, _ = _under(system, 0.0).settle(np.zeros(5))
     except ConvergenceError:
@@ -232,7 +230,7 @@ def lost_preload(model: Model) -> str:
     Centrifugal forces of balls and growth of rings raise a pair's preload: a raceway that shrinks is what takes it.
     """
     bearing, kinematics = model.scene.bearing, model.scene.kinematics
-    if not bearing.preloaded or running_preload(model) > 0.0:
+    if not bearing.preloaded or _unloaded(model, model.system) > 0.0:
         return ""
     radial = model.basis.growth.common[1]
     shrunk = f"the inner raceway has shrunk by {-1e6 * radial:.3g} µm (kinematics.radial_expansion = {kinematics.radial_expansion:g} m)"
@@ -242,16 +240,33 @@ def lost_preload(model: Model) -> str:
     )
     return (
         f"The preload of {max(bearing.preload, *(row.preload or 0.0 for row in bearing.row), 0.0):g} N is gone: both rows are loose, as {shrunk if not warm else f'the grooves have grown apart ({warm})'} "
-        "since they were mounted. Raise bearing.preload, shrink it less, or take preload_kind = 'spring'."
+        "since the preload was set. Raise bearing.preload, shrink it less, or take preload_kind = 'spring'."
     )
 
 
 def held_table(model: Model, equilibrium: Equilibrium) -> dict[str, float] | None:
-    """``equilibrium.held_axial`` of result.json: the axial force that gave the held displacement, and what it takes now."""
-    if model.scene.supports.axial != "displacement":
+    """``equilibrium.held_axial`` of result.json: the axial force that gave the held displacement, what it takes mounted, and now."""
+    scene, q = model.scene, equilibrium.displacement
+    if scene.supports.axial != "displacement":
         return None
-    now = model.system.without(ring.CAGE).evaluate(equilibrium.displacement, ball=equilibrium.ball)
-    return {"mounted_n": model.scene.load.axial, "running_n": float(now.force[0])}
+    first = mounted = scene.load.axial
+    if scene.mounting.fitted:
+        mounted = float(evaluate_following(scene, _mounted(model), q * [1.0, 0.0, 0.0, 0.0, 0.0]).force[0])
+    now = model.system.without(ring.CAGE).evaluate(q, ball=equilibrium.ball)
+    return {"before_mounting_n": first, "mounted_n": mounted, "running_n": float(now.force[0])}
+
+
+def evaluate_following(scene: Scene, system: Ring, q: np.ndarray, ball: np.ndarray | None = None) -> Evaluation:
+    """Contacts at a displacement (5,) of the ring to which rows on a spring have followed, with their constant force."""
+    if system.sliding is None:
+        return system.evaluate(q, ball=ball)
+    side, table = float(system.table[system.sliding[0], ring.SIDE]), system.table.copy()
+    place, _, _ = _under(_some(system, system.sliding), side * scene.bearing.other_preload).settle(q)
+    table[system.sliding, ring.SHIFT] += side * (place[0] - q[0])
+    moved = attrs.evolve(system, table=table)
+    now = moved.evaluate(q, ball=ball)
+    stiffness, damping = moved.rows_following(q, now, now.stiffness, now.damping)
+    return attrs.evolve(now, stiffness=stiffness, damping=damping)
 
 
 def _row_forces(model: Model, system: Ring, q: np.ndarray, ball: np.ndarray) -> list[float]:

@@ -50,20 +50,6 @@ plugin_files = click.option(
 )  # fmt: skip
 
 
-def _allow(_context: click.Context, _option: click.Parameter, files: tuple[Path, ...]) -> None:
-    from raceway.storage.trust import allow
-
-    for file in files:
-        allow(file)
-
-
-#: A scene can name a program; that it is executed is said here.
-programs = click.option(
-    "--execute", multiple=True, type=click.Path(path_type=Path), metavar="FILE.geo", callback=_allow, expose_value=False,
-    help="Execute this file of [mesh], a program of Gmsh; repeat for more.",
-)  # fmt: skip
-
-
 def on_scene(command: F) -> F:
     """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
     return scene_file(set_keys(command))

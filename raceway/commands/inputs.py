@@ -24,16 +24,14 @@ def slug(title: str) -> str:
 
     Notes
     -----
-    Accents are left out.  A title with letters of another script ends in a hash of it.  Other changes make another name: where
+    Accents are left out.  A title with letters of another script, or more of them, ends in a hash of it.  Other changes make another name: where
     letters of them are lost, or more than 100, a hash of all stands at the end.
     """
     first, _, changes = title.partition("\n")
     latin = unicodedata.normalize("NFKD", first)
-    name = (
-        re.sub(r"[^A-Za-z0-9._]+", "-", "".join(s for s in latin if not unicodedata.combining(s)))[:80].strip("-._")
-        or "scene"
-    )
-    if any(sign.isalnum() and not sign.isascii() for sign in latin):  # another script: titles stay apart
+    text = re.sub(r"[^A-Za-z0-9._]+", "-", "".join(s for s in latin if not unicodedata.combining(s))).strip("-._")
+    name = text[:80].strip("-._") or "scene"
+    if len(text) > 80 or any(sign.isalnum() and not sign.isascii() for sign in latin):  # titles stay apart
         name += f"-{hashlib.sha256(first.encode()).hexdigest()[:8]}"
     plain = changes.replace(" = ", "=").replace(", ", ",")
     told = re.sub(r"[^A-Za-z0-9._=,+-]+", "-", plain)

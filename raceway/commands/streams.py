@@ -27,7 +27,9 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 
 
 def prepare() -> None:
-    """Let every character be written somehow, and what is closed lead nowhere."""
+    """Let every character be written somehow, and what is closed lead nowhere; a terminal without columns has those of any."""
+    if os.environ.get("COLUMNS", "").isdigit() and int(os.environ["COLUMNS"]) == 0:
+        del os.environ["COLUMNS"]
     codecs.register_error("raceway", _plain)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.contact_laws.lubricant import COLDEST, GRADES, HOTTEST, Walther, pressure_viscosity
+from raceway.contact_laws.lubricant import COLDEST, GRADES, HOTTEST, Walther, mineral_thinning, pressure_viscosity
 from raceway.framework.contracts import LawReport
-from raceway.framework.options import between, nearest, option, optional, positive
+from raceway.framework.options import between, nearest, one_of, option, optional, positive
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,14 +16,18 @@ if TYPE_CHECKING:
     from raceway.core.contact.film import Film as Thickness
     from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactPairs
+    from raceway.storage.tables import Tables
 
 #: Lambda below which surfaces carry through asperities.
 _MIXED, _BOUNDARY = 3.0, 1.0
+#: Thermal reduction that is reported as strong, and the thermal loading to which its formula was compared with Grubin's inlet.
+_STRONG, _LOADING = 0.5, 100.0
 
 
 @attrs.frozen
 class Film:
-    """Hertz contact behind an oil film (Hamrock and Dowson): the surfaces stand off by the central film thickness.
+    """Hertz contact behind an oil film (Hamrock and Dowson): the surfaces stand off by the central film thickness,
+    which the heat of shear in the inlet reduces (Murch and Wilson).
 
     Notes
     -----
@@ -48,15 +52,22 @@ class Film:
         None, unit="Pa s", help="dynamic, at the running temperature, instead of an oil", rule=optional(positive())
     )
     temperature_c: float | None = option(
-        None, unit="°C", help="of the oil in the inlets of the contacts", rule=optional(between(-273.0, 1e3))
+        None, unit="°C", help="of the oil in the inlets of the contacts", rule=optional(between(-273.15, 1e3))
     )
     density: float = option(870.0, unit="kg/m3", help="of the oil", rule=positive())
     pressure_viscosity: float | None = option(
         None,
         unit="1/Pa",
         help="coefficient alpha; default: Wooster's rule for mineral oils, from the viscosity",
-        rule=optional(positive()),
+        rule=optional(between(1e-11, 1e-6)),
     )
+    inlet_heating: str = option(
+        "murch_wilson", help="thins the film: by 'murch_wilson', or 'none' (isothermal)", rule=one_of("murch_wilson", "none")
+    )
+    temperature_viscosity: float | None = option(
+        None, unit="1/K", help="beta = -d ln(viscosity)/dT; default: the oil's, or mineral oils'", rule=optional(positive())
+    )
+    conductivity: float = option(0.14, unit="W/m/K", help="of the oil; mineral oils have 0.12 to 0.15", rule=positive())
     starvation: float = option(1.0, help="thickness over that of a flooded contact", rule=between(0.0, 1.0))
     roughness: float | None = option(
         None, unit="m", help="rms of both surfaces together, sqrt(R1^2 + R2^2), for Lambda", rule=optional(positive())
@@ -120,17 +131,40 @@ class Film:
         given = self.pressure_viscosity
         return pressure_viscosity(self.dynamic_viscosity) if given is None else given
 
+    @property
+    def beta(self) -> float:
+        """Temperature-viscosity coefficient [1/K]; of a viscosity alone that of the mineral oil that has it, at 40 C by default."""
+        at = 40.0 if self.temperature_c is None else self.temperature_c
+        if self.temperature_viscosity is not None:
+            return self.temperature_viscosity
+        return (
+            self._line.thinning(at) if self.viscosity is None else mineral_thinning(1e6 * self.viscosity / self.density, at)
+        )
+
+    def inlet(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
+        """Thermal loading of the contacts' inlets (n,), and the part of the isothermal film that their heat leaves (n,)."""
+        from raceway.core.contact.film import thermal_reduction
+
+        assert pairs.entraining_speed is not None, "bodies that renew laws give it"
+        loading = self.dynamic_viscosity * self.beta * pairs.entraining_speed**2 / self.conductivity
+        return loading, thermal_reduction(loading)
+
+    def _reduction(self, pairs: ContactPairs) -> np.ndarray:
+        reduction = self.inlet(pairs)[1]
+        return reduction**0 if self.inlet_heating == "none" else reduction
+
     def thickness(self, pairs: ContactPairs) -> Thickness:
         """Films of the contacts at their entraining speeds and loads."""
         from raceway.core.contact.film import film
 
         speed, load = pairs.entraining_speed, pairs.load
-        assert speed is not None and load is not None, "bodies that renew laws tell them"
+        assert speed is not None and load is not None, "bodies that renew laws give them"
         found = film(
             self.dynamic_viscosity * speed, self.alpha, 2.0 * pairs.contact_modulus, pairs.radius_along, pairs.radius_across,
             load, pairs.ellipticity,
         )  # fmt: skip
-        return attrs.evolve(found, central=self.starvation * found.central, minimum=self.starvation * found.minimum)
+        part = self.starvation * self._reduction(pairs)
+        return attrs.evolve(found, central=part * found.central, minimum=part * found.minimum)
 
     def _slope(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
         """h0 (n,) [m] and m (n,), by which the film thins as the elastic approach grows."""
@@ -161,17 +195,38 @@ class Film:
 
         from raceway.core.contact.film import REGIMES
 
-        found = self.thickness(pairs)
+        found, reduction = self.thickness(pairs), self._reduction(pairs)
         lambdas = found.minimum / self.roughness if self.roughness is not None else np.full_like(found.minimum, np.nan)
         columns = {
             "film_central_m": found.central,
             "film_minimum_m": found.minimum,
+            "film_isothermal_m": found.central / reduction,
+            "film_thermal_reduction": reduction,
             "film_parameter": lambdas,
             "film_regime": np.array(REGIMES)[found.regime],
             "entraining_speed_m_per_s": np.asarray(pairs.entraining_speed),
         }
-        table = {"viscosity_pa_s": self.dynamic_viscosity, "pressure_viscosity_per_pa": self.alpha}
-        return LawReport(columns, table, (*_doubts(found), *self._rough(lambdas)))
+        table: Tables = {"viscosity_pa_s": self.dynamic_viscosity, "pressure_viscosity_per_pa": self.alpha}
+        table |= {"inlet_heating": self.inlet_heating, "temperature_viscosity_per_k": self.beta}
+        return LawReport(columns, table, (*self._heated(pairs), *_doubts(found), *self._rough(lambdas)))
+
+    def _heated(self, pairs: ContactPairs) -> list[str]:
+        """A sentence where the heat of the inlet decides the film, from speed and viscosity."""
+        loading, reduction = self.inlet(pairs)
+        if reduction.min() >= _STRONG:
+            return []
+        speed = 0.0 if pairs.entraining_speed is None else float(pairs.entraining_speed.max())
+        beyond = f", beyond the {_LOADING:g} that the formula was checked to" if loading.max() > _LOADING else ""
+        leaves, remedy = (
+            "leaves",
+            "Measure the oil's contact.temperature_viscosity and contact.conductivity, or take a thinner oil",
+        )
+        if self.inlet_heating == "none":
+            leaves, remedy = "would leave", "Take it off by contact.inlet_heating = 'murch_wilson'"
+        return [
+            f"the heat of the inlets {leaves} {reduction.min():.2g} of the film, at {1e3 * self.dynamic_viscosity:.3g} mPa s and "
+            f"{speed:.3g} m/s (thermal loading {loading.max():.3g}{beyond}): published formulas differ by up to a fifth there. {remedy}"
+        ]
 
     def _rough(self, lambdas: np.ndarray) -> list[str]:
         """A sentence where asperities carry."""
@@ -188,17 +243,9 @@ class Film:
 
 
 def _doubts(found: Thickness) -> list[str]:
-    """A sentence where contacts are outside the ranges that a formula was fitted over, or in several regimes."""
-    from raceway.core.contact.film import FITTED, REGIMES
+    """A sentence where contacts are in another regime than rolling bearings' usual one."""
+    from raceway.core.contact.film import REGIMES
 
-    told, elastic = [], found.regime == 0
-    for word, values in (("U", found.speed), ("W", found.load), ("G", found.material), ("k", found.ellipticity)):
-        low, high = FITTED[word]
-        inside = values[elastic]
-        if inside.size and (inside.min() < low or inside.max() > high):
-            told.append(f"{word} = {inside.min():.3g} to {inside.max():.3g}, fitted from {low:g} to {high:g}")
-    said = [f"the film formula is used outside the range that it was fitted over: {'; '.join(told)}"] if told else []
-    others = sorted({REGIMES[one] for one in found.regime if one != 0})
-    if others:
-        said.append(f"contacts are not in the piezoviscous-elastic regime of rolling bearings but {' and '.join(others)}")
-    return said
+    others = sorted({REGIMES[each] for each in found.regime if each != 0})
+    words = " and ".join(others)
+    return [f"contacts are not in the piezoviscous-elastic regime of rolling bearings but {words}"] if others else []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import log10
+from math import log, log10
 
 import attrs
 
@@ -27,10 +27,22 @@ class Walther:
 
     def viscosity(self, temperature: float) -> float:
         """Kinematic viscosity [mm2/s] at a temperature [C]."""
-        x = [log10(one + _ZERO) for one in (*_AT, temperature)]
-        y = [log10(log10(one + 0.7)) for one in (self.at_40, self.at_100)]
+        x = [log10(each + _ZERO) for each in (*_AT, temperature)]
+        y = [log10(log10(each + 0.7)) for each in (self.at_40, self.at_100)]
         at = y[0] + (y[1] - y[0]) * (x[2] - x[0]) / (x[1] - x[0])
         return float(10.0**10.0**at - 0.7)
+
+    def thinning(self, temperature: float) -> float:
+        """beta = -d ln(nu) / dT [1/K] at a temperature [C]; the density's part, 7e-4 1/K, is left out."""
+        return log(self.viscosity(temperature - 0.01) / self.viscosity(temperature + 0.01)) / 0.02
+
+
+def mineral_thinning(viscosity: float, temperature: float) -> float:
+    """beta [1/K] of the mineral oil that has this kinematic viscosity [mm2/s] at a temperature [C], between those of ``GRADES``."""
+    from numpy import interp
+
+    at, oils = min(max(temperature, COLDEST), HOTTEST), [Walther(*pair) for pair in GRADES.values()]
+    return float(interp(log(viscosity), [log(oil.viscosity(at)) for oil in oils], [oil.thinning(at) for oil in oils]))
 
 
 def pressure_viscosity(viscosity: float) -> float:

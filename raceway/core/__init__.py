@@ -18,3 +18,11 @@ condensed      structural compliances behind contact resultants
 patches        pressures at surface points on condensed bodies
 elastic        bodies whose every node is a degree of freedom, in contact
 """
+
+import os
+
+from raceway.errors import RacewayError
+
+_THREADS = os.environ.get("NUMBA_NUM_THREADS", "1")
+if not _THREADS.isdigit() or int(_THREADS) == 0:  # numba's import ends by a ValueError, or prints one
+    raise RacewayError(f"`NUMBA_NUM_THREADS` = {_THREADS!r}: must be a whole number from 1; unset it for all cores")

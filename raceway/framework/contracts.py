@@ -364,6 +364,7 @@ class Cost:
     mesh : ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
     scales : whether a slower machine takes longer in proportion
     at_least : whether it may be any number of times more: a mesh whose size is not known before it is read
+    bytes : resident memory of the process at the peak; 0 where it is small, or not known
     """
 
     seconds: float
@@ -372,6 +373,7 @@ class Cost:
     mesh: Tables | None = None
     scales: bool = True
     at_least: bool = False
+    bytes: int = 0
 
 
 class BodiesKind(attrs.AttrsInstance, Protocol):

@@ -14,6 +14,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import PluginError
+from raceway.framework.doors import door
 from raceway.storage.tables import ReadTables
 
 Rule = Callable[[Any, Any, Any], None]
@@ -108,6 +109,7 @@ def positive() -> Rule:
     return _rule("greater than 0", lambda v: v > 0, exclusiveMinimum=0)
 
 
+@door
 def at_least(low: float) -> Rule:
     """Rule: ``low`` or more, in the unit of the option.
 
@@ -122,6 +124,7 @@ def at_least(low: float) -> Rule:
     return _rule(f"at least {low:g}", lambda v: v >= low, minimum=low)
 
 
+@door
 def above(low: float) -> Rule:
     """Rule: more than ``low``, in the unit of the option.
 
@@ -136,6 +139,7 @@ def above(low: float) -> Rule:
     return _rule(f"greater than {low:g}", lambda v: v > low, exclusiveMinimum=low)
 
 
+@door
 def between(low: float, high: float) -> Rule:
     """Rule: from ``low`` to ``high``, both included, in the unit of the option.
 
@@ -150,6 +154,7 @@ def between(low: float, high: float) -> Rule:
     return _rule(f"from {low:g} to {high:g}", lambda v: low <= v <= high, minimum=low, maximum=high)
 
 
+@door
 def inside(low: float, high: float) -> Rule:
     """Rule: between ``low`` and ``high``, none of them included, in the unit of the option.
 

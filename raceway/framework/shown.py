@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
+from inspect import isfunction
 from math import floor, log10
 from textwrap import shorten
+
+from raceway.framework.doors import door
+from raceway.storage.tables import ReadTables
 
 #: Name, value with its unit, and what is to be known of it.
 Fact = tuple[str, str, str]
 #: Lines of text, the title's and the line of what is left out included, and characters of a line, at most.
 LINES, WIDTH = 15, 100
 #: Units that people read, with their factors.
-_READ = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm")}
+_READ = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm"), "Pa": (1e-6, "MPa")}
 _TABLE = "border-collapse:collapse;max-width:46em;font-size:14px;line-height:1.35"
 _CELL = "text-align:left;vertical-align:top;padding:2px 14px 2px 0;border:0"
 #: Numbers are never broken; words of a remark are, rather than that the table is wider than the screen.
@@ -20,9 +24,14 @@ _WHOLE, _BROKEN = "white-space:nowrap;font-variant-numeric:tabular-nums", "overf
 
 
 class Shown:
-    """What has a short text and a table of its own, from a title and facts."""
+    """What has a short text and a table of its own, from a title and facts; its public methods are doors."""
 
     __slots__ = ()
+
+    def __init_subclass__(cls) -> None:
+        for name, method in list(vars(cls).items()):
+            if isfunction(method) and not name.startswith("_"):
+                setattr(cls, name, door(method))
 
     def _shown(self) -> tuple[str, Sequence[Fact]]:
         """Title, whose first line is bold, and facts in the order of their weight: the one duty of who shows itself."""
@@ -64,8 +73,32 @@ def _cells(name: str, value: str, remark: str) -> str:
     return f'<td style="{_CELL}">{escape(name)}</td>{told}<td style="{_CELL};{_BROKEN}"{wide}>{escape(remark)}</td>'
 
 
+def tilt_words(tilt: float | str) -> str:
+    """The tilt boundary, which belongs to every stiffness."""
+    return f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
+
+
+def in_micro(value: float) -> str:
+    """Micro-units of metres or radians; rounding noise of a straight line, a circle or a symmetric state is 0."""
+    return "0" if abs(value) < 1e-15 else f"{1e6 * value:.4g}"
+
+
+def largest_facts(found: ReadTables, when: str) -> list[Fact]:
+    """Largest ball load and pressure of a table that has them, each with its race."""
+    load, pressure = (race_words(found[f"largest_{what}_race"]) for what in ("ball_load", "pressure"))
+    return [
+        ("largest ball load", number(found["largest_ball_load_n"], "N"), f"{load}, {when}"),
+        ("largest pressure", number(1e-6 * found["largest_pressure_pa"], "MPa"), f"Hertz, {pressure}"),
+    ]
+
+
+def race_words(race: str) -> str:
+    """A race by name; "both" of two with the same number."""
+    return "both races" if race == "both" else f"{race} race"
+
+
 def read_in(value: float, unit: str) -> tuple[float, str]:
-    """A stiffness or a length of a bearing in the unit that people read it in, and that unit; other numbers as they are."""
+    """A stiffness, a length or a pressure of a bearing in the unit that people read it in, and that unit; other numbers as they are."""
     factor, word = _READ.get(unit, (1.0, unit))
     return factor * value, word
 
@@ -85,3 +118,13 @@ def number_within(value: float, error: float, unit: str) -> str:
         digits = min(digits, max(1, floor(log10(abs(value))) - floor(log10(error)) + 1))
     places = digits - 1 - floor(log10(abs(value))) if value != 0.0 else 0
     return f"{round(value, places):.0f} {unit}" if places <= 0 and abs(value) < 1e5 else number(value, unit, digits)
+
+
+def within(name: str, value: float, error: float | None, scale: float, unit: str, remark: str) -> Fact:
+    """A number with its error; what is smaller than its error is no number."""
+    if error is None:
+        return name, number(scale * value, unit), f"error not estimated; {remark}"
+    told = number(scale * error, unit, 2)
+    if abs(value) < error:
+        return name, "not resolved", f"below its error of {told}; {remark}"
+    return name, number_within(scale * value, scale * error, unit), f"+- {told}; {remark}"

@@ -58,8 +58,8 @@ def owner(point: EntryPoint) -> tuple[str, str]:
 
 
 def is_foreign_fault(why: BaseException) -> bool:
-    """Whether what a third party's code raised is its own: not Ctrl-C, and not what ends a generator."""
-    return not isinstance(why, KeyboardInterrupt | GeneratorExit)
+    """Whether what a third party's code raised is its own: not Ctrl-C."""
+    return not isinstance(why, KeyboardInterrupt)
 
 
 @contextmanager
@@ -75,7 +75,7 @@ class blamed:
     Raises
     ------
     PluginError
-        Instead of anything but a ``RacewayError`` and a lack of memory, which pass through.
+        Instead of anything but a ``RacewayError``, a lack of memory and the end of a generator, which pass through.
 
     Notes
     -----
@@ -90,7 +90,7 @@ class blamed:
 
     def __exit__(self, kind: type[BaseException] | None, why: BaseException | None, _: object) -> None:
         sys.stdout = self._out
-        if why is not None and not isinstance(why, RacewayError | MemoryError) and is_foreign_fault(why):
+        if why is not None and not isinstance(why, RacewayError | MemoryError | GeneratorExit) and is_foreign_fault(why):
             raise PluginError(f"{self._who}: {self._duty} raises {type(why).__name__}: {why}") from why
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import Mistake, SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown
 from raceway.planning.implausible import foreseen, implausible
@@ -56,6 +57,7 @@ class Check(Shown):
         return {"errors": [attrs.asdict(one) for one in self.mistakes], "warnings": list(self.warnings)}
 
 
+@door
 def check(scene: Any, *, plugins: Iterable[str | Path] = ()) -> Check:
     """Look for every mistake of a scene; compute nothing.
 

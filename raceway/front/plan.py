@@ -8,8 +8,11 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown, number
+from raceway.planning.implausible import foreseen
 from raceway.planning.plan import Plan, make_plan
 from raceway.scene.given import as_scene
 
@@ -45,6 +48,7 @@ class ScenePlan(Shown, Plan):
         return self.title, [*head, *(("left out", "", f"{one.part}: {one.why}") for one in self.left_out)]
 
 
+@door
 def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     """Decide what a scene needs, and predict size, time step and cost; nothing is built.
 
@@ -60,7 +64,7 @@ def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     Raises
     ------
     SceneError
-        With every mistake of the scene; a combination that cannot run.
+        With every mistake that ``raceway.check`` finds.
 
     Examples
     --------
@@ -69,6 +73,8 @@ def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     15
     """
     read = as_scene(scene, plugins=plugins)
+    if mistakes := foreseen(read):
+        raise SceneError(mistakes)
     made = make_plan(read, registry=default_registry())
     values = {str(field.alias): getattr(made, field.name) for field in attrs.fields(Plan)}
     return ScenePlan(**values, title=read.title)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.commands.progress import telling
+from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
 from raceway.pipeline.allowance import PATIENCE
 from raceway.pipeline.result import Result
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from raceway.commands.progress import ShowProgress
 
 
+@door
 def run(
     scene: Any,
     *,

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.framework.shown import Fact, number, number_within
+from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words, within
+from raceway.pipeline.error.hypotheses import NEGLIGIBLE
+from raceway.pipeline.motion import largest_contacts, pressures
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -25,29 +27,37 @@ def _identified(result: Result) -> list[Fact]:
     k, c, z = found.equivalent_stiffness, found.equivalent_damping, found.dynamic_stiffness
     band = result.band
     total, damping_error = result.error["total"], result.equivalent_damping_error
-    tilt = result.model.scene.supports.tilt
-    held = f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
-    return [
-        _within(
+    held = tilt_words(result.model.scene.supports.tilt)
+    rows = [
+        within(
             "stiffness K", k, result.equivalent_stiffness_error, 1e-6, "N/µm", f"{60.0 * found.frequency_hz:g} r/min, {held}"
         ),
-        _within("damping C", c, damping_error, 1.0, "N s/m", "Im Z / w")
+        within("damping C", c, damping_error, 1.0, "N s/m", "Im Z / w")
         if band is None
         else _ends(band["equivalent_damping"]),
         ("|Z|", number(1e-6 * abs(z), "N/µm"), "force over displacement of the 1x line"),
-        ("orbit", f"{_small(found.orbit_major)} x {_small(found.orbit_minor)} µm", "semi-axes of the 1x line"),
+        ("orbit", f"{in_micro(found.orbit_major)} x {in_micro(found.orbit_minor)} µm", "semi-axes of the 1x line"),
+    ]
+    rows = [(name, "not resolved" if result.error["unresolved"] else value, remark) for name, value, remark in rows]
+    return [
+        *rows,
+        *_spread(result),
         ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated"),
     ]
 
 
-def _within(name: str, value: float, error: float | None, scale: float, unit: str, remark: str) -> Fact:
-    """A number with its error; what is smaller than its error is no number."""
-    if error is None:
-        return name, number(scale * value, unit), remark
-    told = number(scale * error, unit, 2)
-    if abs(value) < error:
-        return name, "not resolved", f"below its error of {told}; {remark}"
-    return name, number_within(scale * value, scale * error, unit), f"+- {told}; {remark}"
+def _spread(result: Result) -> list[Fact]:
+    """Change of K by hypotheses left at their defaults, where it is worth a sentence."""
+    ends = (result.model_spread[0] or {}).get("equivalent_stiffness")
+    if not ends or max(map(abs, ends)) < NEGLIGIBLE:
+        return []
+    return [
+        (
+            "model of K",
+            f"{100.0 * ends[0]:+.2g} to {100.0 * ends[1]:+.2g} %",
+            "hypotheses left at their defaults: .model_spread",
+        )
+    ]
 
 
 def _ends(ends: list[float]) -> Fact:
@@ -58,17 +68,15 @@ def _ends(ends: list[float]) -> Fact:
     )
 
 
-def _small(metres: float) -> str:
-    """Micrometres; rounding noise of a straight line or a circle is 0."""
-    return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
-
-
 def _equilibrium(result: Result) -> list[Fact]:
     k, moved, loads = result.stiffness, result.displacement, result.ball_loads
+    forces, follows = result.equilibrium.contact_force, result.kyy_tilts_follow
     return [
         ("tangent kxx, kyy", f"{1e-6 * k[0, 0]:.5g}, {1e-6 * k[1, 1]:.5g} N/µm", "static, all other motions held"),
+        *([] if follows is None else [("kyy tilts follow", f"{1e-6 * follows:.5g} N/µm", "static, x and z held")]),
         ("displacement x", number(1e6 * moved[0], "µm"), "static, axial"),
         ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
+        *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
     ]
 
 

@@ -1,4 +1,4 @@
-"""What the motion does besides its 1x line: the table ``motion`` of result.json."""
+"""The largest ball loads and pressures, each with its race, and what the motion does besides its 1x line."""
 
 from __future__ import annotations
 
@@ -10,20 +10,35 @@ from raceway.storage.tables import Tables
 
 
 def motion_table(model: Model, record: Record) -> Tables:
-    """Mean axial displacement, and the largest ball loads with their pressure, in the turns that are used.
+    """The table ``motion`` of result.json: mean axial displacement, and the largest of each race in the turns that are used.
 
     Parameters
     ----------
     record : its columns of ``contact_force`` (n, 2 Z) are the inner races, then the outer ones [N]
     """
-    z = model.system.ball_count
-    inner, outer = peak(record.contact_force[:, :z]), peak(record.contact_force[:, z:])
-    return {
-        "axial_displacement_m": float(record.displacement[:, 0].mean()),
-        "peak_ball_load_n": inner,
-        "peak_pressure_inner_pa": float(model.bearing.contact_ellipse(model, 0, np.array([inner]))[0][0]),
-        "peak_pressure_outer_pa": float(model.bearing.contact_ellipse(model, 1, np.array([outer]))[0][0]),
-    }
+    peaks = np.array([peak(column[:, None]) for column in record.contact_force.T])
+    axial = float(record.displacement[:, 0].mean())
+    return {"axial_displacement_m": axial, **largest_contacts(peaks, pressures(model, peaks), "peak")}
+
+
+def pressures(model: Model, loads: np.ndarray) -> np.ndarray:
+    """(2 Z,) peak pressures [Pa] at loads (2 Z,) [N] of the inner races, then of the outer ones."""
+    return np.concatenate([model.bearing.contact_ellipse(model, k, half)[0] for k, half in enumerate(np.split(loads, 2))])
+
+
+def largest_contacts(loads: np.ndarray, pressures: np.ndarray, word: str) -> Tables:
+    """Of loads and pressures (2 Z,) [N, Pa] the largest of both races, its race, and each race's; ``word`` begins the names."""
+    found: Tables = {}
+    for name, unit, values in (("ball_load", "n", loads), ("pressure", "pa", pressures)):
+        ends = values.reshape(2, -1).max(axis=1).tolist()
+        found |= {f"{word}_{name}_{unit}": max(ends), f"{word}_{name}_race": race_of(*ends)}
+        found |= {f"{word}_{name}_{race}_{unit}": end for race, end in zip(("inner", "outer"), ends, strict=True)}
+    return found
+
+
+def race_of(inner: float, outer: float) -> str:
+    """The race of the larger number: "inner", "outer", or "both" where they are equal but for rounding."""
+    return "both" if np.isclose(inner, outer, rtol=1e-9, atol=0.0) else "inner" if inner > outer else "outer"
 
 
 def peak(samples: np.ndarray) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
+from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
 from raceway.storage.tables import Tables
@@ -15,6 +16,8 @@ from raceway.storage.tables import Tables
 _SAMPLES = 60
 #: Part of what a body gives way, by which it lags behind, that is worth a sentence.
 _LAG = 0.01
+#: Axial force of a row over the centrifugal force of its balls below which Hirano saw gross sliding, and below which it is told.
+_ROLLING, _SLIDING = 10.0, 1.0
 
 
 def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) -> None:
@@ -36,6 +39,20 @@ def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) ->
         )
 
 
+def pressure_warnings(model: Model, force: np.ndarray) -> list[str]:
+    """Where the largest contact pressure exceeds that of static load ratings; forces (2 Z,) [N]."""
+    limit, rows = model.bearing.static_pressure, model.basis.row
+    peaks = [model.bearing.contact_ellipse(model, race, load)[0] for race, load in enumerate(force.reshape(2, -1))]
+    race, ball = np.unravel_index(np.argmax(peaks), (2, len(rows)))
+    if not peaks[race][ball] > limit:
+        return []
+    name = (f"row {rows[ball] + 1}, " if rows[-1] else "") + f"ball {ball - np.argmax(rows == rows[ball])}"
+    return [
+        f"the contact pressure reaches {1e-6 * peaks[race][ball]:.0f} MPa on the {('inner', 'outer')[race]} race, {name}: above "
+        f"{1e-6 * limit:.0f} MPa (static load ratings, ISO 76) ball and race stay dented, which is not computed"
+    ]
+
+
 def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
     """Sentences about the last turn of a record, each said once."""
     z = model.system.ball_count
@@ -47,12 +64,13 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
     inner, outer = _angles(model, record, chosen)
     force = record.contact_force[chosen]
     over = model.bearing.over_edges(model, inner, outer, force)
-    beyond: dict[str, str] = {}
+    beyond: dict[str, str] = {text: text for text in pressure_warnings(model, force.max(axis=0))}
     for k in np.flatnonzero(over):
         model.bearing.refuse_impossible(model, force[k])
         for text in model.bearing.edge_warnings(model, inner[k], outer[k], force[k]):
             beyond.setdefault(text.split(" reaches ")[0], text)
-    if model.geometry.contact_angle > 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
+    b = model.scene.bearing
+    if b.radial_clearance is None and b.contact_angle > 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
         found.append("the bearing unseats during a turn: the contact angle of a loaded ball is zero or negative")
     return (*found, *(f"during a turn {text}" for text in beyond.values()))
 
@@ -76,6 +94,33 @@ def _angles(model: Model, record: Record, chosen: np.ndarray) -> tuple[np.ndarra
 
 def _turn(record: Record) -> int:
     return max(record.schedule.steps_per_turn // record.schedule.stride, 1)
+
+
+def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
+    """A sentence for each thrust-loaded row whose balls cannot be expected to roll.
+
+    Notes
+    -----
+    Hirano saw gross sliding of angular-contact bearings under an axial load F_a below 10 Z F_c, F_c the centrifugal force of a
+    ball.  Spindles run below that limit with little slip; a tenth of it, F_a < Z F_c, is warned of.  F_a is what the balls press
+    on the inner race; rows with a ball that carries nothing there are left out: the criterion is one of thrust loads.
+
+    References
+    ----------
+    Hirano, Motion of a ball in angular-contact ball bearing, ASLE Transactions 8 (1965) 425-434.
+    """
+    z, found = model.system.ball_count, []
+    load, angle, push = equilibrium.contact_force[:z], equilibrium.angle_inner, model.system.table[:, CENTRIFUGAL]
+    for row in range(len(model.scene.bearing.rows)):
+        balls = model.basis.row == row
+        axial = float((load[balls] * np.abs(np.sin(angle[balls]))).sum()) if (load[balls] > 0.0).all() else np.nan
+        if axial < _SLIDING * push[balls].sum():
+            found.append(
+                f"row {row + 1} is pressed together axially with {axial:.4g} N, {axial / push[balls].sum():.2g} times the "
+                f"centrifugal force of its balls: below {_ROLLING:g} times gross sliding was seen (Hirano 1965). Balls then roll slower than "
+                "their speeds here say. Preload more, or take lighter balls (balls.material)"
+            )
+    return found
 
 
 def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:

@@ -23,7 +23,7 @@ from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.ball_pass import ball_pass_table
 from raceway.pipeline.damping import damping_origin
 from raceway.pipeline.facts import facts
-from raceway.pipeline.motion import motion_table
+from raceway.pipeline.motion import largest_contacts, motion_table
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.reports.labelled import labelled
 from raceway.plugins.reports.plot import plot
@@ -87,8 +87,13 @@ class Result(Shown):
 
     @property
     def stiffness(self) -> np.ndarray:
-        """(5, 5) tangent stiffness of the contacts at the equilibrium [N/m, N/rad, N m/m, N m/rad]."""
+        """(5, 5) tangent of the contacts, rows on a spring following [N/m, N/rad, N m/m, N m/rad]; kyy, tilts held, is [1, 1]."""
         return self.equilibrium.stiffness
+
+    @property
+    def kyy_tilts_follow(self) -> float | None:
+        """Radial stiffness with tilts that follow, x and z held [N/m]; None where ``supports.tilt`` is "locked"."""
+        return tilts_follow(self.stiffness, self.model.scene.supports.tilt)
 
     @property
     def damping(self) -> np.ndarray:
@@ -171,6 +176,16 @@ class Result(Shown):
 
         return first_order_band(self.model, self.equilibrium)
 
+    @cached_property
+    def model_spread(self) -> tuple[Tables | None, str]:
+        """``error.model`` of result.json: change of K and kyy by hypotheses left at their defaults, and how it was found."""
+        from raceway.pipeline.error.hypotheses import model_spread
+
+        tilt = self.model.scene.supports.tilt
+        return model_spread(
+            self.model, self.equilibrium, self.identification, self.simulation, lambda one: tilts_follow(one, tilt)
+        )
+
     @property
     def ball_pass(self) -> Tables:
         """``speed_rpm``, and for each row FTF, BPFO, BPFI and BSF over the shaft's speed and in Hz, at the loaded contact angle."""
@@ -240,13 +255,17 @@ class Result(Shown):
                 "model": self.bodies,
                 "motion": self._motion(),
                 "tolerances": self.tolerances,
-                "error": self.error,
+                "error": self._errors(),
                 "cost": self.cost,
                 "stability": self.stability,
                 "environment": self.environment,
                 "warnings": list(self.warnings),
             }
         )
+
+    def _errors(self) -> Tables:
+        model, how = self.model_spread
+        return {**self.error, "model": model, "how": {**self.error["how"], "model": how}}
 
     def _motion(self) -> Tables | None:
         found = self.simulation
@@ -338,12 +357,16 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         columns |= {f"inner_{name}": values[:z], f"outer_{name}": values[z:]}
     several = len(model.scene.bearing.rows) > 1
     rows: list[Tables] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
+    peaks = np.concatenate([columns["peak_pressure_inner_pa"], columns["peak_pressure_outer_pa"]])
     return {
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),
         "damping": equilibrium.damping.tolist(),
+        "stiffness_rows_held": None if model.system.sliding is None else equilibrium.stiffness_rows_held.tolist(),
+        "damping_rows_held": None if model.system.sliding is None else equilibrium.damping_rows_held.tolist(),
         "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
         "free_contact_angle_deg": math.degrees(model.scene.bearing.contact_angle),
+        **largest_contacts(equilibrium.contact_force, peaks, "largest"),
         "balls": [{**rows[k], **{key: column[k].item() for key, column in columns.items()}} for k in range(z)],
         "law": None if law is None else dict(law.table),
         "preload": preload_table(model, equilibrium),

@@ -24,13 +24,18 @@ from raceway.errors import ConvergenceError, PluginError, RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.allowance import PATIENCE, Allowance
 from raceway.pipeline.damping import run_band
-from raceway.pipeline.error.contact import contact_error
-from raceway.pipeline.error.estimate import error_table, no_error
+from raceway.pipeline.error.estimate import body_errors, error_table, error_warnings, no_error, unresolved
 from raceway.pipeline.error.misfit import misfit_warnings
 from raceway.pipeline.error.other_start import start_warnings
 from raceway.pipeline.error.series import series_warnings, with_series_error
 from raceway.pipeline.error.steady_motion import Settled
-from raceway.pipeline.plausibility import inertia_warnings, motion_warnings, refuse_impossible
+from raceway.pipeline.plausibility import (
+    inertia_warnings,
+    motion_warnings,
+    pressure_warnings,
+    refuse_impossible,
+    sliding_warnings,
+)
 from raceway.pipeline.result import Result
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
@@ -108,9 +113,10 @@ def _run(
 
     equilibrium = settle(model, progress, None if near is None else near.equilibrium.displacement)
     if scene.excitation is None:
-        found = _static(model, equilibrium)
+        found = _Found(body_errors(model, equilibrium, "the scene is static: nothing is identified"))
     else:
         found = _dynamic(model, equilibrium, allowance, partial(_moved, model, equilibrium, progress, near, stay))
+    found.error["unresolved"] = unresolved(found.error)
     done, processor = working_clock(), working_process_time() - processor
     compile_s = take_compile_seconds()
     bodies = model.bearing.report(model, equilibrium) or None
@@ -160,13 +166,6 @@ class _Found:
         return self.motions[-1][1] if self.motions else None
 
 
-def _static(model: Model, equilibrium: Equilibrium) -> _Found:
-    error = no_error("the scene is static: nothing is identified")
-    error["mesh"], error["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
-    error["contact"], error["how"]["contact"] = contact_error(model, equilibrium)
-    return _Found(error)
-
-
 def _dynamic(
     model: Model, equilibrium: Equilibrium, allowance: Allowance, move: Callable[[], list[tuple[Model, Simulation]]]
 ) -> _Found:
@@ -203,16 +202,18 @@ def _warnings(model: Model, equilibrium: Equilibrium, found: _Found, bodies: Tab
     error, identification = found.error, found.identification
     every = [
         *found.warned,
-        *_unresolved(error),
+        *error_warnings(error, identification is not None),
         *misfit_warnings(model, error),
         *start_warnings(model, error),
         *series_warnings(identification),
         *model.bearing.warnings(model, equilibrium),
         *([] if identification is None else inertia_warnings(bodies, error["total"])),
+        *pressure_warnings(model, equilibrium.contact_force),
         *equilibrium.warnings,
+        *sliding_warnings(model, equilibrium),
         *_motion_warnings(found.motions),
-        *unused(model.scene),
         *implausible(model.scene),
+        *unused(model.scene),
     ]
     return tuple(dict.fromkeys(every))
 
@@ -233,14 +234,6 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
         wanted |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, wanted)
-
-
-def _unresolved(error: Tables) -> list[str]:
-    """The first thing to say of a number that is smaller than its error."""
-    total = error["total"]
-    if total is None or total < 1.0:
-        return []
-    return [f"Z is not resolved: its estimated error is {total:.2g} times its size, so that K and C say nothing"]
 
 
 def _motion_warnings(motions: list[tuple[Model, Simulation]]) -> list[str]:

@@ -15,6 +15,10 @@ from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import traits_of
+from raceway.scene.growth import free_angle
+
+#: Share of its free contact angle at which a row without a clearance counts as unseated.
+_SEATED = 0.5
 
 
 def settle(
@@ -38,13 +42,14 @@ def settle(
     q, ball, iterations = model.bearing.settle(near, on_progress)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
-    stiffness = still.stiffness_at(q, now)
+    held = still.stiffness_at(q, now), still.damping_at(q, now)
+    stiffness, damping = still.rows_following(q, now, *held)
     _refuse_free_motion(model, stiffness, q)
     inner, outer = model.bearing.contact_angles(model, q, now.ball, now.contact_force)
     model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
-    damping = still.damping_at(q, now)
-    found = Equilibrium(q, stiffness, damping, now.ball, now.gap, now.contact_force, inner, outer, iterations, warnings)
+    state = now.ball, now.gap, now.contact_force, inner, outer
+    found = Equilibrium(q, stiffness, damping, *held, *state, iterations, warnings)
     law = report_of(model, found)
     return found if law is None else attrs.evolve(found, warnings=(*law.warnings, *warnings))
 
@@ -88,14 +93,24 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
     )
 
 
-def _braced(model: Model) -> bool:
-    return model.scene.load.axial != 0.0 or model.scene.bearing.preloaded
+def _seating(model: Model, inner: np.ndarray) -> list[str]:
+    """Rows that lift off, and rows with a loaded ball at half its free contact angle or less; those with a clearance run at any."""
+    bearing, found = model.scene.bearing, list[str]()
+    for k, row in enumerate(bearing.of_rows):
+        name = f"row {k + 1}" if len(bearing.rows) > 1 else "the bearing"
+        least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), free_angle(model.scene, k)
+        if least == np.inf:
+            found.append(f"{name} lifts off: none of its balls touches the inner race")
+        elif row.contact_angle > 0.0 and row.radial_clearance is None and least <= _SEATED * free:
+            angles = f"{np.degrees(least):.2f} deg, {np.degrees(free):.3g} deg without loads"
+            found.append(
+                f"{name} unseats: the contact angle of a loaded ball is {angles}. The axial load is too small or has the wrong sign"
+            )
+    return found
 
 
 def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
-    found = []
-    if model.geometry.contact_angle > 0.0 and _braced(model) and np.nanmin(inner, initial=np.inf) <= 0.0:
-        found.append("the bearing unseats: the contact angle of a loaded ball is zero or negative")
+    found = _seating(model, inner)
     if any(model.scene.load.moment) and model.scene.supports.tilt == "locked":
         found.append("`load.moment` has no effect: supports.tilt is locked")
     if model.scene.contact.friction > 0.0 and traits_of(model.scene).every_node:

@@ -145,7 +145,7 @@ def _ramp_turns(model: Model) -> float:
 
 def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
     """Stable limit of explicit steps: the shortest of the states known before the run."""
-    slopes = [(equilibrium.stiffness, equilibrium.damping)]
+    slopes = [(equilibrium.stiffness_rows_held, equilibrium.damping_rows_held)]
     slopes += [] if orbit is None else zip(orbit.stiffness, orbit.damping, strict=True)
     return min(model.system.damped_time_step(stiffness, damping) for stiffness, damping in slopes)
 

@@ -4,41 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from math import inf
 
 import attrs
 
 from raceway.errors import Mistake
 from raceway.framework.duties import bodies, traits_of
 from raceway.planning.recording import turns_of
+from raceway.scene.growth import loose_rings
 from raceway.scene.scene import Scene
 
-#: Above this a length [m] and below this a Young's modulus [Pa] is told: bearings of 2 m exist, and cages of soft plastics.
-_LENGTH, _YOUNG = 1.0, 1e9
+#: By unit or key the largest plausible size, and what is right: bearings of 2 m exist; rotors on ball bearings weigh tons at most.
+_MOST = {
+    "m": (1.0, " m", "lengths are in metres"),
+    "rotor.mass": (1e4, " kg", "masses are in kilograms"),
+    "contact.friction": (1.0, "", "steel on steel has about 0.1 with oil and 0.8 dry (Bowden and Tabor 1950)"),
+}
+#: Below this a Young's modulus [Pa] is reported: cages of soft plastics exist.
+_YOUNG = 1e9
 #: How far the estimate of the highest frequency may be off.
 _ROUGH = 2.0
-_TABLES = ("bearing", "kinematics", "mesh", "supports")
+_TABLES = ("bearing", "rotor", "contact", "kinematics", "mesh", "supports", "mounting")
 
 
 def implausible(scene: Scene) -> tuple[str, ...]:
-    """A sentence for each value that is likely to be in another unit."""
-    found = []
+    """A sentence for each value that is likely to be in another unit, and for each ring that is loose."""
+    found = loose_rings(scene)
     for table in _TABLES:
         for path, unit, value in _numbers(getattr(scene, table), table):
-            if unit == "m" and abs(value) > _LENGTH:
-                found.append(f"`{path}` = {value:g} m is more than {_LENGTH:g} m: lengths are in metres")
+            most, symbol, right = _MOST.get(path) or _MOST.get(unit or "", (inf, "", ""))
+            if abs(value) > most:
+                found.append(f"`{path}` = {value:g}{symbol} is more than {most:g}{symbol}: {right}")
             if unit == "Pa" and value < _YOUNG:
                 found.append(f"`{path}` = {value:g} Pa is less than {1e-9 * _YOUNG:g} GPa: steel has 2.1e11 Pa")
     return tuple(found)
 
 
-def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str, float]]:
+def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str | None, float]]:
     """Path, unit and value of every number in a table and the tables in it."""
     cls: type = type(table)
     for name, unit in _units(cls):
         value = getattr(table, name)
         if isinstance(value, float):
-            if unit is not None:
-                yield f"{path}.{name}", unit, value
+            yield f"{path}.{name}", unit, value
         elif attrs.has(type(value)):
             yield from _numbers(value, f"{path}.{name}")
 

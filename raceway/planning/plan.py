@@ -12,6 +12,7 @@ from functools import partial
 
 import attrs
 
+from raceway.framework.doors import door
 from raceway.framework.duties import bodies
 from raceway.framework.registry import Registry, default_registry
 from raceway.planning.combinations import refuse_what_cannot_run
@@ -37,6 +38,7 @@ class Plan:
     dofs : unknowns of the ring and of the balls
     time_step_s : None in a static scene;  predicted_wall_s : of a whole run on this machine
     predicted_work_s : the same on the machine whose times the plan knows: no machine's speed changes it
+    predicted_bytes : resident memory at the peak; 0 where it is small, or not known
     at_least : whether that may be any number of times more: a mesh whose size is not known before it is read
     predicted_once_s : seconds of that which a second run on the same bodies does not take again
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
@@ -56,6 +58,7 @@ class Plan:
     predicted_wall_s: float
     predicted_work_s: float
     predicted_once_s: float = 0.0
+    predicted_bytes: int = 0
     mesh: Tables | None = None
     at_least: bool = False
     _modules: Callable[[], tuple[Module, ...]] = attrs.field(default=tuple, eq=False, repr=False)
@@ -79,11 +82,13 @@ class Plan:
             "predicted_steps": self.predicted_steps,
             "predicted_wall_s": self.predicted_wall_s,
             "predicted_at_least": self.at_least,
+            "predicted_bytes": self.predicted_bytes or None,
             "mesh": self.mesh,
             "modules": as_dicts(self.modules),
         }
 
 
+@door
 def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | None = None) -> Plan:
     """Decide what a scene needs.
 
@@ -130,6 +135,7 @@ def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | No
         predicted_wall_s=cost.seconds * (slowness() if cost.scales else 1.0),
         predicted_work_s=cost.seconds,
         predicted_once_s=cost.once,
+        predicted_bytes=cost.bytes,
         mesh=cost.mesh,
         at_least=cost.at_least,
         modules=partial(optional_modules, scene, registry or default_registry(), balls, motion.recorded),

@@ -17,15 +17,22 @@ from fnmatch import fnmatch
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from typing import Any
 
 import attrs
 
 from raceway.errors import SceneError
 from raceway.storage.tables import ReadTables, Tables
 
-#: Relative uncertainty of the stiffness of presets with a file of their own and inferred balls: their conformity meets the eight
-#: axial stiffnesses that NSK prints for pairs of 7206 within 3.6 %.
-_INFERRED = 0.036
+#: Uncertainty of presets with a file of their own and inferred balls: the conformity that the pairs of series 70 give meets what NSK
+#: prints for pairs of 7206 within 3.6 %; 8 % covers what it leaves of the radial stiffnesses of series 70 (``raceway/data/series/70.toml``).
+_INFERRED: dict[str, Any] = {
+    "stiffness_error": 0.036,
+    "radial_stiffness_error": 0.08,
+    "stiffness_basis": "as the maker of 7206C prints it; one series from the other's grooves",
+}
+#: Relative scatter of the conformity of these: of the sizes of series 70, fitted one by one, (f - 0.5) scatters by 5 % (``studies.infer``).
+_CONFORMITY = 0.002
 #: Names that the message of an unknown preset offers.
 _OFFERED = 5
 
@@ -47,7 +54,8 @@ class Preset:
 
     Attributes
     ----------
-    stiffness_error : relative uncertainty of its stiffness that comes from inferred geometry; None: of numbers that a source states
+    stiffness_error : relative uncertainty of its axial stiffness that comes from inferred geometry; None: of numbers that a source states
+    radial_stiffness_error, stiffness_basis : the same of the radial stiffness, tilt locked; what both were compared with
     printed : how well the inferred geometry meets what the maker prints, relative errors by name
 
     Examples
@@ -62,6 +70,8 @@ class Preset:
     title: str
     facts: tuple[Fact, ...]
     stiffness_error: float | None = None
+    radial_stiffness_error: float | None = None
+    stiffness_basis: str = ""
     printed: dict[str, float] = attrs.field(factory=dict)
 
     @property
@@ -108,7 +118,7 @@ def _single(file: Traversable) -> Preset:
     content = tomllib.loads(file.read_text(encoding="utf-8"))
     title, facts = content.pop("title"), tuple(_facts(content, ""))
     inferred = any(fact.inferred and fact.key == "ball_count" for fact in facts)
-    return Preset(file.name.removesuffix(".toml"), title, facts, _INFERRED if inferred else None)
+    return Preset(file.name.removesuffix(".toml"), title, facts, **(_INFERRED if inferred else {}))
 
 
 def _facts(tables: ReadTables, prefix: str) -> list[Fact]:
@@ -116,7 +126,8 @@ def _facts(tables: ReadTables, prefix: str) -> list[Fact]:
     for key, table in tables.items():
         if "value" in table:
             inferred = bool(table.get("inferred", False))
-            facts.append(Fact(prefix + key, table["value"], table["source"], inferred, table.get("scatter")))
+            scatter = table.get("scatter", _CONFORMITY if inferred and key.startswith("conformity") else None)
+            facts.append(Fact(prefix + key, table["value"], table["source"], inferred, scatter))
         else:
             facts += _facts(table, f"{prefix}{key}.")
     return facts
@@ -134,7 +145,8 @@ def _series(content: ReadTables) -> Iterator[Preset]:
             f"{name}: {content['title']}, {1e3 * row['bore']:g} x {1e3 * row['outer_diameter']:g} x {1e3 * row['width']:g} mm, "
             f"{row['contact_angle_deg']:g} deg"
         )
-        yield Preset(name, title, (*own, *same), content["stiffness_error"], {key: row[key] for key in content["printed"]})
+        printed = {key: row[key] for key in content["printed"]}
+        yield Preset(name, title, (*own, *same), **{key: content[key] for key in _INFERRED}, printed=printed)
 
 
 def found_by(pattern: str) -> list[Preset]:
@@ -176,7 +188,7 @@ def geometry_of(bearing: ReadTables, given: ReadTables) -> Tables | None:
     Notes
     -----
     ``preset`` and ``inferred`` are those of [bearing]; rows of other presets are in ``rows``, by their numbers from 0.  Of
-    several presets ``stiffness_error`` is the largest.
+    several presets the uncertainties are the largest.
     """
     rows = given.get("row")
     rows = rows if isinstance(rows, list | tuple) else []
@@ -186,17 +198,19 @@ def geometry_of(bearing: ReadTables, given: ReadTables) -> Tables | None:
     whole = _inferred(bearing.get("preset"), given) if not rows or len(own) < len(rows) else None
     if whole is None and not found:
         return None
-    error = max(one["stiffness_error"] for one in [*([] if whole is None else [whole]), *found.values()])
+    presets = [*([] if whole is None else [whole]), *found.values()]
+    axial, radial = (max(one[key] for one in presets) for key in ("stiffness_error", "radial_stiffness_error"))
     return {
         **(whole or {}),
         **({"rows": [{"row": k, **one} for k, one in found.items()]} if found else {}),
-        "stiffness_error": error,
-        "words": f"geometry inferred: stiffness known to about {100.0 * error:.0f} %",
+        "stiffness_error": axial,
+        "radial_stiffness_error": radial,
+        "words": f"geometry inferred: stiffness known to about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially",
     }
 
 
 def _inferred(name: object, given: ReadTables) -> Tables | None:
-    """preset, inferred and stiffness_error of one preset, less the keys that the user gives."""
+    """preset, inferred and uncertainties of one preset, less the keys that the user gives."""
     one = _preset(name)
     if one is None or one.stiffness_error is None:
         return None
@@ -206,5 +220,5 @@ def _inferred(name: object, given: ReadTables) -> Tables | None:
     return {
         "preset": one.name,
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
-        "stiffness_error": one.stiffness_error,
+        **{key: getattr(one, key) for key in _INFERRED},
     }

@@ -5,13 +5,10 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from raceway.errors import SceneError
 from raceway.storage.tables import ReadTables, Tables
-
-if TYPE_CHECKING:
-    pass
 
 
 def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]]) -> Tables:

@@ -11,8 +11,6 @@ import attrs
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.scene import Scene
-
-#: Tables of plug-ins that are attributes of the scene themselves.
 from raceway.scene.tables import TABLES
 
 #: Tables of plug-ins that are attributes of the scene themselves.

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.given import Given
 from raceway.storage.tables import Tables
@@ -95,6 +96,7 @@ def _text(path: Path) -> str:
     return path.read_bytes().decode("utf-8-sig")
 
 
+@door
 def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry | None = None) -> Scene:
     """A scene from a file, with ``key.path=value`` changes.
 

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 Change = str | Mapping[str, Any]
 #: What makes a string the text of a scene rather than the name of a file.
 _SIGNS_OF_TOML = ("\n", "=", "[")
+#: Tables in tables and lists in lists; keys of scenes go five deep.
+_DEEPEST = 32
 
 
 @attrs.frozen
@@ -134,7 +136,7 @@ def as_given(source: Any) -> Given:
     if isinstance(source, Mapping):
         return Given(tidy(source))
     if isinstance(source, str) and _is_text(source):
-        return Given(parse_toml(source, "scene"))
+        return Given(tidy(parse_toml(source, "scene")))
     if isinstance(source, str | os.PathLike):
         path = Path(source)
         if isinstance(source, str) and not path.suffix and not path.exists():
@@ -143,7 +145,7 @@ def as_given(source: Any) -> Given:
             inside = sorted(str(p) for p in path.glob("*.toml"))
             hint = f"; scenes in it: {', '.join(inside[:5])}" if inside else " without a scene (*.toml) in it"
             raise SceneError.at(str(path), None, f"is a folder{hint}")
-        return Given(read_toml(path), path.stem, path.parent)
+        return Given(tidy(read_toml(path)), path.stem, path.parent)
     rule = f"must be a file, TOML text, a dict of tables or a Scene, not {type(source).__name__}"
     raise SceneError.at("scene", None, rule)
 
@@ -183,19 +185,33 @@ def plain_tables(source: Any, *changes: Change, registry: Registry) -> Tables:
     return as_given(source).changed(*changes).plain(registry)
 
 
-def tidy(value: Any) -> Any:
-    """Plain Python values of a tree: numbers of numpy, tuples and paths become what a TOML file holds, quantities text."""
+def tidy(value: Any, depth: int = 0) -> Any:
+    """Plain Python values of a tree: numbers of numpy, tuples and paths become what a TOML file holds, quantities text.
+
+    Raises
+    ------
+    SceneError
+        A tree deeper than any scene, or what no file could hold.
+    """
+    if depth > _DEEPEST:
+        raise SceneError.at(
+            "scene", None, f"has lists or tables that are nested more than {_DEEPEST} deep: no key of a scene is"
+        )
     if isinstance(value, Mapping):
-        return {str(key): tidy(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [tidy(inner) for inner in value]
+        return {str(key): tidy(inner, depth + 1) for key, inner in value.items()}
+    if isinstance(value, list | tuple | range):
+        return [tidy(inner, depth + 1) for inner in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "magnitude") and hasattr(value, "to_base_units"):
         return _quantity(value)
     if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
         return value.tolist()
-    return value
+    try:
+        return copy.deepcopy(value)
+    except TypeError:
+        kind = type(value).__name__
+        raise SceneError.at("scene", value, f"holds text, numbers, lists and tables, no {kind}") from None
 
 
 def _quantity(value: Any) -> Any:

@@ -6,16 +6,20 @@ Temperatures are given numbers: nothing here knows where the heat comes from.
 from __future__ import annotations
 
 from math import acos, cos, degrees, pi, sin
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.errors import Mistake
+from raceway.errors import Mistake, SceneError
 from raceway.scene.inner_ring import groove_depth, radial_growth
 
 if TYPE_CHECKING:
-    from raceway.scene.bearing import Bearing
+    from raceway.scene.bearing import Bearing, Material
     from raceway.scene.scene import Scene
+
+
+#: Loss of fit [m] that is reported: the finest standard tolerance of any diameter (ISO 286-1, IT01 up to 3 mm).
+_FINEST_TOLERANCE = 0.3e-6
 
 
 @attrs.frozen
@@ -40,22 +44,23 @@ def grooves(scene: Scene, row: int = 0) -> Grooves:
     Notes
     -----
     A ring whose temperature rises by T grows by a T in all lengths: the circles of the groove centres R_i and R_o, the groove
-    radii f D; a ball likewise.  Shaft and housing have the temperatures of their rings, so that a row at the place X moves
-    axially by a (T_i - T_o) X.  At one temperature for all, everything keeps its shape.
+    radii f D; a ball likewise.  Rings and sleeves between them keep rows apart: the planes of the groove centres, at X of the inner
+    and X - s A sin(alpha) of the outer one (side s, distance A), move axially by a T_i X and a T_o (X - s A sin(alpha)).
+    At one temperature for all, everything keeps its shape.
     """
     b, (side, place), warm = scene.bearing.of_rows[row], scene.bearing.rows[row], scene.mounting
     angle, half = b.contact_angle, 0.5 * b.ball_diameter
     to_inner, to_outer = ((f - 0.5) * b.ball_diameter for f in (b.conformity_inner, b.conformity_outer))
-    by_inner = b.rings.thermal_expansion * warm.inner_temperature
-    by_outer = b.rings.thermal_expansion * warm.outer_temperature
-    ball = b.balls.thermal_expansion * warm.ball_temperature * half
+    by_inner = b.rings.strain("bearing.rings", warm.inner_temperature)
+    by_outer = b.rings.strain("bearing.rings", warm.outer_temperature)
+    ball = b.balls.strain("bearing.balls", warm.ball_temperature) * half
     if scene.kinematics.ball_growth:
         ball += ball_growth(b, scene.spin_speed)
     circle = 0.5 * b.pitch_diameter + to_inner * cos(angle)
     other = 0.5 * b.pitch_diameter - to_outer * cos(angle)
     fits = inner_fit(scene, b) - outer_fit(scene, b)
     return Grooves(
-        axial=(by_inner * to_inner + by_outer * to_outer) * sin(angle) + side * (by_inner - by_outer) * place,
+        axial=by_outer * (to_inner + to_outer) * sin(angle) + side * (by_inner - by_outer) * place,
         radial=radial_growth(scene, row) + fits + by_inner * circle - by_outer * other,
         inner=by_inner * (to_inner + half) - ball,
         outer=by_outer * (to_outer + half) - ball,
@@ -90,8 +95,8 @@ def inner_fit(scene: Scene, bearing: Bearing) -> float:
     Notes
     -----
     Thick-walled cylinders of one material: with bore d, raceway d_1 = d_m - D and hole d_s the raceway grows, on the radius, by
-    I/2 (d_1 / d) (d^2 - d_s^2) / (d_1^2 - d_s^2).  With the centrifugal growth of the ring the interference falls by as much as
-    the ring's bore grows beyond the shaft.
+    I/2 (d_1 / d) (d^2 - d_s^2) / (d_1^2 - d_s^2); ``pressed`` takes two.  The interference falls by as much as the ring's bore grows
+    beyond the shaft, by centrifugal growth and by temperature.
 
     References
     ----------
@@ -100,58 +105,91 @@ def inner_fit(scene: Scene, bearing: Bearing) -> float:
     return _by_interference(scene, bearing, running_interference(scene, bearing))
 
 
-def speed_growth(scene: Scene) -> float:
-    """The part of the inner raceway's radial growth that goes with the square of the speed [m]: ring, and what its fit loses."""
-    b = scene.bearing.of_rows[0]
-    standing = _by_interference(scene, b, scene.mounting.shaft_interference)
-    return radial_growth(scene) - scene.kinematics.radial_expansion + (inner_fit(scene, b) - standing)
+def speed_growth(scene: Scene) -> tuple[float, float, float]:
+    """Radial growth of the inner raceway [m]: by speed, by its fit at standstill, and what speed takes from that fit."""
+    b, free = scene.bearing.of_rows[0], radial_growth(scene) - scene.kinematics.radial_expansion
+    fit, each = warm_interference(scene, b), _by_interference(scene, b, 1.0)
+    return free, each * fit, each * (fit - running_interference(scene, b))
 
 
 def _by_interference(scene: Scene, bearing: Bearing, interference: float) -> float:
     if interference <= 0.0 or bearing.bore is None:
         return 0.0
-    d, race, hole = bearing.bore, bearing.pitch_diameter - bearing.ball_diameter, scene.mounting.shaft_bore
-    return 0.5 * interference * race / d * (d**2 - hole**2) / (race**2 - hole**2)
+    rings, race = bearing.rings, bearing.pitch_diameter - bearing.ball_diameter
+    seat = scene.mounting.shaft_material or rings
+    return pressed(interference, bearing.bore, race, scene.mounting.shaft_bore, rings, seat)
+
+
+def pressed(interference: float, d: float, race: float, far: float | None, ring: Material, seat: Material) -> float:
+    """Radial growth of a raceway by the interference of its ring [m], negative of an outer one: Lamé's thick-walled cylinders, each
+    of its own material (Timoshenko & Goodier, section 28).
+
+    Parameters
+    ----------
+    interference, d, race, far : diameters [m] of seat, raceway, and the other side of shaft or housing (None: far away)
+    """
+    sign, around = (1.0 if race > d else -1.0), (1.0 if far is None else abs((far**2 + d**2) / (far**2 - d**2)))
+    softness = (abs((race**2 + d**2) / (race**2 - d**2)) + sign * ring.poisson) / ring.young
+    softness += (around - sign * seat.poisson) / seat.young
+    return interference * d * race / (softness * ring.young * (race**2 - d**2))
 
 
 def outer_fit(scene: Scene, bearing: Bearing) -> float:
     """Radial growth of the outer raceway by the interference in the housing [m], negative: as ``inner_fit``, from outside."""
-    interference = scene.mounting.housing_interference
-    if interference == 0.0 or bearing.outer_diameter is None:
+    interference, rings, warm = warm_interference(scene, bearing, "housing"), bearing.rings, scene.mounting
+    if interference <= 0.0 or bearing.outer_diameter is None:
         return 0.0
-    d, race, wide = bearing.outer_diameter, bearing.pitch_diameter + bearing.ball_diameter, scene.mounting.housing_diameter
-    if wide is None:
-        return -0.5 * interference * race / d
-    return -0.5 * interference * race / d * (wide**2 - d**2) / (wide**2 - race**2)
+    race = bearing.pitch_diameter + bearing.ball_diameter
+    return pressed(interference, bearing.outer_diameter, race, warm.housing_diameter, rings, warm.housing_material or rings)
 
 
-def running_interference(scene: Scene, bearing: Bearing) -> float:
-    """Interference of ring and shaft at speed, on the diameter [m].
+def warm_interference(scene: Scene, bearing: Bearing, seat: str = "shaft") -> float:
+    """Interference of shaft or housing with its ring at their temperature, at standstill, on the diameter [m]."""
+    rings, warm, inside = bearing.rings, scene.mounting, seat == "shaft"
+    d, kelvin = (bearing.bore, warm.inner_temperature) if inside else (bearing.outer_diameter, warm.outer_temperature)
+    given, other = (getattr(warm, f"{seat}_{word}") for word in ("interference", "material"))
+    if other is None or d is None:
+        return float(given)
+    expands = other.strain(f"mounting.{seat}_material", kelvin) - rings.strain("bearing.rings", kelvin)
+    return float(given + (expands if inside else -expands) * d)
+
+
+def running_interference(scene: Scene, bearing: Bearing, seat: str = "shaft") -> float:
+    """Interference of shaft or housing with its ring at speed and temperature, on the diameter [m].
 
     Notes
     -----
     Of plane-stress annuli: the bore a of a ring up to the radius b grows by rho w^2 a / (4 E) ((1 - nu) a^2 + (3 + nu) b^2), a
-    shaft with the hole c by the same with a and c.  Difference: rho w^2 a (3 + nu) (b^2 - c^2) / (4 E).
+    shaft with the hole c by the same with its own numbers and c for b.
 
     References
     ----------
     Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
     """
-    given, steel = scene.mounting.shaft_interference, bearing.rings
-    if given == 0.0 or bearing.bore is None or not scene.kinematics.ring_growth:
+    given, rings = warm_interference(scene, bearing, seat), bearing.rings
+    if seat == "housing" or bearing.bore is None or not scene.kinematics.ring_growth:
         return given
     a, c = 0.5 * bearing.bore, 0.5 * scene.mounting.shaft_bore
     b = 0.5 * (bearing.pitch_diameter - bearing.ball_diameter) + groove_depth(bearing)
-    lost = steel.density * scene.spin_speed**2 * a * (3.0 + steel.poisson) * (b**2 - c**2) / (4.0 * steel.young)
-    return float(given - 2.0 * lost)
+    ring, core = (
+        one.density / (4.0 * one.young) * ((1.0 - one.poisson) * a**2 + (3.0 + one.poisson) * far**2)
+        for one, far in ((rings, b), (scene.mounting.shaft_material or rings, c))
+    )
+    return float(given - 2.0 * scene.spin_speed**2 * a * (ring - core))
 
 
 def growth_faults(scene: Scene) -> list[Mistake]:
-    """Fits that lack a dimension or are lost at speed; growth that leaves no bearing."""
+    """Fits that lack a dimension; growth that leaves no bearing."""
     found, warm = [], scene.mounting
-    for key, dimension in (("shaft_interference", "bore"), ("housing_interference", "outer_diameter")):
-        if getattr(warm, key) > 0.0 and any(getattr(b, dimension) is None for b in scene.bearing.of_rows):
-            found.append(Mistake(f"mounting.{key}", getattr(warm, key), f"needs the bearing's `{dimension}`"))
+    for seat, dimension in (("shaft", "bore"), ("housing", "outer_diameter")):
+        for key in (f"{seat}_interference", f"{seat}_material"):
+            if getattr(warm, key) and any(getattr(b, dimension) is None for b in scene.bearing.of_rows):
+                value = getattr(warm, key) if key.endswith("interference") else None
+                found.append(Mistake(f"mounting.{key}", value, f"needs the bearing's `{dimension}`"))
+    shaft = scene.source.get("mounting", {}).get("shaft_material")
+    if scene.kinematics.ring_growth and shaft and "density" not in shaft:
+        why = "is required by kinematics.ring_growth: the shaft grows with the speed, too"
+        found.append(Mistake("mounting.shaft_material.density", None, why))
     narrow = min((b.bore for b in scene.bearing.of_rows if b.bore is not None), default=None)
     if narrow is not None and warm.shaft_bore >= narrow:
         found.append(
@@ -163,22 +201,16 @@ def growth_faults(scene: Scene) -> list[Mistake]:
         found.append(Mistake("mounting.housing_diameter", warm.housing_diameter, rule))
     if found:
         return found
-    for row, bearing in enumerate(scene.bearing.of_rows):
-        found = _row_faults(scene, row, bearing)
-        if found:
-            break
+    try:
+        for row, bearing in enumerate(scene.bearing.of_rows):
+            found = found or _row_faults(scene, row, bearing)
+    except SceneError as error:  # a body that lacks its thermal expansion
+        return error.mistakes
     return found
 
 
 def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
-    """Of one row: a shaft that comes loose, a bearing that is closed or opened by its growth."""
-    left = running_interference(scene, bearing)
-    if left < 0.0:
-        rule = (
-            f"is lost at {30.0 * scene.spin_speed / pi:.4g} r/min: the bore grows by {1e6 * (scene.mounting.shaft_interference - left):.3g} µm "
-            "more than the shaft, on the diameter, and the ring comes loose. Fit it tighter, or turn it slower"
-        )
-        return [Mistake("mounting.shaft_interference", scene.mounting.shaft_interference, rule)]
+    """Of one row: a bearing that is closed or opened by its growth."""
     if not scene.mounting.changes:
         return []  # what kinematics.radial_expansion does alone is told where the equilibrium is
     grown, angle = grooves(scene, row), bearing.contact_angle
@@ -204,6 +236,32 @@ def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
     return []
 
 
+def free_angle(scene: Scene, row: int) -> float:
+    """Free contact angle of a row that turns and is warm [rad]; 0 where nothing is left of its clearance."""
+    b, grown = scene.bearing.of_rows[row], grooves(scene, row)
+    distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
+    along = (distance * cos(b.contact_angle) + grown.radial) / (distance + grown.inner + grown.outer)
+    return acos(min(max(along, -1.0), 1.0))
+
+
+def loose_rings(scene: Scene) -> list[str]:
+    """A sentence for each ring that its running, warm fit does not hold."""
+    found = []
+    for ring, seat, grown in (
+        ("inner ring is loose on its", "shaft", "more"),
+        ("outer ring is loose in its", "housing", "less"),
+    ):
+        left = min(running_interference(scene, b, seat) for b in scene.bearing.of_rows)
+        fit = getattr(scene.mounting, f"{seat}_interference")
+        if left < -_FINEST_TOLERANCE:
+            found.append(
+                f"the {ring} {seat} by {-1e6 * left:.3g} µm, on the diameter: it has grown {1e6 * (fit - left):.3g} µm {grown}, by speed "
+                f"({30.0 * scene.spin_speed / pi:.6g} r/min) and temperature, and `mounting.{seat}_interference` is {1e6 * fit:g} µm. It is "
+                "computed as a free ring that stays centred"
+            )
+    return found
+
+
 def _cause(scene: Scene, row: int) -> str:
     """The key that does most to the grooves' room: the temperature furthest from the others, brought to their mean, or a fit."""
     warm = {name: value for name, value in attrs.asdict(scene.mounting).items() if name.endswith("_temperature")}
@@ -212,7 +270,7 @@ def _cause(scene: Scene, row: int) -> str:
     others = (sum(warm.values()) - warm[furthest]) / (len(warm) - 1)
     without = {furthest: others, "shaft_interference": 0.0, "housing_interference": 0.0}
 
-    def room(**changed: float) -> float:
+    def room(**changed: Any) -> float:
         grown = grooves(attrs.evolve(scene, mounting=attrs.evolve(scene.mounting, **changed)), row)
         return grown.inner + grown.outer - grown.radial
 

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from raceway.errors import Mistake, SceneError
 from raceway.scene.catalogue import preset
 from raceway.scene.materials import with_material
 from raceway.scene.sets import GEOMETRY
 from raceway.storage.tables import Tables
 
-if TYPE_CHECKING:
-    pass
-
 
 def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     table = _with_rows(table, mistakes)
     name = table.get("preset")
     if name is None:
-        return _with_materials(table, {}, mistakes)
+        return with_materials(table, {}, mistakes)
     try:
         values = preset(name)
     except SceneError as error:
@@ -29,19 +24,21 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
         merged["contact_angle_deg"] = 0.0
     if "contact_angle_deg" in table and "radial_clearance" not in table:
         merged.pop("radial_clearance", None)
-    return _with_materials(merged, values, mistakes)
+    return with_materials(merged, values, mistakes)
 
 
-def _with_materials(table: Tables, preset: Tables, mistakes: list[Mistake]) -> Tables:
-    """The table [bearing] with the numbers of named materials, and those of the preset below what the user says."""
+def with_materials(table: Tables, preset: Tables, mistakes: list[Mistake], name: str = "bearing") -> Tables:
+    """The table [bearing] or [mounting] with the numbers of named materials, and those of the preset below what the user says."""
     made = dict(table)
-    for part in ("rings", "balls"):
-        if isinstance(table.get(part), dict):
+    for part in ("rings", "balls", "shaft_material", "housing_material"):
+        own = table.get(part)
+        own = {"material": own} if isinstance(own, str) and name == "mounting" else own
+        if isinstance(own, dict):
             try:
-                made[part] = with_material(table[part], f"bearing.{part}", preset.get(part, {}))
+                made[part] = with_material(own, f"{name}.{part}", preset.get(part, {}))
             except SceneError as error:
                 mistakes += error.mistakes
-                made[part] = {**preset.get(part, {}), **table[part], "material": None}
+                made[part] = {**preset.get(part, {}), **own, "material": None}
     return made
 
 

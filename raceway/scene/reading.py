@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.errors import Mistake, PluginError, SceneError
+from raceway.framework.doors import door
 from raceway.framework.options import (
     nearest,
 )
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
     from collections.abc import Hashable
 
     from raceway.scene.given import Given
-from raceway.scene.presets import _with_preset
+from raceway.scene.presets import _with_preset, with_materials
 from raceway.scene.scene import Scene
 from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, STUDY_TABLES, SWAPPED_TABLES, TABLES
 
 
+@door
 def scene_from_dict(
     tables: ReadTables, registry: Registry | None = None, known_parts: dict[Hashable, Any] | None = None
 ) -> Scene:
@@ -60,6 +62,8 @@ def scene_from_dict(
     plain = numbers_only(said, registry)
     if "bearing" in plain:
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
+    if "mounting" in plain:
+        plain["mounting"] = with_materials(plain["mounting"], {}, mistakes, "mounting")
     parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 

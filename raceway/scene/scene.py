@@ -145,6 +145,11 @@ class Scene(Shown):
             rpm = getattr(self.excitation, "speed_rpm", 0.0) if self.excitation is not None else 0.0
         return rpm * pi / 30.0
 
+    def says(self, key: str) -> bool:
+        """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
+        table, _, name = key.partition(".")
+        return name in self.source.get(table, {})
+
     @property
     def time_constant(self) -> float:
         """Of the contacts' dashpots c = tau k [s]; 0 where there are none of this kind, of a band the low end."""

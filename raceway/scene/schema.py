@@ -131,6 +131,8 @@ def _forms(kind: Any, limits: dict[str, float], measured: bool) -> list[Tables]:
         inner = _forms(items[0], {}, measured)
         array: Tables = {"type": "array", "items": inner[0] if len(inner) == 1 else {"anyOf": inner}}
         return [array if items[-1] is Ellipsis else {**array, "minItems": len(items), "maxItems": len(items)}]
+    if attrs.has(kind):  # a material, or its name alone
+        return [_table(kind), {"type": "string", "enum": list(materials())}]
     if kind not in _TYPES:
         return [{}]
     form = {"type": _TYPES[kind], **(limits if kind in (float, int) else {})}

@@ -153,8 +153,9 @@ def table_without_units(table: Tables, cls: type) -> Tables:
         field = fields.get(key)
         if field is None:
             continue
-        if isinstance(value, dict) and field.type is not None and attrs.has(field.type):
-            result[key] = table_without_units(value, field.type)
+        kinds = [kind for kind in (field.type, *get_args(field.type)) if isinstance(kind, type) and attrs.has(kind)]
+        if isinstance(value, dict) and kinds:
+            result[key] = table_without_units(value, kinds[0])
         elif isinstance(value, list | tuple) and (one := table_of_list(field.type)) is not None:
             result[key] = [table_without_units(each, one) if isinstance(each, dict) else each for each in value]
         elif isinstance(value, str | list | tuple):

@@ -3,7 +3,7 @@ its last attribute."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 
@@ -18,11 +18,8 @@ from raceway.framework.options import (
     positive,
     word_or,
 )
+from raceway.scene.bearing import Bearing, Material
 from raceway.scene.rig import Rig
-
-if TYPE_CHECKING:
-    pass
-from raceway.scene.bearing import Bearing
 
 _AROUND = (
     "must be one number: a seat that differs around the ring is not axisymmetric. Mesh what it sits in, with "
@@ -40,7 +37,7 @@ class Supports:
     )
     axial: str = option(
         "force",
-        help="'force': load.axial acts; 'displacement': what load.axial alone gives, mounted, is held",
+        help="'force': load.axial acts; 'displacement': what load.axial alone gives before mounting is held",
         rule=one_of("force", "displacement"),
     )
     outer_seat: float | str = option(
@@ -92,11 +89,15 @@ class Kinematics:
     ball_growth: bool = option(False, help="adds the centrifugal growth of the balls")
 
 
+#: Differences [K] from the temperature of mounting, 20 C (reference temperature of ISO 1): none below absolute zero.
+_WARMER = between(-293.15, 1e3)
+
+
 @attrs.frozen
 class Mounting:
-    inner_temperature: float = option(0.0, unit="K", help="of inner rings and shaft above that of mounting", rule=finite())
-    outer_temperature: float = option(0.0, unit="K", help="of outer rings and housing above that of mounting", rule=finite())
-    ball_temperature: float = option(0.0, unit="K", help="of the balls above that of mounting", rule=finite())
+    inner_temperature: float = option(0.0, unit="K", help="of inner rings and shaft above mounting's 20 °C", rule=_WARMER)
+    outer_temperature: float = option(0.0, unit="K", help="of outer rings and housing above mounting's 20 °C", rule=_WARMER)
+    ball_temperature: float = option(0.0, unit="K", help="of the balls above mounting's 20 °C", rule=_WARMER)
     shaft_interference: float = option(
         0.0, unit="m", help="by which the shaft is larger than the bore, on the diameter, at standstill", rule=at_least(0.0)
     )
@@ -107,13 +108,22 @@ class Mounting:
     housing_diameter: float | None = option(
         None, unit="m", help="outer diameter of the housing; default: much larger than the bearing", rule=optional(length())
     )
+    shaft_material: Material | None = option(None, help="a name, or a table as [bearing.rings]; default: the rings'")
+    housing_material: Material | None = option(None, help="a name, or a table as [bearing.rings]; default: the rings'")
 
     @property
     def changes(self) -> dict[str, float]:
         """Temperatures and interferences that are not zero, by key."""
         return {
-            name: value for name, value in attrs.asdict(self).items() if value and not name.endswith(("_bore", "_diameter"))
+            key: value
+            for key, value in attrs.asdict(self).items()
+            if value and not key.endswith(("bore", "diameter", "material"))
         }
+
+    @property
+    def fitted(self) -> bool:
+        """Whether a ring sits with interference."""
+        return self.shaft_interference > 0.0 or self.housing_interference > 0.0
 
 
 #: Band of a rolling bearing's damping over its stiffness [s]: Kraemer, Dynamics of Rotors and Foundations (1993), as ROSS cites it

@@ -102,6 +102,9 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     without = "bearing.preload is 0"
     told(not scene.bearing.preloaded, without, "bearing.preload_kind", "bearing.preload_of", "bearing.spring_travel")
     told(scene.bearing.preload_kind == "rigid", "bearing.preload_kind is 'rigid'", "bearing.spring_travel")
-    told(scene.mounting.shaft_interference == 0.0, "mounting.shaft_interference is 0", "mounting.shaft_bore")
-    told(scene.mounting.housing_interference == 0.0, "mounting.housing_interference is 0", "mounting.housing_diameter")
+    warm, turns = scene.mounting, scene.kinematics.ring_growth
+    fitted = warm.shaft_interference or turns or (warm.shaft_material and warm.inner_temperature)
+    told(not fitted, "mounting.shaft_interference is 0", "mounting.shaft_bore", "mounting.shaft_material")
+    fitted = warm.housing_interference or (warm.housing_material and warm.outer_temperature)
+    told(not fitted, "mounting.housing_interference is 0", "mounting.housing_diameter", "mounting.housing_material")
     return found

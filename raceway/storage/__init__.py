@@ -6,5 +6,4 @@ user_files     refusal of files without end or beyond the memory
 number_table   tables of numbers from CSV files
 array_cache    arrays that are expensive to make
 cache_folder   folder of the compiled kernels;  kernel_files: their digests
-trust          programs that a command may execute
 """

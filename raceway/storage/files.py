@@ -23,6 +23,8 @@ def scratch_file(path: Path, remedy: str) -> Iterator[Path]:
     RacewayError
         A folder or disk that cannot be written.
     """
+    if path.is_dir():
+        raise RacewayError(f"`{path}` cannot be written: it is a folder. {remedy}")
     scratch = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from raceway.core.condensed.calibration import LOADS, POINTS, _limit
-from raceway.pipeline.error.contact import contact_error
 from tests.condensed.test_bearing import settled
 
 #: Walls of 1.24 mm.
@@ -34,7 +33,7 @@ def test_thin_walls_are_within_what_is_stated_of_pressures_at_surface_points(til
         bearing=THIN, supports={"tilt": tilt}, contact={"kind": "unilateral", "discretisation": "nodal"},
         mesh={"kind": "structured", "nodes_per_semi_axis": 4},
     )  # fmt: skip
-    stated, how = contact_error(model, ours)
+    stated, how = model.bearing.contact_error(model, ours)
     assert "surface points" in how and 0.005 < stated < 0.02
     for index in range(3):
         assert ours.stiffness[index, index] == pytest.approx(theirs.stiffness[index, index], rel=stated + 0.006)

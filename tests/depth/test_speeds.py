@@ -10,6 +10,7 @@ from rich.console import Console
 
 from raceway import SceneError
 from raceway.commands.screen.result import run_screen
+from raceway.core.ring.friction import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
 from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
@@ -174,8 +175,9 @@ def test_fit_of_a_series_of_equilibria_has_no_mass():
 @pytest.mark.parametrize(
     ("speeds", "words"),
     [
-        ([9000.0], "at least two different speeds"),
-        ([9000.0, 9000.0], "two different"),
+        ([9000.0], "at least two speeds"),
+        ([9000.0, 9000.0], "5 % or more above the smallest"),
+        ([9000.0, 9001.0, 9449.0], "5 % or more above the smallest: closer ones hide a K that is off by 20 times"),
         ([0.0, 1.0], "greater than 0"),
         ([], "two"),
     ],
@@ -442,3 +444,29 @@ def test_windows_without_a_steady_motion_have_the_error_of_their_record():
     result = run(scene_from_dict(turning(6000.0, 15000.0, integrator={"kind": "quasi_static", "steps_per_turn": 120})))
     told = result.identification.series_error
     assert len(told) == len(result.identification.series) and 1e-8 < min(told) <= max(told) < 5e-3
+
+
+def test_friction_of_a_run_up_sees_the_growth_of_the_ring():
+    """The place of a contact takes the groove's growth at each moment: at the reference speed it is the constant's own."""
+    tables = b7206c(
+        load={"axial": 400.0},
+        excitation={
+            "kind": "run_up",
+            "first_speed_rpm": 6000.0,
+            "speed_rpm": 12000.0,
+            "duration_s": 0.02,
+            "unbalance": 1e-5,
+        },
+        kinematics={"ring_growth": True},
+        mounting={"shaft_interference": 4e-6},
+        contact={"friction": 0.03},
+        integrator={"turns": 2, "steps_per_turn": 60},
+        identifier={"kind": "order_tracking", "window_turns": 2.0},
+    )
+    result = run(scene_from_dict(tables))
+    spin = result.model.system.spin
+    assert spin.grown(np.array([spin.reference])) == pytest.approx(0.0, abs=1e-15)
+    assert abs(spin.grown(np.array([0.5 * spin.reference]))[0]) > 1e-8
+    record = result.simulation.record
+    stored = friction_energy(result.model.system, record)
+    assert stored.lost.shape == record.time.shape and np.isfinite(stored.lost).all()

@@ -94,6 +94,16 @@ def test_a_race_that_carries_nothing_is_absent(result):
         contact.pressure = pressed
 
 
+def test_stresses_of_all_elements_say_that_the_mesh_does_not_resolve_the_contacts(result, monkeypatch):
+    from raceway.studies.view.fields import contacts_left_out
+
+    largest = 1e-6 * result.to_dict()["equilibrium"]["largest_pressure_pa"]
+    wanted = f"the mesh does not resolve the contacts' own stresses (Hertz's pressure up to {largest:.4g} MPa)"
+    assert contacts_left_out(result) == wanted
+    monkeypatch.setattr("raceway.bodies.elastic.subsurface.RESOLVED", 0.0)
+    assert contacts_left_out(result) == ""
+
+
 def vars_of(frozen):
     import attrs
 

@@ -14,7 +14,6 @@ from raceway.core.patches.pool import Pool
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
 from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.errors import ConvergenceError, SceneError
-from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from validation.tables import b7206c
@@ -171,11 +170,11 @@ def test_the_result_tells_pressures_approaches_and_points(free):
 
 
 def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
-    size, how = contact_error(*free)
+    size, how = free[0].bearing.contact_error(*free)
     assert size == 0.0 and "overlap" in how, "unilateral"
     case = model(contact={"kind": "hertz"}, supports={"tilt": "free"})
     found = settle(case)
-    size, how = contact_error(case, found)
+    size, how = case.bearing.contact_error(case, found)
     # 1 % of Hertz's approach at the typical load; it grows with the cube root of the load over its area, and contacts on
     # finite rings approach less than half-spaces: some percent.
     assert 0.005 < size < 0.03 and "not part of the total" in how

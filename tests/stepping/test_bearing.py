@@ -12,8 +12,7 @@ from raceway.core.ring.start import at_rest, static_orbit
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import Drivers, integrate
 from raceway.core.stepping.record import Schedule
-from raceway.core.stepping.restart import load_motion, save_motion
-from raceway.errors import RacewayError, StabilityError
+from raceway.errors import StabilityError
 from raceway.integrators import raceway_integrators
 from raceway.pipeline.settle import settle
 from raceway.testing.integrator import IntegratorSuite
@@ -84,31 +83,23 @@ def test_loops_conform(method):
 
 
 @pytest.mark.parametrize("kind", [m.name for m in METHODS])
-def test_restart_from_disk_equals_going_on(kind, tmp_path):
+def test_two_halves_are_the_whole(kind):
     method, system, start, schedule = case(kind, contact={"damping": 300.0, "friction": 0.05})
     whole = integrate(method, SteppedBearing(system), start, schedule)
     half = attrs.evolve(schedule, steps_per_turn=20)
     first = integrate(method, SteppedBearing(system), start, half)
-    path = save_motion(first.final, tmp_path / "motion.npz")
-    second = integrate(method, SteppedBearing(system), load_motion(path), attrs.evolve(half, first=20))
+    second = integrate(method, SteppedBearing(system), first.final, attrs.evolve(half, first=20))
     for name in ("time", "displacement", "velocity", "force", "ball", "contact_force"):
         assert (np.concatenate([getattr(first, name), getattr(second, name)]) == getattr(whole, name)).all(), name
 
 
-def test_compiled_loops_keep_the_clock_too(tmp_path):
+def test_compiled_loops_keep_the_clock_too():
     method, system, start, schedule = case("generalized_alpha")
     whole = integrate(method, system, start, schedule)
     half = attrs.evolve(schedule, steps_per_turn=20)
     first = integrate(method, system, start, half)
-    path = save_motion(first.final, tmp_path / "motion.npz")
-    second = integrate(method, system, load_motion(path), attrs.evolve(half, first=20))
+    second = integrate(method, system, first.final, attrs.evolve(half, first=20))
     assert (np.concatenate([first.displacement, second.displacement]) == whole.displacement).all()
-
-
-def test_a_file_that_is_no_motion_is_refused(tmp_path):
-    (tmp_path / "motion.npz").write_bytes(b"PK no zip")
-    with pytest.raises(RacewayError, match="holds no motion"):
-        load_motion(tmp_path / "motion.npz")
 
 
 def test_step_above_the_stable_limit_is_refused_with_the_limit():

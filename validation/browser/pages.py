@@ -42,7 +42,7 @@ def _article_elastic(folder: Path) -> Path:
 
 _POINT = ("rig.speeds_rpm=[13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.25")
 PAGES: dict[str, Callable[[Path], Path]] = {
-    "view": _command("view.html", "view", ARTICLE, "--html", "--animate", "--frames", "2"),
+    "view": _command("view.html", "view", ARTICLE, "--html"),
     "study map": _command(
         "map.html",
         "study",

@@ -29,18 +29,20 @@ def press_together(rings: list[Ring], load: float) -> float:
     return float(brentq(lambda x: sum(force_at(one, x) for one in rings) - load, -6e-5, 3e-4, xtol=1e-16, rtol=1e-13))
 
 
-def warmed(ring: Ring, inner: float, outer: float, ball: float) -> Ring:
-    """A row whose rings and balls have grown by these strains.
+def warmed(ring: Ring, strains: tuple[float, float, float], side: float = 1.0, place: float = 0.0) -> Ring:
+    """A row whose inner ring, outer ring and balls have grown by these strains, all points of a ring away from the origin.
 
     Notes
     -----
-    Groove centres lie on circles of their rings and grooves are arcs of their rings: both grow with them.
+    Groove centres lie on circles of their rings and grooves are arcs of their rings: both grow with them.  ``place`` is the plane
+    of the inner groove centres [m]; the outer ones lie A sin(alpha) from it, against the side that the row faces.
     """
+    inner, outer, ball = strains
     half = 0.5 * ring.ball_diameter
     alpha = ring.contact_angle
     circle_i = 0.5 * ring.pitch_diameter + ring.li * np.cos(alpha)
     circle_o = 0.5 * ring.pitch_diameter - ring.lo * np.cos(alpha)
-    axial = (1.0 + inner) * ring.li * np.sin(alpha) + (1.0 + outer) * ring.lo * np.sin(alpha)
+    axial = side * ((1.0 + inner) * place - (1.0 + outer) * (place - side * (ring.li + ring.lo) * np.sin(alpha)))
     ring.rest = np.array([axial, (1.0 + inner) * circle_i - (1.0 + outer) * circle_o])
     ring.li, ring.lo = (
         (1.0 + inner) * (ring.li + half) - (1.0 + ball) * half,

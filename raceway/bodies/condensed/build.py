@@ -46,7 +46,6 @@ def build(scene: Scene, plan: Plan) -> CondensedBearing:
     _refuse_dashpots(scene, plan, stiff, bodies)
     angles = _angles(scene, stiff) if plan.keeps(BETWEEN_BALLS) else None
     system = elastic_system(surrogate(stiff.system), bodies, angles)
-    system.table[:, ring.SHIFT] = 0.0
     guess = place_ring(scene, stiff.basis, system)
     return CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
 
@@ -70,7 +69,8 @@ class CondensedBearing(Bearing):
         """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""
         system: System = surrogate(self.rigid.system)
         q, ball, _ = system.settle(self.rigid.guess)
-        stiffness = system.evaluate(q, ball=ball).stiffness
+        now = system.evaluate(q, ball=ball)
+        stiffness, _ = system.rows_following(q, now, now.stiffness, now.damping)
         angle = float(np.nanmean(equilibrium.angle_inner))
         inner, outer = self.compliances.at(angle)
         mesh_error, how = self.mesh_error(model, equilibrium)
@@ -112,7 +112,7 @@ class CondensedBearing(Bearing):
         except ConvergenceError as why:
             return None, f"no equilibrium with the coarser mesh: {why}"
         chosen = np.flatnonzero(model.system.free > 0.0)
-        fine = np.diag(equilibrium.stiffness)[chosen]
+        fine = np.diag(equilibrium.stiffness_rows_held)[chosen]
         other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
         return float(np.abs(other / fine - 1.0).max()), "largest change of a diagonal stiffness from a mesh twice as coarse"
 

@@ -14,6 +14,7 @@ from raceway.core.condensed.structural import SURFACE, reach, ring_compliance
 from raceway.core.contact.sphere import ball_compliance
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.patches.compliances import RingBody, Solid
+from raceway.errors import SceneError
 from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -47,6 +48,11 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
     Parameters
     ----------
     coarser : factor on all sizes of elements
+
+    Raises
+    ------
+    SceneError
+        Bodies so soft that their contacts are as large as a ball.
     """
     key = (sections(scene, basis), coarser)
     found = _BODIES.pop(key, None) or _elastic_bodies(scene, basis, coarser)
@@ -55,6 +61,10 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
         del _BODIES[next(iter(_BODIES))]
     b, (a, across) = scene.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
+    if not abs(own) * basis.ball_load < b.ball_diameter:
+        soft, steel = min(("balls", b.balls), ("rings", b.rings), key=lambda one: one[1].young)
+        why = f"is too soft for {basis.ball_load:.3g} N a ball: its contacts would be as large as the ball. Steel has 2.1e11 Pa"
+        raise SceneError.at(f"bearing.{soft}.young", steel.young, why)
     return attrs.evolve(found, ball_own=own, ball_opposite=opposite)
 
 

@@ -124,7 +124,7 @@ class Elastic:
             seconds += section_cost(attrs.evolve(scene, mesh=None)).seconds
         if motion.recorded:
             seconds += cost.start_s + motion.turns * motion.steps_per_turn * cost.step_s
-        return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(scene), scales=False)
+        return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(scene), scales=False, bytes=cost.bytes)
 
     def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
         """Kernels of the rigid ring beside it, the bodies, and what calibrates contact resultants."""

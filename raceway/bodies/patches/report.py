@@ -119,7 +119,8 @@ class NodalBearing(Bearing):
     def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json."""
         q, ball, _ = self.rigid.settle(self.beside)
-        stiffness = self.rigid.evaluate(q, ball=ball).stiffness
+        now = self.rigid.evaluate(q, ball=ball)
+        stiffness, _ = self.rigid.rows_following(q, now, now.stiffness, now.damping)
         columns = self.ball_columns(model, equilibrium)
         error, how = self._change_from_coarser(model, equilibrium)
         counts = [columns[f"points_per_semi_axis_{word}"] for word in ("inner", "outer")]
@@ -172,7 +173,7 @@ class NodalBearing(Bearing):
     def _ripple(self, model: Model, equilibrium: Equilibrium) -> float:
         """Largest relative difference of a radial tangent at the equilibrium from the mean over all places of the points."""
         now, _ = self.pressed(model, equilibrium)
-        return float(np.abs(np.diag(now.stiffness)[1:3] / np.diag(equilibrium.stiffness)[1:3] - 1.0).max())
+        return float(np.abs(np.diag(now.stiffness)[1:3] / np.diag(equilibrium.stiffness_rows_held)[1:3] - 1.0).max())
 
     def _change_from_coarser(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         if self.coarser is None:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from raceway.bodies.model import Model
     from raceway.core.jit import Kernel
 
+#: Shares of a ball's gyroscopic moment that inner and outer race carry, by hypothesis; 2 together.
+_SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0)}
+
 
 class RigidBearing(Bearing):
     """Rigid rings and balls: what their law is off by is all there is to tell."""
@@ -101,25 +104,27 @@ def _grooves(scene: Scene, geometry: BallBearing) -> np.ndarray:
 
 def _scalars(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
-    b, kinematics = scene.bearing, scene.kinematics
     out, growth = np.zeros(ring.SCALARS), basis.growth
-    cage = geometry.cage_speed(scene.spin_speed)
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(scene, geometry)
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] += growth.common
     out[ring.DAMPING], out[ring.TIME_CONSTANT] = scene.contact.dashpot, scene.time_constant
-    if kinematics.orbiting:
-        out[ring.CAGE] = cage
+    if scene.kinematics.orbiting:
+        out[ring.CAGE] = geometry.cage_speed(scene.spin_speed)
     out[ring.DIAMETER] = geometry.ball_diameter
     if scene.contact.friction > 0.0:
         out[ring.FRICTION] = scene.contact.friction
         out[ring.STICK] = scene.contact.stick_stiffness or _stick_stiffness(scene, inner, outer, reference)
     if plan.gyroscopic:
-        shares = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0)}[kinematics.gyroscopic]
-        out[ring.SHARE_INNER], out[ring.SHARE_OUTER] = shares
-        out[ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
-        moment_of_inertia = geometry.ball_mass(b.balls.density) * geometry.ball_diameter**2 / 10.0
-        out[ring.GYROSCOPIC] = moment_of_inertia * scene.spin_speed * cage
+        add_moments(out, scene, geometry)
     return out
+
+
+def add_moments(scalars: np.ndarray, scene: Scene, geometry: BallBearing) -> None:
+    """The balls' gyroscopic moments, by the scene's hypothesis."""
+    scalars[[ring.SHARE_INNER, ring.SHARE_OUTER]] = _SHARES[scene.kinematics.gyroscopic]
+    scalars[ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
+    moment_of_inertia = geometry.ball_mass(scene.bearing.balls.density) * geometry.ball_diameter**2 / 10.0
+    scalars[ring.GYROSCOPIC] = moment_of_inertia * scene.spin_speed * geometry.cage_speed(scene.spin_speed)
 
 
 def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) -> float:

@@ -39,7 +39,7 @@ _SHORT = tuple(
         (r"largest share of a contact's approach.*", "overlap that the law allows; not in the total"),
         (r"law '(\w+)' is calibrated to Hertz on elastic bodies.*", r"nothing tells how well '\1' keeps to Hertz"),
         (r"not estimated: run the scene with a finer mesh.*", "compare with a finer mesh"),
-        (r"not estimated: (.*)", r"\1"),
+        (r"not estimated: (.*?)(?: \(.*)?", r"\1"),
     )
 )
 #: Signs up to which a note is shown whole.

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
 
-from raceway.commands.screen.result_answer import answer_rows
+from raceway.commands.screen.result_answer import answer_rows, only_resolved
 from raceway.commands.screen.result_model import bodies_rows
 from raceway.commands.screen.result_parts import (
     ball_pass_rows,
@@ -44,6 +44,7 @@ def run_screen(result: ReadTables, files: Sequence[str], explain: bool = False) 
         *tolerance_rows(result.get("tolerances")),
         *error_rows(result, explain),
     ]
+    rows = only_resolved(rows, result["error"])
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
     rows += [*cost_rows(result["cost"]), *stability_rows(result["stability"])]
@@ -101,7 +102,7 @@ def _set(bearing: ReadTables) -> str:
         forces += f" and {bearing['second_preload']:g} N"
     braced = bearing.get("preload") or any(row.get("preload") for row in own)
     each = " of each row, as ground" if bearing.get("preload_of") == "row" else ""
-    mounted = f"mounted with {forces}{each} ({bearing['preload_kind']})" if braced else "without preload"
+    mounted = f"preload {forces}{each} before mounting ({bearing['preload_kind']})" if braced else "without preload"
     count = len(own) if kind == "single" else len(signs_of(kind))
     apart = bearing.get("row_distance") or bearing.get("width")
     placed = own and all(row.get("position") is not None for row in own)

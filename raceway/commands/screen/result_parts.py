@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from raceway.commands.screen.notes import short
 from raceway.commands.screen.result_answer import loaded_balls, resolved, tangent_rows
 from raceway.commands.screen.text import Row, number, tilt_words
-from raceway.framework.shown import read_in
+from raceway.framework.shown import in_micro, read_in
 from raceway.storage.tables import ReadTables
 
 #: Axial forces below this are rounding.
@@ -21,10 +21,10 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     rows = [
         ("Equilibrium under the constant loads", "", ""),
         ("displacement x", number(1e6 * moved["x"], "µm"), "axial, seats the bearing"),
-        ("displacement y, z", f"{_small(moved['y'])}, {_small(moved['z'])} µm", "radial"),
+        ("displacement y, z", f"{in_micro(moved['y'])}, {in_micro(moved['z'])} µm", "radial"),
     ]
     if tilt != "locked":
-        tilts = ", ".join(_small(moved[name]) for name in ("tilt_y", "tilt_z"))
+        tilts = ", ".join(in_micro(moved[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
     rows += _mounted(found)
     rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
@@ -38,7 +38,9 @@ def film_rows(result: ReadTables) -> list[Row]:
         return []
     law, rows = found["law"], list[Row]()
     told = f"{number(1e3 * law['viscosity_pa_s'], 'mPa s')}, {number(1e9 * law['pressure_viscosity_per_pa'], '1/GPa')}"
-    rows.append(("Oil film", "", "Hamrock and Dowson: smooth, isothermal; it stands the surfaces off"))
+    reduced = min(ball[f"{race}_film_thermal_reduction"] for ball in found["balls"] for race in ("inner", "outer"))
+    heat = "isothermal" if law["inlet_heating"] == "none" else f"thermal reduction {reduced:.2g}"
+    rows.append(("Oil film", "", f"Hamrock and Dowson: smooth, {heat}; it stands the surfaces off"))
     rows.append(("viscosity, alpha", told, "at the running temperature; pressure-viscosity coefficient"))
     for race in ("inner", "outer"):
         index, ball = min(enumerate(found["balls"]), key=lambda item: item[1][f"{race}_film_minimum_m"])
@@ -52,24 +54,22 @@ def film_rows(result: ReadTables) -> list[Row]:
 
 
 def _mounted(found: ReadTables) -> list[Row]:
-    """Preload and held axial force: mounted and running."""
+    """Preload and held axial force: running, mounted and before mounting."""
     rows, preload, held = [], found["preload"], found["held_axial"]
     if preload is not None:
         forces = ", ".join(f"{force:.5g}" for force in preload["rows_n"])
         what = {"rigid": "the offset of the rows", "spring": "the force of the rows on the spring"}[preload["kind"]]
-        how = f"running, without loads; mounted {preload['mounted_n']:g} N, {what} stays"
+        first = dict.fromkeys(f"{preload[name]:.5g}" for name in ("before_mounting_n", "second_before_mounting_n"))
+        before = f"before mounting {' and '.join(first)} N, mounted {preload['mounted_n']:.5g} N"
+        how = f"running, without loads; {before}; {what} stays"
         rows.append(("preload", number(preload["running_n"], "N"), how))
         rows.append(("axial force of rows", f"{forces} N", f"rows 1 to {len(preload['rows_n'])} under the loads"))
     if held is not None:
-        how = f"what the held displacement takes now; mounted {held['mounted_n']:g} N"
+        before = f"before mounting {held['before_mounting_n']:g} N, mounted {held['mounted_n']:.5g} N"
+        how = f"what the held displacement takes now; {before}"
         running = held["running_n"] if abs(held["running_n"]) > _ROUNDING_N else 0.0
         rows.append(("axial force", number(running, "N"), how))
     return rows
-
-
-def _small(metres: float) -> str:
-    """Micro-units; rounding noise of a symmetric state is shown as 0."""
-    return "0" if abs(metres) < 1e-15 else f"{1e6 * metres:.4g}"
 
 
 def ball_pass_rows(found: ReadTables) -> list[Row]:
@@ -97,8 +97,9 @@ def tolerance_rows(found: ReadTables | None) -> list[Row]:
     for name, one in found["quantities"].items():
         (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
         key, share = max(one["shares"].items(), key=lambda item: item[1], default=("", 0.0))
-        most = f"{100.0 * share:.0f} % of the variance by {key}" if share else ""
-        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", most))
+        told = [f"{100.0 * share:.0f} % of the variance by {key}"] if share else []
+        told += [one["definition"]] if name in ("kyy", "kyy_tilts_follow", "largest_ball_load") else []
+        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", "; ".join(told)))
     rows += [("", "", f"without {one['key']}: {one['reason']}") for one in found["left_out"]]
     return rows
 

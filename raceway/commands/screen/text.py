@@ -15,6 +15,7 @@ from rich.text import Text
 from raceway.commands.screen.wrapping import Words
 from raceway.framework.shown import number as number
 from raceway.framework.shown import number_within as number_within
+from raceway.framework.shown import tilt_words as tilt_words
 
 Row = tuple[str, str, str]
 
@@ -52,11 +53,6 @@ def _section() -> Table:
 def micro(text: str) -> str:
     """A text with the sign of micrometres that screens have, where what it comes from is written in ASCII."""
     return re.sub(r"\bum\b", "µm", text)
-
-
-def tilt_words(tilt: float | str) -> str:
-    """The tilt boundary, which belongs to every stiffness."""
-    return f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
 
 
 def written(files: Sequence[str]) -> list[RenderableType]:

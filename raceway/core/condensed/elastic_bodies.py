@@ -86,8 +86,6 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     distance = knots[1] - knots[0]
     tables, rings = [], []
     for race, one in enumerate((bodies.inner, bodies.outer)):
-        if not np.isfinite(one.own).all() or not np.isfinite(bodies.ball_own):
-            raise FloatingPointError("a body gives way further than its contacts are deep: it is too soft for its load")
         values = bodies.own(race, knots)
         if angles is not None:
             rings.append(between_grooves(one, angles))
@@ -101,6 +99,7 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
         kernel=condensed(plain(rigid.kernel)),
         base_kernel=condensed(plain(rigid.base_kernel)),
         scalars=np.concatenate([rigid.scalars, head, *tables]),
+        table=rigid.table.copy(),
     )
 
 

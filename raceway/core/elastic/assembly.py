@@ -14,7 +14,7 @@ from raceway.core.elastic.cage import Cage
 from raceway.core.elastic.copies import Group
 from raceway.core.elastic.mean_motions import MeanMotions
 from raceway.core.elastic.unknowns import Selection, gather, spread
-from raceway.core.linear.rigid_motions import MOTIONS, rigid_motions
+from raceway.core.linear.rigid_motions import MOTIONS
 from raceway.core.threads import ThreadPool
 
 if TYPE_CHECKING:
@@ -247,11 +247,6 @@ class Assembly:
 
     def _owners(self, rows: csr_matrix) -> np.ndarray:
         return np.asarray(np.searchsorted(3 * self.starts, rows.tocoo().col, side="right") - 1)
-
-    def rigid_share(self, r: np.ndarray, index: int) -> np.ndarray:
-        """(6,) resultant of nodal forces (3 nodes,) on a body about the origin of its points' mean."""
-        rows = self.part(index)
-        return np.asarray(rigid_motions(self.bodies[index].points).T @ r[rows])
 
     def _seat(self, foundation: csr_matrix, ride: np.ndarray) -> tuple[csr_matrix, np.ndarray, Selection]:
         """A bed at its own entries alone: matrix (k, k), the frame's motion (k, frame_size), and the entries."""

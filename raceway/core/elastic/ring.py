@@ -160,7 +160,7 @@ class ElasticRing(SteppedRing):
     def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
         """(size,) equilibrium as mounted under an axial load [N] alone, the ring's other motions held."""
         only, load = np.arange(5) == 0, np.array([axial, 0.0, 0.0, 0.0, 0.0])
-        rigid = self.surrogate.as_mounted(Growth.of_inner_raceways(self.bodies.setup.growth, self.ball_count))
+        rigid = self.surrogate.standing(Growth.of_inner_raceways(self.bodies.setup.growth, self.ball_count))
         rigid = attrs.evolve(rigid, free=only.astype(float), load=load)
         with self.bodies.mounted(), self._letting_free(only):
             found, _ = self.settled(self._undeformed(rigid, q * only), load)

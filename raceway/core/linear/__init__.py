@@ -1,7 +1,6 @@
 """Linear elasticity of one body.
 
 statics         K u = f with prescribed displacements
-natural_modes   K u = w^2 M u, free or held
 dissection      the order in which nodes are eliminated
 fronts          elimination down to kept nodes, with fronts of dense matrices
 multigrid       one W-cycle of smoothed aggregation, in single precision

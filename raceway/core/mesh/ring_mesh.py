@@ -6,7 +6,7 @@ from there to the seat (bore, or outer cylinder).  x is the axis of the bearing,
 
 from __future__ import annotations
 
-from math import acos, asin, cos, pi, sin, sqrt
+from math import acos, asin, pi, sin, sqrt
 
 import attrs
 import numpy as np
@@ -240,8 +240,3 @@ def _facets(
         middle = 0.5 * (arc[1:] + arc[:-1])
         out["band"] = facets(groove[:, (middle > band[0]) & (middle < band[1])], up)
     return out
-
-
-def azimuth_step(shape: RingShape, divisions: int) -> float:
-    """Distance of neighbouring nodes along the rolling direction at the contact [m]."""
-    return 2.0 * (shape.centre_r + shape.sign * shape.groove * cos(shape.contact)) * sin(pi / divisions)

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from functools import cache
 from math import asin, cos, pi, sin, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
-
-if TYPE_CHECKING:
-    pass
 
 #: Gauss points along the axis in each of three parts, and along the radius.
 _ALONG, _ACROSS = 48, 12

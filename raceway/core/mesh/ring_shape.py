@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +11,6 @@ from raceway.core.mesh.outline import polygon_outline
 from raceway.core.mesh.ring_mesh import RingShape
 from raceway.errors import MeshError
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    pass
 
 
 def ring_shape(bearing: Any, inner: bool) -> RingShape:

@@ -178,7 +178,3 @@ class Patch:
     @property
     def columns(self) -> int:
         return len(self.ball.latitude)
-
-    @property
-    def anchor_angle(self) -> float:
-        return float(self.phi[self.race.anchor])

@@ -13,7 +13,7 @@ from raceway.core.patches.contact import BeyondPatch, Contact
 from raceway.core.patches.nodal_law import PointLaw
 from raceway.core.patches.patch import Patch
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
-from raceway.errors import ConvergenceError
+from raceway.errors import ConvergenceError, MeshError
 
 T = TypeVar("T")
 #: Largest step of a ball or the ring in an iteration, of the ball's diameter.
@@ -123,7 +123,10 @@ class Pool:
             except BeyondPatch as left:
                 if self._wider is None:
                     raise ConvergenceError(str(left)) from left
-                self.generations.append(self._wider(left))
+                try:
+                    self.generations.append(self._wider(left))
+                except MeshError as why:  # the bodies were meshed: what cannot be is this contact
+                    raise ConvergenceError(f"the balls run away from the races: {left} ({why})") from why
                 self._rows.clear()
         raise ConvergenceError("the contacts run away from every patch: there is no equilibrium near the first guess")
 

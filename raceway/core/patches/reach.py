@@ -7,6 +7,7 @@ import numpy as np
 
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.patches.contact import BeyondPatch
+from raceway.errors import ConvergenceError
 
 #: Room on each side of a window [rad], and around an ellipse, of its semi-axes.
 MARGIN, AROUND = np.deg2rad(0.7), 1.15
@@ -32,9 +33,17 @@ class Reach:
     largest_load: float
 
     def grown(self, left: BeyondPatch, ellipse: Ellipse, radius: float, room: float) -> Reach:
-        """One that holds a contact which left this one, by a clear step at least."""
+        """One that holds a contact which left this one, by a clear step at least.
+
+        Raises
+        ------
+        ConvergenceError
+            A contact as large as the ball: what runs away is not meshed.
+        """
         load = max(self.largest_load, left.load) * (room if left.across else 1.0)
         a, b = ellipse.semi_axes(load)
+        if not max(a, b) < radius:
+            raise ConvergenceError(f"the balls run away from the races: {left}, on an ellipse as large as the ball")
         old = self.inner if left.sense < 0.0 else self.outer
         half = AROUND * float(a) / radius + 3.0 * MARGIN
         window = _rounded(min(old[0], left.angle - half), max(old[1], left.angle + half))

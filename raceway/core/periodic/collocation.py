@@ -51,8 +51,12 @@ class Solved:
 
     @property
     def rounding(self) -> float:
-        """What rounding the displacements leaves of error, over the motion's size: much of a motion of picometres."""
-        return ROUNDING * float(np.abs(self.path.q / self.problem.weight).max()) / max(self.size, 1e-300)
+        """What rounding leaves of error, over the motion's size: of displacements, or of forces where the last correction is that.
+
+        Much of a motion of picometres.
+        """
+        place = ROUNDING * float(np.abs(self.path.q / self.problem.weight).max())
+        return max(place, self.correction) / max(self.size, 1e-300)
 
 
 def gap(problem: Problem, path: Path) -> np.ndarray:
@@ -103,7 +107,10 @@ def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit
     eliminated, report = problem.eliminated(path.nodes), np.zeros(REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
     found = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
-    closure, limits = Closure(problem.closing, problem.symmetry.order, rated), Limits(tolerance, limit, patience)
+    closure, limits = (
+        Closure(problem.closing, problem.symmetry.order, rated),
+        Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience),
+    )
     samples = found.samples(problem.push(path.nodes))
     status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, eliminated, report)
     if status != SOLVED:

@@ -1,8 +1,8 @@
-"""A periodic motion that is followed to from where one is found: another speed of the force, or a heavier axial load."""
+"""Periodic motions that are followed to from another speed of the force, a heavier axial load, or no damping."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import partial
 from itertools import islice, pairwise
@@ -12,10 +12,11 @@ import numpy as np
 
 from raceway.core.periodic.branch import Branch, towards
 from raceway.core.periodic.collocation import solve
-from raceway.core.periodic.direct import MOST, ROUGH, directly, grown
-from raceway.core.periodic.from_rest import POINTS
+from raceway.core.periodic.direct import MOST, ROUGH, directly, full_steps, grown
+from raceway.core.periodic.from_rest import POINTS, at_whole_force, trail
 from raceway.core.periodic.problem import Problem
 from raceway.core.periodic.refinement import Refined, refine
+from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT
 from raceway.errors import ConvergenceError
 
 #: Speeds, and axial loads, over the wanted one, that the motion is followed from.
@@ -51,6 +52,29 @@ def from_elsewhere(
             stiff = system.evaluate(there, ball=ball).stiffness
             return _followed(at, there, stiff, tolerance, ratio, False), "from a heavier axial load"
     return None
+
+
+def from_undamped(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray, tolerance: float
+) -> Iterator[Refined]:
+    """Motions that the branch from rest leads to without damping, each continued to the damped ring; none of an undamped one.
+
+    Notes
+    -----
+    Without damping branches of motions cross, where the ring's motion may lead or lag alike; the least damping parts them
+    there, and what lay beyond the crossing is no longer on the branch that begins at rest, though it still exists.
+    """
+    system = problem.system.without(DAMPING, TIME_CONSTANT)
+    skew = 0.5 * (system.damping - system.damping.T)  # gyroscopic moments stay: they take no energy
+    if np.array_equal(system.scalars, problem.system.scalars) and np.array_equal(skew, system.damping):
+        return
+    still = attrs.evolve(problem, system=attrs.evolve(system, damping=skew))
+    problem.watch()
+    with suppress(ConvergenceError):
+        for motion in at_whole_force(still, trail(still, q, tangent, nodes).crossings, ROUGH):
+            problem.watch()
+            with suppress(ConvergenceError):
+                yield refine(full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
 
 
 def _at_speed(problem: Problem, ratio: float) -> Problem:

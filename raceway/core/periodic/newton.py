@@ -41,15 +41,16 @@ class Closure(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Last correction over the motion's size, sweeps, and halvings of a step that may follow each other."""
+    """Last correction over the motion's size, imbalance that is rounding [N], sweeps, and halvings of a step that may follow each other."""
 
     tolerance: float
+    rounding: float
     sweeps: int
     patience: int
 
 
 CLOSURE = record(Closure, MATRIX, INDICES, INDICES)
-LIMITS = record(Limits, float64, int64, int64)
+LIMITS = record(Limits, float64, float64, int64, int64)
 
 
 @jit(void(SAMPLES, CHANGE, float64))
@@ -157,6 +158,6 @@ def newton(equations, closure, mesh, samples, limits, eliminated, report):
         if factor < 1.0 or sweep == 1:
             continue
         fine = fine + 1 if correction <= 1e-8 * size else 0
-        if correction <= limits.tolerance * size + ROUNDING * place or fine > _FINE:
+        if correction <= limits.tolerance * size + ROUNDING * place or worst <= limits.rounding or fine > _FINE:
             return SOLVED
     return STALLED

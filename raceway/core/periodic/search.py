@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.periodic.detour import from_elsewhere
+from raceway.core.periodic.detour import from_elsewhere, from_undamped
 from raceway.core.periodic.direct import MOST, directly, full_steps, grown, highest_order, mesh_of
 from raceway.core.periodic.first_guess import standing
 from raceway.core.periodic.floquet import Floquet, floquet
@@ -34,8 +34,8 @@ class Found:
     ----------
     refined : the motion with its error
     highest : order of the highest natural frequency at the equilibrium
-    how : "directly", "from rest" (the force grows), "from a higher speed", "from a lower speed", "from a heavier axial load" or "by
-        Fourier collocation"
+    how : "directly", "from rest" (the force grows), "from a higher speed", "from a lower speed", "from a heavier axial load", "from no
+        damping" or "by Fourier collocation"
     fate : its multipliers
     fold : share of the force at which the branch from rest turns back for good; None where it leads to the whole force
     others : further motions under the same force that were met in the search
@@ -82,8 +82,9 @@ def find(
     Newton's iteration from the linear response, with full steps only: one that has to be shortened may end on a resonant
     branch far away.  Where it fails, is unstable, or ends far from the linear response, there may be several motions: the
     branch that leads from the resting ring is followed round its folds, and every place where it meets the whole force is a
-    motion.  The first one along the branch that is not unstable is taken; where all are, the one that is left slowest.  Where
-    the branch never reaches the whole force and all found so far is unstable, motions at other speeds and loads are followed to this one.
+    motion.  The first one along the branch that is not unstable is taken; where all are, motions that the undamped ring's branch
+    leads to are tried, and else the one is taken that is left slowest.  Where the branch never reaches the whole force and all
+    found so far are unstable, motions at other speeds and loads are followed to this one.
 
     Raises
     ------
@@ -183,6 +184,10 @@ def _chosen(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: flo
         except ConvergenceError:
             if lost is not None:
                 raise lost from None
+    if all(one.fate.verdict == "unstable" for one in found):
+        for refined in from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
+            if not any(_alike(refined, known.refined) for known in found):
+                found.append(found_by(refined, highest, "from no damping", fold))
     if fold is not None and problem.system.scalars[CAGE] == 0.0 and all(one.fate.verdict == "unstable" for one in found):
         reached = from_elsewhere(problem, q, tangent, tolerance, not found)
         if reached is not None and not any(_alike(reached[0], known.refined) for known in found):

@@ -26,7 +26,7 @@ class ChangingSpeed:
     ----------
     phase : function of times (n,) [s] -> angle of the rotor (n,) [rad]
     reference : w_r that the system's constants were made for [rad/s]
-    growth : of the inner raceway at w_r, as far as it goes with w^2 [m]
+    growth : of the inner raceway [m]: at w_r by speed, by its fit at standstill, and what w_r takes from that fit, down to none
     gyroscopic : (5, 5) part of the system's damping at w_r that goes with w
     shift : function of speeds (n,) [rad/s] -> shift of the first sprung row (n,) [m], with which all on the spring slide; None
         where rows stay
@@ -39,7 +39,7 @@ class ChangingSpeed:
 
     phase: Callable[[np.ndarray], np.ndarray]
     reference: float
-    growth: float
+    growth: tuple[float, float, float]
     gyroscopic: np.ndarray
     shift: Callable[[np.ndarray], np.ndarray] | None = None
     law: Callable[[Any, float], Any] | None = None
@@ -48,6 +48,11 @@ class ChangingSpeed:
         """w (n,) [rad/s] at times (n,) [s] from zero on."""
         before, after = np.maximum(time - _INTERVAL, 0.0), time + _INTERVAL
         return np.asarray((self.phase(after) - self.phase(before)) / (after - before))
+
+    def grown(self, speed: np.ndarray) -> np.ndarray:
+        """Growth of the inner raceway (n,) [m] at speeds (n,) [rad/s] beyond that at w_r."""
+        (free, fit, lost), squared = self.growth, (speed / self.reference) ** 2
+        return np.asarray(free * (squared - 1.0) + np.maximum(fit - lost * squared, 0.0) - max(fit - lost, 0.0))
 
     def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray:
         """(n,) [rad] by which balls have travelled since time zero; ``cage``: their speed at w_r [rad/s]."""
@@ -74,7 +79,7 @@ class ChangingSpeed:
         if self.law is not None:
             system = self.law(system, speed)
         scalars, table = system.scalars.copy(), system.table.copy()
-        scalars[REST_RADIAL] += self.growth * (ratio**2 - 1.0)
+        scalars[REST_RADIAL] += float(self.grown(np.array([speed]))[0])
         scalars[GYROSCOPIC] *= ratio**2
         scalars[CAGE] *= ratio
         table[:, CENTRIFUGAL] *= ratio**2

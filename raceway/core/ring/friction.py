@@ -57,7 +57,7 @@ def _place(system: System, record: Record) -> np.ndarray:
     travelled, rest = scalars[CAGE] * record.time, scalars[REST_RADIAL]
     if system.spin is not None:
         travelled = system.spin.cage_angle(scalars[CAGE], record.time)
-        rest = rest + system.spin.growth * ((system.spin.speed(record.time) / system.spin.reference) ** 2 - 1.0)[:, None]
+        rest = rest + system.spin.grown(system.spin.speed(record.time))[:, None]
     azimuth = np.arctan2(table[:, SINE], table[:, COSINE]) + travelled[:, None]
     c, s = np.cos(azimuth), np.sin(azimuth)
     shift = np.broadcast_to(table[:, SHIFT], azimuth.shape)

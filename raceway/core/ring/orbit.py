@@ -117,18 +117,26 @@ def steady_orbit(
         # The nearest start is the surrogate's orbit, moved to this system's equilibrium.
         near = steady_orbit(surrogate(system), period, start, samples, inertial)
         at_rest = near.displacement - near.displacement.mean(axis=0) + start
-        return _solve(system, period, at_rest, samples, inertial, max(tolerance, _TOLERANCE_PYTHON))
+        return orbit_near(system, period, at_rest, samples, inertial, max(tolerance, _TOLERANCE_PYTHON))
     if inertial:
         try:
             slow = steady_orbit(system, period, start, samples, inertial=False)
-            return _solve(system, period, slow.displacement, samples, True, tolerance)
+            return orbit_near(system, period, slow.displacement, samples, True, tolerance)
         except ConvergenceError:
             pass
-    return _solve(system, period, np.tile(start, (samples, 1)), samples, inertial, tolerance)
+    return orbit_near(system, period, np.tile(start, (samples, 1)), samples, inertial, tolerance)
 
 
-def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float) -> Orbit:
-    """Newton on all times at once from a first guess (samples, 5)."""
+def orbit_near(
+    system: Ring, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float, limit: int = 60
+) -> Orbit:
+    """Newton on all times at once from a first guess (samples, 5), an odd number of equidistant times.
+
+    Raises
+    ------
+    ConvergenceError
+        None found near it.
+    """
     z = system.ball_count
     times = np.arange(samples) * (period / samples)
     force = np.array([system.outer_force(t) for t in times])
@@ -154,7 +162,7 @@ def _solve(system: Ring, period: float, start: np.ndarray, samples: int, inertia
     step = np.zeros_like(q)
     ring = compiled(system)
     damping_factor = 1.0
-    for iterations in range(1, 61):
+    for iterations in range(1, limit + 1):
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: Relative residual that an equilibrium is solved to.
 TOLERANCE = 1e-11
+#: A frequency [rad/s] whose square is lost beside any other: derivatives by it are exact.
+_INFINITESIMAL = 1e-30
 COORDINATES = ("x", "y", "z", "tilt_y", "tilt_z")
 
 
@@ -60,7 +62,7 @@ class Evaluation:
 
 @attrs.frozen(eq=False)
 class Growth:
-    """By how much the grooves of a running, warm bearing differ from the mounted one's [m].
+    """By how much the grooves of a running, warm bearing differ from those before mounting [m].
 
     Attributes
     ----------
@@ -83,10 +85,9 @@ class Spin(Protocol):
     @property
     def reference(self) -> float: ...
     @property
-    def growth(self) -> float: ...
-    @property
     def shift(self) -> Callable[[np.ndarray], np.ndarray] | None: ...
     def speed(self, time: np.ndarray) -> np.ndarray: ...
+    def grown(self, speed: np.ndarray) -> np.ndarray: ...
     def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray: ...
     def at(self, ring: Any, t: float) -> Any: ...
     def constants(self, ring: Any, speed: float) -> Any: ...
@@ -105,6 +106,7 @@ class Ring(ABC):
     force : compiled ``FORCE``, the excitation;  force_params : (k,)
     law_state : (2 Z, m) committed memory of the contacts
     spin : how the speed changes that constants belong to; None for a steady one
+    sliding : (n,) indices of the balls whose rows slide together along x against a constant force; None where no row does
     """
 
     scalars: np.ndarray
@@ -118,6 +120,7 @@ class Ring(ABC):
     force_params: np.ndarray
     law_state: np.ndarray
     spin: Spin | None = None
+    sliding: np.ndarray | None = None
 
     @property
     @abstractmethod
@@ -175,7 +178,7 @@ class Ring(ABC):
 
     def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> Self:
         """A copy with some of the balls, by their indices (n,), which have the table (n, COLUMNS)."""
-        return attrs.evolve(self, table=table, law_state=self.law_state[self.contacts_of(chosen)].copy())
+        return attrs.evolve(self, table=table, law_state=self.law_state[self.contacts_of(chosen)].copy(), sliding=None)
 
     def contacts_of(self, balls: np.ndarray) -> np.ndarray:
         """Rows of the contacts of some balls: inner races first."""
@@ -225,8 +228,8 @@ class Ring(ABC):
         scalars[list(entries)] = 0.0
         return attrs.evolve(self, scalars=scalars)
 
-    def as_mounted(self, growth: Growth) -> Self:
-        """A copy at standstill whose grooves have not grown: the state in which bearings are mounted."""
+    def standing(self, growth: Growth) -> Self:
+        """A copy at standstill without a growth of its grooves: the state before mounting, where that is all of it."""
         scalars, table = self.scalars.copy(), self.table.copy()
         scalars[[GYROSCOPIC, CAGE]] = 0.0
         scalars[REST_AXIAL : TILT_ARM + 1] -= growth.common
@@ -315,3 +318,27 @@ class Ring(ABC):
     def damping_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Damping of the contacts (5, 5) at an equilibrium that was evaluated, of slow motions."""
         return now.damping
+
+    def rows_following(
+        self, q: np.ndarray, now: Evaluation, stiffness: np.ndarray, damping: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness and damping (5, 5) at an equilibrium with sliding rows following, from those with these rows held.
+
+        Notes
+        -----
+        Without friction and mass the rows' place s follows by K_ss s = -K_sq q, so that the ring meets K - K_qs K_ss^-1 K_sq, where
+        K_qs, K_sq, K_ss are the first column, row and entry of the rows' own K (the spring's rate is 0).  C is the derivative by
+        j w at w = 0 of K + j w C condensed alike: of slow motions.
+        """
+        if self.sliding is None:
+            return stiffness, damping
+        rows = self.of_balls(self.sliding, self.table[self.sliding].copy())
+        there = rows.evaluate(q, ball=now.ball[self.sliding])
+        own = rows.stiffness_at(q, there) + 1j * _INFINITESIMAL * rows.damping_at(q, there)
+        met = stiffness + 1j * _INFINITESIMAL * damping - np.outer(own[:, 0], own[0]) / own[0, 0]
+        return met.real.copy(), met.imag / _INFINITESIMAL
+
+    def viscous_stiffness_at(self, q: np.ndarray, ball: np.ndarray, frequency: float) -> np.ndarray:
+        """What dashpots of the contacts add to their stiffness (5, 5) at an equilibrium, complex: motions exp(j w t), w [rad/s]."""
+        still = self.without(CAGE)
+        return 1j * frequency * still.damping_at(q, still.evaluate(q, ball=ball))

@@ -24,8 +24,9 @@ from raceway.core.ring.kernels import CONTACT_FORCE as FORCES
 from raceway.core.ring.kernels import GAP
 from raceway.core.signatures import MATRIX, OUTER, RECORDING, VECTOR
 
-#: evaluations, reason of a failure, residual at the failure, greatest penetration [m], greatest contact force [N].
-EVALUATIONS, REASON, RESIDUAL, PENETRATION, CONTACT_FORCE, ROWS = range(6)
+#: evaluations, reason of a failure, residual at the failure, greatest penetration [m], greatest contact force [N], rows
+#: recorded, greatest excitation [N].
+EVALUATIONS, REASON, RESIDUAL, PENETRATION, CONTACT_FORCE, ROWS, EXCITATION = range(7)
 COUNTERS = 8
 NO_FAILURE, BALLS, NEWTON, UNBOUNDED = range(4)
 

@@ -9,7 +9,6 @@ implicit            Newmark's method and generalised-alpha: Newton with a line s
 central_difference  explicit steps, without matrices
 quasi_static        the motion as a series of equilibria
 energy              balance of the energies that a system tells
-restart             a motion on disk, to go on from
 
 Each loop does what the compiled loop of the same name in ``raceway.core.schemes.compiled`` does, step for step.
 """

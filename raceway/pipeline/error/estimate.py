@@ -29,7 +29,6 @@ from raceway.bodies.model import Model
 from raceway.core.ring.ring import TOLERANCE
 from raceway.core.signals.identification import Identification
 from raceway.errors import BeyondPlanError, ConvergenceError
-from raceway.pipeline.error.contact import contact_error
 from raceway.pipeline.error.finer_series import finer_value, more_equilibria
 from raceway.pipeline.error.free_vibration import Clean, without_free_vibration
 from raceway.pipeline.error.misfit import largest_misfit
@@ -56,6 +55,8 @@ _REPEATS = 1e-2
 _RIGHT = 3.0
 
 _NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
+#: Difference of a contact law from Hertz's that is reported: one of pressures over overlaps is a third off by its form.
+_OTHER_LAW = 0.5
 
 
 @attrs.frozen
@@ -70,6 +71,44 @@ class Part:
 def no_error(how: str) -> dict[str, Any]:
     """The table without numbers, and one reason."""
     return {**dict.fromkeys(_NAMES), "bodies": None, "how": dict.fromkeys(_NAMES, how)}
+
+
+def unresolved(error: dict[str, Any]) -> list[str]:
+    """The total and the parts that are as large as what they are the error of: nothing identified says anything then.
+
+    Notes
+    -----
+    Estimates are those of small errors, to first order: of one that is not small nothing follows, neither for Z nor for K.
+    """
+    return [name for name in _NAMES if (error[name] or 0.0) >= 1.0]
+
+
+def error_warnings(error: dict[str, Any], identified: bool) -> list[str]:
+    """What is said first of a number: that it is smaller than its error, that its error is not known, that its law is another one."""
+    names, found, contact = unresolved(error), list[str](), error["contact"] or 0.0
+    if names:
+        size, name = max((error[name], name) for name in names)
+        which = "its estimated error" if name == "total" else f"the error of {name.replace('_', ' ')}"
+        what, lost = ("Z", "K and C say") if identified else ("the stiffness", "it says")
+        found.append(f"{what} is not resolved: {which} is {size:.2g} times its size, so that {lost} nothing")
+    elif contact >= _OTHER_LAW:
+        found.append(
+            f"the contact law is off Hertz's by {contact:.2g}, which is not part of the stated error: {error['how']['contact']}"
+        )
+    why = error["how"]["total"]
+    if identified and error["total"] is None and why.startswith("not estimated: "):
+        found.append(f"the error of Z is {why}")
+    return found
+
+
+def body_errors(model: Model, equilibrium: Equilibrium, how: str = "") -> dict[str, Any]:
+    """The table with what the equilibrium tells, errors of mesh and contacts; of all else ``how``."""
+    table = no_error(how)
+    table["mesh"], table["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
+    loaded = (equilibrium.contact_force > 0.0).any()
+    known = model.bearing.contact_error(model, equilibrium) if loaded else (None, "no contact carries anything")
+    table["contact"], table["how"]["contact"] = known
+    return table
 
 
 def error_table(
@@ -88,10 +127,8 @@ def error_table(
     steady : steady motions of an excitation that changes its speed
     on_progress : called in further runs and searches; the error of one that it ends is not known
     """
-    table = no_error("")
+    table = body_errors(model, equilibrium)
     how: dict[str, str] = table["how"]
-    mesh, how["mesh"] = model.bearing.mesh_error(model, equilibrium)
-    table["contact"], how["contact"] = contact_error(model, equilibrium)
     if not motions:
         how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
         parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
@@ -107,7 +144,7 @@ def error_table(
             "transient": transient,
             "identification": _identification(model, equilibrium, found),
         }
-    parts["mesh"] = Part(mesh, how["mesh"])
+    parts["mesh"] = Part(table["mesh"], how["mesh"])
     if model.traits.calibrated:
         parts["contact"] = Part(table["contact"], how["contact"])
     # The same for all runs on these bodies, and of the size of Z alone.
@@ -128,7 +165,8 @@ def error_table(
     needed = ("time_step", "transient", *(("identification",) if "speeds" in model.scene.identifier.method.needs else ()))
     unknown = [name for name in needed if motions and parts[name].size is None]
     if unknown:
-        how["total"] = f"not estimated: that of the {' and the '.join(unknown).replace('_', ' ')} is not known"
+        reasons = (f"that of the {name.replace('_', ' ')} is not known ({how[name]})" for name in unknown)
+        how["total"] = f"not estimated: {' and '.join(reasons)}"
         return table
     table["total"] = _total(parts)
     return table

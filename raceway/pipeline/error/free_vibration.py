@@ -84,7 +84,7 @@ def _closed(model: Model, equilibrium: Equilibrium, whole: Record, per_turn: int
 
     system, w = model.system, 2.0 * np.pi * model.excitation.frequency_hz
     chosen = np.flatnonzero(system.free > 0.0)
-    tangent = 0.5 * (equilibrium.stiffness + equilibrium.stiffness.T)
+    tangent = 0.5 * (equilibrium.stiffness_rows_held + equilibrium.stiffness_rows_held.T)
     squares, modes = eigh(system.reduced(tangent + system.stiffness), system.reduced(system.mass))
     jump, slope = (
         modes.T @ system.reduced(system.mass) @ (signal[-1] - signal[-1 - per_turn])[chosen]

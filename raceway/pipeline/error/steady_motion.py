@@ -117,7 +117,7 @@ def steady_record(
     on_progress : called in the search, which what it raises ends
     """
     period = model.excitation.period_s
-    near = None if motion is None or period is None else _last_turn(motion.whole, period)
+    near = None if motion is None or period is None else last_turn(motion.whole, period)
     return _steady(model, equilibrium, near, on_progress)
 
 
@@ -136,7 +136,7 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnPr
         return None
 
 
-def _last_turn(whole: Record, period: float) -> Any:
+def last_turn(whole: Record, period: float) -> Any:
     """The last turn of a record as ``steady`` starts from it; None where the record is no whole turns of equal samples."""
     from raceway.core.periodic.neighbour import Recorded
 

@@ -17,7 +17,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.gradient.gradients import Gradient, Gradients
-from raceway.pipeline.gradient.quantities import UNITS, derivatives, values
+from raceway.pipeline.gradient.quantities import definitions, derivatives, described, values
 from raceway.pipeline.gradient.statics import static_gradient
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.scene.given import leaves
@@ -33,7 +33,7 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
 
     Returns
     -------
-    quantities : name -> value, unit, low, high, and ``shares`` of the variance by key;  left_out : keys without a derivative, with reasons
+    quantities : name -> value, unit, definition, low, high, and ``shares`` of the variance by key;  left_out : keys without a derivative, with reasons
     why : why there are no quantities, or none of the motion; empty else
     """
     scene = model.scene
@@ -49,7 +49,7 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
         orbit = gradients.orbit
     except (SceneError, ConvergenceError) as none:
         why = f"at rest only: {none.mistakes[0].message if isinstance(none, SceneError) else none}"
-    now = values(model, equilibrium, orbit)
+    now, words = values(model, equilibrium, orbit), definitions(model, equilibrium)
     slopes, left_out = {}, []
     for one in tolerances:
         try:
@@ -66,8 +66,7 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
         widths = np.array([(two - one) ** 2 for one, two in ends])
         shares = widths / widths.sum() if widths.any() else widths
         quantities[name] = {
-            "value": value,
-            "unit": UNITS[name],
+            **described(name, value, words),
             "low": value + low,
             "high": value + high,
             "shares": dict(zip(slopes, shares.tolist(), strict=True)),

@@ -105,7 +105,7 @@ class SteadyOrbit:
             why = "balls that orbit pass at another frequency than the force: no motion repeats itself every turn"
             raise SceneError.at("kinematics.orbiting", True, why)
         tolerance = float(getattr(model.scene.integrator.method, "tolerance", _TOLERANCE))
-        return cls(model, find(problem, q, equilibrium.stiffness, min(tolerance, _TOLERANCE)))
+        return cls(model, find(problem, q, equilibrium.stiffness_rows_held, min(tolerance, _TOLERANCE)))
 
     @property
     def warning(self) -> str:

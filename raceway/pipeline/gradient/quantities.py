@@ -6,9 +6,12 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
+from raceway.framework.shown import race_words, tilt_words
 from raceway.pipeline.gradient.gradients import Gradient
 from raceway.pipeline.gradient.motion import SteadyOrbit
+from raceway.pipeline.motion import race_of
 from raceway.pipeline.result import tilts_follow
+from raceway.storage.tables import Tables
 
 #: Names with units, in the order of columns; what a scene does not have is left out.
 UNITS = {
@@ -17,6 +20,7 @@ UNITS = {
     "amplitude": "m",
     "kxx": "N/m",
     "kyy": "N/m",
+    "kyy_tilts_follow": "N/m",
     "x": "m",
     "largest_ball_load": "N",
 }
@@ -25,21 +29,42 @@ _RESOLVED = 1e-6
 
 
 def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
-    """K, C and amplitude of the 1x line of the steady orbit; kxx, kyy (tilts follow where they may), x and largest ball load at rest."""
+    """The numbers that a scene has, by their names in ``UNITS``: of the steady orbit, and at rest."""
     found: dict[str, float] = {}
     if orbit is not None:
         real, damping, stiffness, amplitude = (float(one) for one in orbit.line)
         found |= {"K": stiffness, "amplitude": amplitude}
         if abs(damping) * orbit.solved.problem.speed > _RESOLVED * abs(real):
             found["C"] = damping
-    loads = equilibrium.contact_force[: model.system.ball_count]
     found |= {
         "kxx": float(equilibrium.stiffness[0, 0]),
-        "kyy": _kyy(equilibrium.stiffness, model.scene.supports.tilt),
+        "kyy": float(equilibrium.stiffness[1, 1]),
         "x": float(equilibrium.displacement[0]),
-        "largest_ball_load": float(loads.max()),
+        "largest_ball_load": float(equilibrium.contact_force.max()),
     }
+    if (follows := tilts_follow(equilibrium.stiffness, model.scene.supports.tilt)) is not None:
+        found["kyy_tilts_follow"] = follows
     return {name: found[name] for name in UNITS if name in found}
+
+
+def described(name: str, value: float, words: dict[str, str]) -> Tables:
+    """A number as JSON files hold it; ``words`` as ``definitions`` has them."""
+    return {"value": value, "unit": UNITS[name], "definition": words[name]}
+
+
+def definitions(model: Model, equilibrium: Equilibrium) -> dict[str, str]:
+    """What each number of ``values`` is."""
+    inner, outer = equilibrium.contact_force.reshape(2, -1).max(axis=1).tolist()
+    return {
+        "K": "Re Z + m w^2",
+        "C": "Im Z / w",
+        "amplitude": "of the 1x motion along the force",
+        "kxx": "axial, other motions held",
+        "kyy": "radial, tilts and other motions held",
+        "kyy_tilts_follow": f"radial, {tilt_words(model.scene.supports.tilt)}: tilts follow, x and z held",
+        "x": "axial displacement under the constant loads",
+        "largest_ball_load": f"static, {race_words(race_of(inner, outer))}; the larger of both",
+    }
 
 
 def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> dict[str, float]:
@@ -49,30 +74,21 @@ def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> d
         one = gradient.motion
         found |= {"K": one.equivalent_stiffness, "C": one.equivalent_damping, "amplitude": one.amplitude}
     statics = gradient.statics
-    largest = int(np.argmax(equilibrium.contact_force[: model.system.ball_count]))
     found |= {
         "kxx": float(statics.stiffness[0, 0]),
-        "kyy": _slope_of_kyy(model, equilibrium, gradient),
+        "kyy": float(statics.stiffness[1, 1]),
         "x": float(statics.displacement[0]),
-        "largest_ball_load": float(statics.contact_force[largest]),
+        "largest_ball_load": float(statics.contact_force[int(np.argmax(equilibrium.contact_force))]),
     }
+    if (tilt := model.scene.supports.tilt) != "locked":
+        by = float(statics.key.path == "supports.tilt")
+        found["kyy_tilts_follow"] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
     return found
 
 
-def _kyy(stiffness: np.ndarray, tilt: float | str) -> float:
-    follows = tilts_follow(stiffness, tilt)
-    return float(stiffness[1, 1]) if follows is None else follows
-
-
-def _slope_of_kyy(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> float:
-    """Along the line of the stiffness, and of the shaft's where that is the key."""
-    statics, tilt = gradient.statics, model.scene.supports.tilt
-    step = statics.step
-    if step == 0.0:
-        return 0.0
-    by = step if statics.key.path == "supports.tilt" else 0.0
-    ends = [
-        _kyy(equilibrium.stiffness + k * step * statics.stiffness, tilt + k * by if isinstance(tilt, float) else tilt)
-        for k in (-1.0, 1.0)
-    ]
-    return (ends[1] - ends[0]) / (2.0 * step)
+def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | str, by: float) -> float:
+    """Of kyy_tilts_follow where the stiffness (5, 5) moves with ``slope``, and the shaft's against tilts with ``by``."""
+    tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
+    back = np.linalg.pinv(tilts)
+    left, right = np.r_[1.0, -stiffness[1, 3:] @ back], np.r_[1.0, -back @ stiffness[3:, 1]]
+    return float(left @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)

@@ -114,13 +114,16 @@ def _gradient(model: Model, direction: Direction, equilibrium: Equilibrium) -> S
     loaded = here.contacts.contact_force > 0.0
     if any(((one.contact_force > 0.0) != loaded).any() for one in states.values()):
         remark = _AT_THE_EDGE
-    stiffness = {k: systems[k].stiffness_at(q, one) for k, one in states.items()}
+    stiffness, damping = {}, {}
+    for k, one in states.items():
+        still, place = systems[k].without(CAGE), q + k * step * moved
+        held = still.stiffness_at(place, one), still.damping_at(place, one)
+        stiffness[k], damping[k] = still.rows_following(place, one, *held)
     slope = derivative(stiffness, step)
     rounding = _ROUNDING * np.abs(stiffness[1]).max() / step
     bent = np.abs((stiffness[1] - stiffness[-1]) / (2.0 * step) - slope).max()
     if not remark and (direction.bends or bent > _BENT * np.abs(slope).max() + rounding):
         remark = _BENDS
-    damping = {k: systems[k].without(CAGE).damping_at(q + k * step * moved, one) for k, one in states.items()}
     force = derivative({k: one.contact_force for k, one in states.items()}, step)
     return StaticGradient(direction, step, moved, slope, derivative(damping, step), force, remark)
 

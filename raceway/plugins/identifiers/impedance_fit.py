@@ -17,9 +17,18 @@ if TYPE_CHECKING:
     from raceway.core.stepping.record import Record
 
 
+#: Share by which the largest speed exceeds the smallest.  What Z has beyond its form, e w^2 with w over the mean speed, shifts K by e
+#: and is seen as a misfit of e times that share: where the time step's error is as large, K is off by 1 / 0.05 = 20 times that error.
+_APART = 0.05
+_RULE = (
+    f"at least two speeds greater than 0, the largest {100.0 * _APART:g} % or more above the smallest: closer ones hide a K that is off by "
+    f"{1.0 / _APART:g} times the time step's error"
+)
+
+
 def _speeds(_instance: object, _attribute: object, value: tuple[float, ...]) -> None:
-    if len(set(value)) < 2 or min(value) <= 0.0:
-        raise ValueError("must be a list of at least two different speeds greater than 0")
+    if len(value) < 2 or min(value) <= 0.0 or max(value) < (1.0 + _APART) * min(value):
+        raise ValueError(f"must be a list of {_RULE}")
 
 
 @attrs.frozen
@@ -43,7 +52,7 @@ class ImpedanceFit:
     speeds_rpm: tuple[float, ...] = option(
         unit="r/min",
         help="whirl speeds of the force that are run at the scene's spin speed, at least two; best around the scene's own",
-        rule=worded(_speeds, "at least two different speeds greater than 0"),
+        rule=worded(_speeds, _RULE),
     )
 
     @classmethod

@@ -20,7 +20,8 @@ class Tangent:
     name: ClassVar[str] = "tangent"
     needs: ClassVar[frozenset[str]] = frozenset({"equilibrium", "period"})
     definition: ClassVar[str] = (
-        "tangent: small harmonic force about the static equilibrium, tilts as supported, in the direction of the force"
+        "tangent: small harmonic force about the static equilibrium, tilts as supported, in the direction of the force; balls "
+        "between damped contacts follow at its frequency"
     )
 
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
@@ -36,8 +37,8 @@ class Tangent:
             phase = np.exp(-2j * np.pi * k / samples)
             force += 2.0 / samples * phase * system.outer_force(k / samples / excitation.frequency_hz)
         chosen = system.free > 0.0
-        now = system.evaluate(equilibrium.displacement, ball=equilibrium.ball)
-        dynamic = now.stiffness + system.stiffness - w**2 * system.mass + 1j * w * (equilibrium.damping + system.damping)
+        viscous = system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)
+        dynamic = equilibrium.stiffness_rows_held + viscous + system.stiffness - w**2 * system.mass + 1j * w * system.damping
         line = np.zeros(5, dtype=complex)
         line[chosen] = np.linalg.solve(dynamic[np.ix_(chosen, chosen)], force[chosen])
         return identification(self.definition, excitation.frequency_hz, force, line, model.system.mass[1, 1])

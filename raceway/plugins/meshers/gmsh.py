@@ -1,7 +1,7 @@
-"""Solids meshed by Gmsh, as hexahedra: STEP and BREP files, which are data, or scripts of Gmsh, which are programs.
+"""Solids meshed by Gmsh, as hexahedra: STEP and BREP files, which are data.
 
-Nothing is opened by ``gmsh.open`` but a script that the user allowed, in a child process: it executes the .geo language, and
-for a file of any format the options beside it (part.step.opt), which are the same language.
+Nothing is opened by ``gmsh.open``: it executes the .geo language, and for a file of any format the options beside it
+(part.step.opt), which are the same language.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from raceway.errors import MeshError, extra
 from raceway.framework.options import one_of, option, positive
 from raceway.plugins.formats._exchange import readable
 from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
-from raceway.plugins.meshers._geo import is_script, mesh_of_script
 from raceway.plugins.system_libraries import remedy
 
 if TYPE_CHECKING:
@@ -32,10 +31,9 @@ if TYPE_CHECKING:
     from raceway.scene.bearing import Bearing
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
-#: Endings of files and OpenCASCADE's readers for them; a .geo is executed instead.
+#: Endings of files and OpenCASCADE's readers for them.
 _READERS = {".step": "step", ".stp": "step", ".brep": "brep"}
 _MILLIMETRE = 1e-3
-_SUFFIXES = (*_READERS, ".geo")
 #: Hexahedra of tetrahedra of twice the element's size, split in four, for each cube of that size (2.4 to 3 measured).
 _SPLIT = 3.0
 #: What Gmsh and the taking over of its mesh need beside the meshes: as such [bytes], and a cell (1450 to 1700 measured).
@@ -45,7 +43,7 @@ Found = TypeVar("Found")
 
 @attrs.frozen
 class Gmsh:
-    """Hexahedra from solids (.step, .stp, .brep) by the program Gmsh, one file for each body; a .geo is a program, see docs/mesh.md."""
+    """Hexahedra from solids (.step, .stp, .brep) by the program Gmsh, one file for each body."""
 
     name: ClassVar[str] = "gmsh"
 
@@ -55,10 +53,10 @@ class Gmsh:
     element_size: float = option(1e-3, unit="m", help="aimed at", rule=positive())
     method: str = option(
         "transfinite",
-        help="'transfinite': six-sided volumes; 'subdivision': tetrahedra, each split in 4; 'as_written': the .geo's own",
-        rule=one_of("transfinite", "subdivision", "as_written"),
+        help="'transfinite': six-sided volumes; 'subdivision': tetrahedra, each split in 4",
+        rule=one_of("transfinite", "subdivision"),
     )
-    scale: float = file_unit(".geo and .brep files (STEP files name their own)")
+    scale: float = file_unit(".brep files (STEP files name their own)")
 
     def __attrs_post_init__(self) -> None:
         refuse_no_body(self)
@@ -75,16 +73,15 @@ class Gmsh:
         Raises
         ------
         MeshError
-            Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, a .geo was not allowed,
-            elements are too large or too small.
+            Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, elements are too large or
+            too small.
         """
         from raceway.core.mesh.quality import refuse_bad_cells
 
         self.predict(bearing)  # refuses what cannot work
 
         def body(name: str, path: str) -> HexMesh:
-            copies = _copies(name, bearing)
-            mesh = mesh_of_script(self, name, path, copies) if is_script(path) else self._opened(path, self._meshed)
+            mesh = self._opened(path, self._meshed)
             refuse_bad_cells(mesh, f"{name} ({Path(path).name})")
             return with_node_sets(mesh.renumbered())
 
@@ -92,10 +89,6 @@ class Gmsh:
 
     def predict(self, bearing: Bearing) -> Prediction | None:
         """Size of the meshes from the solids' volumes and, but for 'subdivision', the divisions of their edges.
-
-        Returns
-        -------
-        Prediction or None : of a .geo nothing is known before it is executed, which no prediction does
 
         Raises
         ------
@@ -105,7 +98,7 @@ class Gmsh:
         Notes
         -----
         Six-sided volumes of transfinite edges are counted exactly: of the numbers of cells along twelve edges, each of the
-        three directions' occurs four times.  Solids of Gmsh's built-in geometry kernel tell no volume: their box bounds it.
+        three directions' occurs four times.
         """
         from raceway.core.mesh.place import ball_names
 
@@ -116,39 +109,23 @@ class Gmsh:
             if path is None:
                 continue
             _refuse_file(path)
-            if is_script(path):
-                continue
             cells = self._opened(path, self._cells)
             found.update(dict.fromkeys(ball_names(bearing) if body == "ball" else [body], cells))
             prediction = self._refuse_large(found, path)
-        scripts = [path for path in (getattr(self, body) for body in BODIES) if path is not None and is_script(path)]
-        return None if scripts else prediction
-
-    def execute(self, path: str, copies: int) -> HexMesh:
-        """Execute a .geo in this process and mesh what it makes; for the child of ``_geo`` alone.
-
-        Parameters
-        ----------
-        copies : of the body in the bearing, whose size is refused together
-        """
-        cells = self._opened(path, self._cells)
-        self._refuse_large({str(number): cells for number in range(copies)}, path)
-        return self._opened(path, self._meshed)
+        return prediction
 
     def _refuse_large(self, found: dict[str, float], path: str) -> Prediction:
         from raceway.core.mesh.size import Prediction, refuse_memory
 
         # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
         prediction = Prediction.of(found, _BESIDE_BYTES + _BYTES_BESIDE * max(found.values()))
-        if self.method == "as_written":
-            refuse_memory(prediction, "mesh.method", self.method, f"'{Path(path).name}' has to ask for fewer elements")
         refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
         return prediction
 
     def _opened(self, path: str, work: Callable[[ModuleType, str, float], Found]) -> Found:
         """What ``work(gmsh, path, scale)`` finds with the file open in Gmsh; all its failures are ``MeshError``."""
         _refuse_file(path)
-        reader = _READERS.get(Path(path).suffix.lower())
+        reader = _READERS[Path(path).suffix.lower()]
         try:
             import gmsh
         except ImportError as why:
@@ -160,11 +137,8 @@ class Gmsh:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setString("Geometry.OCCTargetUnit", "MM")  # OpenCASCADE's own, which outlives this session
             with _silent_reader():
-                if reader is None:
-                    gmsh.open(path)
-                else:
-                    gmsh.model.occ.importShapes(path, format=reader)
-                    gmsh.model.occ.synchronize()
+                gmsh.model.occ.importShapes(path, format=reader)
+                gmsh.model.occ.synchronize()
             if not gmsh.model.getEntities(3):
                 raise MeshError(f"'{path}' holds no solid")
             return work(gmsh, path, _MILLIMETRE if reader == "step" else self.scale)
@@ -209,19 +183,17 @@ class Gmsh:
         """Predicted number of hexahedra of the open file."""
         from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
 
-        volumes = {tag: _volume(gmsh, tag) * scale**3 for _, tag in gmsh.model.getEntities(3)}
-        if self.method != "as_written":
-            box = scale * np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)
-            refuse_coarse(self.element_size, float(np.ptp(box, axis=0).min()), f"smallest extent of '{Path(path).name}'")
-            cubes = sum(volumes.values()) / self.element_size**3
-            if self.method == "subdivision":
-                return _SPLIT * cubes
-            # Before the edges are divided: with tiny elements not even these would fit.
-            refuse_memory(Prediction.of({"": cubes}), "mesh.element_size", self.element_size, "take larger elements")
+        volumes = {tag: gmsh.model.occ.getMass(3, tag) * scale**3 for _, tag in gmsh.model.getEntities(3)}
+        box = scale * np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)
+        refuse_coarse(self.element_size, float(np.ptp(box, axis=0).min()), f"smallest extent of '{Path(path).name}'")
+        cubes = sum(volumes.values()) / self.element_size**3
+        if self.method == "subdivision":
+            return _SPLIT * cubes
+        # Before the edges are divided: with tiny elements not even these would fit.
+        refuse_memory(Prediction.of({"": cubes}), "mesh.element_size", self.element_size, "take larger elements")
         self._set_sizes(gmsh, scale)
         gmsh.model.mesh.generate(1)
-        split = gmsh.option.getNumber("Mesh.SubdivisionAlgorithm") == 2.0
-        return float(sum(_cells_between_edges(gmsh, tag, volume / scale**3, split) for tag, volume in volumes.items()))
+        return float(sum(_cells_between_edges(gmsh, tag, volume / scale**3) for tag, volume in volumes.items()))
 
     def _hexahedra(self, gmsh: ModuleType, path: str) -> np.ndarray:
         """(m, 8) node tags of the hexahedra; ``MeshError`` where there is any other solid."""
@@ -233,7 +205,6 @@ class Gmsh:
             remedy = {
                 "transfinite": "use method = 'subdivision', or cut the solid into volumes with six four-sided faces",
                 "subdivision": "cut the solid into simpler volumes",
-                "as_written": "give every volume 'Transfinite Volume' and 'Recombine Surface', or use method = 'subdivision'",
             }[self.method]
             raise MeshError(
                 f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {told} came out; {remedy}"
@@ -241,17 +212,13 @@ class Gmsh:
         return np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
 
 
-def _copies(body: str, bearing: Bearing) -> int:
-    return int(bearing.ball_count) if body == "ball" else 1
-
-
 def _refuse_file(path: str) -> None:
     """``MeshError`` for a file of another kind, a missing one, or one that is no STEP file by its beginning."""
     suffix = Path(path).suffix.lower()
-    if suffix not in _SUFFIXES:
-        raise MeshError(f"'{path}': mesh.kind = 'gmsh' reads {', '.join(_SUFFIXES)}, not '{suffix}'")
+    if suffix not in _READERS:
+        raise MeshError(f"'{path}': mesh.kind = 'gmsh' reads {', '.join(_READERS)}, not '{suffix}'")
     readable(path)
-    if _READERS.get(suffix) == "step":
+    if _READERS[suffix] == "step":
         with Path(path).open("rb") as file:
             if b"ISO-10303-21" not in file.read(4096):
                 raise MeshError(f"'{path}' cannot be read: it is not a STEP file (no ISO-10303-21 at its beginning)")
@@ -271,16 +238,8 @@ def _silent_reader() -> Iterator[None]:
         os.close(nothing)
 
 
-def _volume(gmsh: ModuleType, tag: int) -> float:
-    """Volume of a solid in the file's units; of its box where the geometry kernel is Gmsh's own."""
-    try:
-        return float(gmsh.model.occ.getMass(3, tag))
-    except Exception:  # gmsh's only class of exceptions: the solid is not one of OpenCASCADE
-        return float(np.ptp(np.array(gmsh.model.getBoundingBox(3, tag)).reshape(2, 3), axis=0).prod())
-
-
-def _cells_between_edges(gmsh: ModuleType, tag: int, volume: float, split: bool) -> float:
-    """Hexahedra of a volume whose edges are divided already; ``split``: of tetrahedra or hexahedra that are subdivided."""
+def _cells_between_edges(gmsh: ModuleType, tag: int, volume: float) -> float:
+    """Hexahedra of a volume whose edges are divided already."""
     curves = {abs(c) for _, s in gmsh.model.getBoundary([(3, tag)]) for _, c in gmsh.model.getBoundary([(2, s)])}
     counts, lengths = [], 0.0
     for curve in curves:
@@ -290,9 +249,9 @@ def _cells_between_edges(gmsh: ModuleType, tag: int, volume: float, split: bool)
         counts.append(len(tags))
         lengths += float(np.linalg.norm(np.subtract(ends[::2], ends[1::2]), axis=1).sum()) if len(tags) else 0.0
     if len(counts) == 12 and min(counts) > 0:
-        return float(np.prod(np.array(counts, dtype=float)) ** 0.25) * (8.0 if split else 1.0)
+        return float(np.prod(np.array(counts, dtype=float)) ** 0.25)
     size = lengths / max(sum(counts), 1)
-    return (8.0 * _SPLIT if split else 1.0) * volume / size**3 if size else 0.0
+    return volume / size**3 if size else 0.0
 
 
 def _nodes(gmsh: ModuleType, curve: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""``Result.to_xarray``: arrays of one run with names, coordinates and units."""
+"""Labelled arrays, with names, coordinates and units: of any answer, and those of one run for ``Result.to_xarray``."""
 
 from __future__ import annotations
 
@@ -19,6 +19,20 @@ _IDENTIFIED = (
 )
 
 
+def labelled_dataset(variables: Any, coordinates: Any, attributes: Any) -> Any:
+    """An xarray.Dataset; RacewayError where xarray is missing."""
+    try:
+        import xarray
+    except ImportError as why:
+        raise RacewayError(f"labelled results need xarray, which is not installed: {extra('results')} ({why})") from None
+    return xarray.Dataset(variables, coordinates, attributes)
+
+
+def labels(name: str, unit: str, words: str) -> dict[str, str]:
+    """Attributes of a labelled array: xarray writes the short ``long_name`` and the unit beside an axis."""
+    return {"units": unit, "long_name": name.replace("_", " "), "description": words}
+
+
 def labelled(result: Result) -> Any:
     """All arrays of a run as an xarray.Dataset.
 
@@ -32,10 +46,6 @@ def labelled(result: Result) -> Any:
     RacewayError
         xarray is missing.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise RacewayError(f"labelled arrays need xarray, which is not installed: {extra('results')}") from None
     import numpy as np
 
     from raceway.core.ring.ring import COORDINATES
@@ -43,17 +53,17 @@ def labelled(result: Result) -> Any:
     names, found, z = list(COORDINATES), result.equilibrium, result.model.system.ball_count
     ring, ball = ("dof",), ("race", "ball")
     variables = {
-        "displacement": (ring, found.displacement, _about("m, rad", "equilibrium under the constant loads")),
+        "displacement": (ring, found.displacement, labels("displacement", "m, rad", "equilibrium under the constant loads")),
         "stiffness": (
             ("dof", "dof2"),
             found.stiffness,
-            _about("N/m, N/rad, N m/m, N m/rad", "tangent of the contacts at the equilibrium"),
+            labels("stiffness", "N/m, N/rad, N m/m, N m/rad", "tangent of the contacts at the equilibrium"),
         ),
-        "ball_load": (ball, found.contact_force.reshape(2, z), _about("N", "static contact force")),
+        "ball_load": (ball, found.contact_force.reshape(2, z), labels("ball_load", "N", "static contact force")),
         "contact_angle": (
             ball,
             np.degrees([found.angle_inner, found.angle_outer]),
-            _about("deg", "static; nan where the contact is open"),
+            labels("contact_angle", "deg", "static; nan where the contact is open"),
         ),
     }
     coordinates: dict[str, Any] = {
@@ -61,29 +71,34 @@ def labelled(result: Result) -> Any:
         "dof2": names,
         "race": ["inner", "outer"],
         "ball": np.arange(z),
-        "azimuth": (("ball",), np.degrees(result.model.azimuth) % 360.0, _about("deg", "from +y towards +z")),
+        "azimuth": (("ball",), np.degrees(result.model.azimuth) % 360.0, labels("azimuth", "deg", "from +y towards +z")),
     }
     if result.simulation is not None:
         record = result.simulation.record
-        coordinates["time"] = (("time",), record.time, _about("s", "in the turns that are used"))
+        coordinates["time"] = (("time",), record.time, labels("time", "s", "in the turns that are used"))
         moved = ("time", *ring)
-        variables["motion"] = (moved, record.displacement, _about("m, rad", "of the inner ring"))
-        variables["force"] = (moved, record.force, _about("N, N m", "of the excitation"))
+        variables["motion"] = (moved, record.displacement, labels("motion", "m, rad", "of the inner ring"))
+        variables["force"] = (moved, record.force, labels("force", "N, N m", "of the excitation"))
         loads = record.contact_force.reshape(len(record.time), 2, z)
-        variables["contact_force"] = (("time", *ball), loads, _about("N", "of each ball on each race"))
+        variables["contact_force"] = (("time", *ball), loads, labels("contact_force", "N", "of each ball on each race"))
     if result.dynamic_stiffness is not None:
         variables["z_real"] = (
             (),
             result.dynamic_stiffness.real,
-            _about("N/m", "real part of the dynamic stiffness Z = F/x"),
+            labels("z_real", "N/m", "real part of the dynamic stiffness Z = F/x"),
         )
-        variables["z_imag"] = ((), result.dynamic_stiffness.imag, _about("N/m", "imaginary part of Z, w C"))
+        variables["z_imag"] = ((), result.dynamic_stiffness.imag, labels("z_imag", "N/m", "imaginary part of Z, w C"))
         for name, unit, words in _IDENTIFIED:
             value = getattr(result, name)
-            variables[name] = ((), np.nan if value is None else value, _about(unit, words))
+            variables[name] = ((), np.nan if value is None else value, labels(name, unit, words))
+        spread = result.model_spread[0]
+        if spread is not None and spread["equivalent_stiffness"] is not None:
+            coordinates["end"] = ["low", "high"]
+            words = "relative change of K by hypotheses left at their defaults"
+            variables["equivalent_stiffness_model"] = (
+                ("end",),
+                spread["equivalent_stiffness"],
+                labels("equivalent_stiffness_model", "1", words),
+            )
     attributes = {"title": result.title, "warnings": "\n".join(result.warnings)}
-    return xarray.Dataset(variables, coordinates, attributes)
-
-
-def _about(unit: str, words: str) -> dict[str, str]:
-    return {"units": unit, "long_name": words}
+    return labelled_dataset(variables, coordinates, attributes)

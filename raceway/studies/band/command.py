@@ -78,7 +78,8 @@ def band(given: BandOptions) -> int:
         from raceway.studies.band.front import band as compute
 
         found = compute(
-            loaded, given.tolerances, count=given.size, seed=given.seed, processes=given.processes, kept=kept, progress=progress
+            loaded, given.tolerances, count=given.size, seed=given.seed, processes=given.processes, kept=kept, progress=progress,
+            plugins=given.plugins,
         )  # fmt: skip
     content = found.to_dict()
     files: list[str] = []
@@ -110,6 +111,7 @@ def _screen(content: ReadTables, files: list[str]) -> RenderableType:
     for one in content["tolerances"]:
         (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
         lines.append(f"{one['key']}: {low:.6g} to {high:.6g} {unit}".rstrip())
+    lines += [f"{name.replace('_', ' ')}: {one['definition']}" for name, one in content["quantities"].items()]
     lines.append(f"{content['samples']} samples")
     if content["lost"]:
         lines.append(f"{content['lost']} have no answer, so that no indices are told: {content['why_lost']}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.commands.progress import telling
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
 from raceway.scene.given import as_scene, leaves
 from raceway.scene.tolerance import tolerances_of
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from raceway.commands.progress import ShowProgress
 
 
+@door
 def band(
     scene: Any,
     tolerances: Mapping[str, str] | Iterable[str] = (),
@@ -24,7 +26,7 @@ def band(
     count: int = 512,
     seed: int = 1,
     processes: int = 0,
-    kept: Path | None = None,
+    kept: str | Path | None = None,
     progress: ShowProgress = None,
     plugins: Iterable[str | Path] = (),
 ) -> Band:
@@ -66,4 +68,14 @@ def band(
         )
     chosen = tolerances_of(read, tolerances or dict(leaves(read.source.get("tolerances", {}))))
     with telling(progress) as told:
-        return band_of(read, chosen, count, seed, default_registry(), processes, kept, [Path(one) for one in plugins], told)
+        return band_of(
+            read,
+            chosen,
+            count,
+            seed,
+            default_registry(),
+            processes,
+            None if kept is None else Path(kept),
+            [Path(one) for one in plugins],
+            told,
+        )

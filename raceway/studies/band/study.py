@@ -13,12 +13,13 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.framework.shown import Fact, Shown, number
 from raceway.pipeline.gradient.gradients import Gradients
-from raceway.pipeline.gradient.quantities import UNITS, values
+from raceway.pipeline.gradient.quantities import UNITS, definitions, described, values
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import with_number
+from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tolerance import Tolerance
 from raceway.storage.tables import Tables
@@ -40,7 +41,7 @@ class Band(Shown):
 
     Attributes
     ----------
-    nominal, low, high : quantity -> number, SI;  tolerances : what was varied
+    nominal, low, high : quantity -> number, SI;  definitions : quantity -> what it is, at the nominal;  tolerances : what was varied
     first, total : quantity -> Sobol indices (d,) of the tolerances
     histograms : quantity -> edges of bins (b + 1,), SI, and samples in them (b,)
     samples : that were computed;  lost : of them without an answer;  why : of the first of these
@@ -56,6 +57,7 @@ class Band(Shown):
     title: str
     tolerances: tuple[Tolerance, ...]
     nominal: dict[str, float]
+    definitions: dict[str, str]
     low: dict[str, float]
     high: dict[str, float]
     first: dict[str, list[float]]
@@ -91,8 +93,7 @@ class Band(Shown):
         """Plain tables: quantities with their band and indices, tolerances, samples."""
         quantities = {
             name: {
-                "value": value,
-                "unit": UNITS[name],
+                **described(name, value, self.definitions),
                 "low": self.low[name],
                 "high": self.high[name],
                 "first_order": self.first.get(name),
@@ -160,22 +161,26 @@ def band_of(
     ConvergenceError
         No sample has one.
     """
-    nominal = _answer(scene)
+    nominal, words = _answer(scene)
     unit = design(count, len(tolerances), seed)
     low, high = (np.array([getattr(one, end) for one in tolerances]) for end in ("low", "high"))
     numbers = low + unit * (high - low)
     paths = [one.key.path for one in tolerances]
     chunks = [numbers[k : k + _CHUNK] for k in range(0, len(numbers), _CHUNK)]
     key = row_key(scene, registry, f"band {paths} {low.tolist()} {high.tolist()} {count} {seed}")
-    items = [Item(f"{key} {k}", "samples", (scene, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
+    items = [Item(f"{key} {k}", "samples", (scene.source, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
     done, _ = work_through(sampled, items, RowStore(kept), local(registry, processes), registry, plugins, on_progress)
     rows = [row for chunk in done for row in chunk["rows"]]
-    return _summary(scene.title, tuple(tolerances), nominal, rows, len(tolerances))
+    return _summary(scene.title, tuple(tolerances), nominal, words, rows, len(tolerances))
 
 
-def sampled(given: tuple[Scene, list[str], list[list[float]]], registry: Registry) -> Tables:
-    """Answers at some points: quantity -> number each, or the reason why there is none."""
-    scene, paths, points = given
+def sampled(given: tuple[Tables, list[str], list[list[float]]], registry: Registry) -> Tables:
+    """Answers at some points: quantity -> number each, or the reason why there is none.
+
+    A worker reads the scene itself: classes of one-off plug-ins can not be sent to it.
+    """
+    tables, paths, points = given
+    scene = scene_from_dict(tables, registry)
     return {"rows": [_row(scene, paths, point) for point in points]}
 
 
@@ -183,20 +188,21 @@ def _row(scene: Scene, paths: list[str], point: list[float]) -> Tables:
     try:
         for path, value in zip(paths, point, strict=True):
             scene = with_number(scene, path, value)
-        return dict(_answer(scene))
+        return dict(_answer(scene)[0])
     except (RacewayError, ValueError) as why:
         return {"why": str(why)}
 
 
-def _answer(scene: Scene) -> dict[str, float]:
+def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
+    """Numbers, and what they are."""
     model = build_model(scene, make_plan(scene))
     equilibrium = settle(model)
-    return values(model, equilibrium, Gradients(model, equilibrium).orbit)
+    return values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
 
 
 def _summary(
-    title: str, tolerances: tuple[Tolerance, ...], nominal: dict[str, float], rows: list[Tables], dimensions: int
-) -> Band:
+    title: str, tolerances: tuple[Tolerance, ...], nominal: dict[str, float], words: dict[str, str], rows: list[Tables], dimensions: int
+) -> Band:  # fmt: skip
     lost = [row["why"] for row in rows if "why" in row]
     names = [name for name in nominal if all(name in row for row in rows if "why" not in row)]
     if len(lost) == len(rows):
@@ -215,6 +221,7 @@ def _summary(
         title,
         tolerances,
         {name: nominal[name] for name in names},
+        words,
         dict(zip(names, low.tolist(), strict=True)),
         dict(zip(names, high.tolist(), strict=True)),
         first,

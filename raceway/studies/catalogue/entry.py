@@ -22,7 +22,12 @@ def line(one: Preset) -> Tables:
     """A line of the list: name, main dimensions [m], balls, contact angle."""
     table = one.table
     keys = "bore", "outer_diameter", "width", "contact_angle_deg", "ball_count", "ball_diameter", "pitch_diameter"
-    return {"name": one.name, **{key: table.get(key) for key in keys}, "stiffness_error": one.stiffness_error}
+    return {
+        "name": one.name,
+        **{key: table.get(key) for key in keys},
+        "stiffness_error": one.stiffness_error,
+        "radial_stiffness_error": one.radial_stiffness_error,
+    }
 
 
 def entry(one: Preset) -> Tables:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.scene.catalogue import Preset, found_by, no_preset
 
 
+@door
 def catalogue(pattern: str = "*") -> tuple[Preset, ...]:
     """Bearings of the catalogue, which ``preset`` of a scene's [bearing] takes by name.
 

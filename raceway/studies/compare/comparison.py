@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown, number_within
 from raceway.storage.tables import Tables
 from raceway.studies.compare.explain import explain, in_few_words
-from raceway.studies.compare.findings import QUANTITIES, Findings, Row
+from raceway.studies.compare.findings import MOVING, Findings, Quantity, Row
 from raceway.studies.many.axes import Axis, shown
 
 if TYPE_CHECKING:
@@ -83,12 +84,12 @@ class Comparison(Shown, Findings):
 
         return labelled(self)
 
-    def plot(self, quantity: str = "equivalent_stiffness", ax: Axes | None = None) -> Axes:
-        """Draw K or |Z| [N/um] over the axis of numbers with most values; without one, a dot for each run.
+    def plot(self, quantity: str | None = None, ax: Axes | None = None) -> Axes:
+        """Draw one quantity over the axis of numbers with most values; without one, a dot for each run.
 
         Parameters
         ----------
-        quantity : "equivalent_stiffness" or "dynamic_stiffness"
+        quantity : "equivalent_stiffness" (default) or "dynamic_stiffness"; of static scenes "kxx" (default), "kyy" or "x"
         ax : matplotlib axes; new ones without
 
         Raises
@@ -98,30 +99,32 @@ class Comparison(Shown, Findings):
         """
         from raceway.studies.compare.picture import draw_on
 
+        quantity = next(iter(self.quantities)) if quantity is None else member("quantity", quantity, self.quantities)
         return draw_on(self.to_dict(), quantity, ax)
 
     def _shown(self) -> tuple[str, list[Fact]]:
-        names = _short_names(self.axes)
+        names, (first, about) = _short_names(self.axes), next(iter(self.quantities.items()))
+        label = about.label.removesuffix("(w)")
         changes = [
             (
                 " x ".join(names[key] for key in one["term"]),
                 f"{one['percent']:+.3g} %",
-                "of K on average" if one["order"] == 1 else "interaction on K",
+                f"of {label} on average" if one["order"] == 1 else f"interaction on {label}",
             )
             for one in self.effects
-            if one["quantity"] == "equivalent_stiffness"
+            if one["quantity"] == first
         ]
-        runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_k_of(row)) for row in self.rows]
+        runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_number_of(row)) for row in self.rows]
         words: Fact = ("words", "", f"{len(self.words)} sentences in .words")
         return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*changes[:3], words, *runs]
 
     def table(self) -> list[dict[str, str]]:
         """One row a run, as short text for a screen; why a run is in doubt is said in the words."""
         names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
-        return [_screen_row(row, names, noted) for row in self.rows]
+        return [_screen_row(row, names, noted, self.quantities) for row in self.rows]
 
     def picture(self, folder: Path) -> list[Path]:
-        """Draw K and |Z| into a folder; the files written.
+        """Draw all quantities into a folder; the files written.
 
         Raises
         ------
@@ -133,26 +136,28 @@ class Comparison(Shown, Findings):
         return ComparisonPicture().write(self.to_dict(), folder)
 
 
-def _k_of(row: Row) -> tuple[str, str]:
-    """K with its error, and what is to be known of it."""
-    k, z = (row.value(quantity) for quantity in QUANTITIES)
-    if k is None:
+def _number_of(row: Row) -> tuple[str, str]:
+    """The first quantity with its error, and what is to be known of it."""
+    name, about = next(iter(row.quantities.items()))
+    value, z = row.value(name), row.value("dynamic_stiffness")
+    if value is None:
         return "-", row.doubt or ""
-    error = 1e-6 * row.error * (z or 0.0)
     doubt = f"; in doubt: {row.doubt}" if row.doubt else ""
-    return (
-        f"K {number_within(1e-6 * k, error, 'N/µm')}",
-        f"{f'+- {error:.2g} N/µm' if row.estimated else 'error not known'}{doubt}",
-    )
+    if z is None:
+        return f"{about.label} {about.scale * value:.4g} {about.unit}", about.words + doubt
+    error = about.scale * row.error * z
+    known = f"+- {error:.2g} {about.unit}" if row.estimated else "error not known"
+    return f"K {number_within(about.scale * value, error, about.unit)}", known + doubt
 
 
-def _screen_row(row: Row, names: dict[str, str], noted: bool) -> dict[str, str]:
+def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
     text = {name: shown(row.point[key]) for key, name in names.items()}
-    k, z = (row.value(quantity) for quantity in QUANTITIES)
-    text["K N/µm"] = "" if k is None else f"{k / 1e6:.3f}"
-    text["|Z| N/µm"] = "" if z is None else f"{z / 1e6:.3f}"
-    text["C N s/m"] = row.damping_words
-    text["error %"] = "" if k is None else f"{100.0 * row.error:.2g}"
+    for name, about in quantities.items():
+        value = row.value(name)
+        text[f"{about.label.removesuffix('(w)')} {about.unit}"] = "" if value is None else f"{about.scale * value:.3f}"
+    if quantities is MOVING:
+        text["C N s/m"] = row.damping_words
+        text["error %"] = "" if row.value("dynamic_stiffness") is None else f"{100.0 * row.error:.2g}"
     if noted:
         text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""
     return text

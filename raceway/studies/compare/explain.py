@@ -5,52 +5,124 @@ Changes are geometric means over the settings that a sentence does not name.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from raceway.studies.compare.causes import IN_SHORT, causes, leading_axis
+from raceway.storage.tables import Tables
 from raceway.studies.compare.effects import Effect, Factorial
-from raceway.studies.compare.inertia import inertia
-from raceway.studies.compare.phrases import HARDLY, LABELS, listed, percent, settings, step
 from raceway.studies.many.axes import Axis, shown
 
 if TYPE_CHECKING:
     from raceway.studies.compare.findings import Findings
 
+#: A change of less than half a percent "hardly matters".
+HARDLY = math.log(1.005)
 _MOST_INTERACTIONS = 5
 
 
 def explain(comparison: Findings) -> list[str]:
-    """The sentences, in the order in which a person asks."""
-    words = [_what_was_run(comparison), *_doubts(comparison), *(f"Note: {note}." for note in comparison.notes)]
-    if not comparison.factorials:
-        return [*words, _why_no_effects(comparison)]
-    for quantity in LABELS:
-        words += _main_effects(comparison, quantity)
-        words += _interactions(comparison, quantity)
-    leading = leading_axis(comparison)
-    return words + (causes(comparison, leading) if leading else []) + inertia(comparison, leading)
+    """The ranking of main effects first, then doubts, interactions, and how numbers run along an axis where others change that."""
+    words = in_few_words(comparison)
+    for quantity in list(comparison.factorials)[1:]:
+        words += [*_main_effects(comparison, quantity), *_interactions(comparison, quantity)]
+    if comparison.factorials:
+        words += [*_courses(comparison), *_inertia(comparison)]
+    return [*words, _what_was_run(comparison)]
 
 
 def in_few_words(comparison: Findings) -> list[str]:
-    """What decides, then doubts and the effects on K: for a screen; ``explain`` has the rest."""
-    leading = leading_axis(comparison)
-    decisive = [text for text in (causes(comparison, leading) if leading else []) if text.startswith(IN_SHORT)]
-    found = _main_effects(comparison, "equivalent_stiffness") if comparison.factorials else [_why_no_effects(comparison)]
-    return [*decisive, *_doubts(comparison), *(f"Note: {note}." for note in comparison.notes), *found]
+    """Effects on the first quantity, the largest first, doubts and its interactions: for a screen; ``explain`` has the rest."""
+    notes = [*_doubts(comparison), *(f"Note: {note}." for note in comparison.notes)]
+    if not comparison.factorials:
+        return [_why_no_effects(comparison), *notes]
+    first = next(iter(comparison.factorials))
+    ranking, *further = _main_effects(comparison, first)
+    return [ranking, *further, *notes, *_interactions(comparison, first)]
+
+
+def percent(log_change: float) -> str:
+    """A change of ln(quantity) in percent, signed."""
+    value = 100.0 * math.expm1(log_change)
+    return f"{value:+.1f} %" if abs(value) >= 1.0 else f"{value:+.2f} %"
+
+
+def _span(log_changes: Iterable[float]) -> str:
+    changes = list(log_changes)
+    low, high = percent(min(changes)), percent(max(changes))
+    return low if low == high else f"{low} to {high}"
+
+
+def _listed(parts: Sequence[str]) -> str:
+    """``a, b and c``."""
+    return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
+
+
+def _step(axis: Axis) -> str:
+    return f"{axis.key} from {shown(axis.ends[0])} to {shown(axis.ends[1])}"
+
+
+def _settings(point: Tables) -> str:
+    """``a = 1 and b = 2``."""
+    return _listed([f"{key} = {shown(value)}" for key, value in point.items()])
+
+
+def _courses(comparison: Findings) -> list[str]:
+    """How the first quantity runs along each axis of numbers, at each value of the axis that changes this most."""
+    quantity, factorial = next(iter(comparison.factorials.items()))
+    label, words = comparison.quantities[quantity].label, []
+    for axis in (axis for axis in comparison.varied if axis.numeric and axis.key in factorial.keys):
+        trends = [
+            t for t in comparison.trends if (t["axis"], t["quantity"]) == (axis.key, quantity) and t["percent"] is not None
+        ]
+        changes = [math.log1p(t["percent"] / 100.0) for t in trends]
+        if len(trends) < 2 or max(changes) - min(changes) < HARDLY:
+            continue
+        others = [key for key in factorial.keys if key != axis.key]
+        partner = comparison.axis(max(others, key=lambda key: _together(factorial, axis.key, key)))
+        for value in partner.values:
+            here = [t for t in trends if t["at"][partner.key] == value]
+            parts = []
+            for kind in ("rises", "falls", "level", "not monotonic"):
+                part = [math.log1p(t["percent"] / 100.0) for t in here if t["trend"] == kind]
+                verb = kind if kind in ("rises", "falls") else f"is {kind}"
+                parts += [f"{verb} in {len(part)} of {len(here)} settings ({_span(part)})"] if part else []
+            left_out = sum(t["doubtful"] for t in here)
+            note = f"; doubtful runs between the ends left out: {left_out}" if left_out else ""
+            if parts:
+                words.append(f"With {partner.key} = {shown(value)}, {label} along {_step(axis)} {_listed(parts)}{note}.")
+    return words
+
+
+def _together(factorial: Factorial, one: str, other: str) -> float:
+    """Size of the interaction of two axes."""
+    return max((abs(e.log_change) for e in factorial.effects if set(e.term) == {one, other}), default=0.0)
+
+
+def _inertia(comparison: Findings) -> list[str]:
+    """By how much |Z| is less than K, with the mass that was used."""
+    runs = [row.result["identification"] for row in comparison.rows if row.doubt is None]
+    if not all(runs):
+        return []
+    masses = [run["mass_used_kg"] for run in runs]
+    force = [m * (2.0 * math.pi * run["frequency_hz"]) ** 2 for m, run in zip(masses, runs, strict=True)]
+    mass = f"{min(masses):.3f}" if max(masses) - min(masses) < 5e-4 else f"{min(masses):.3f} to {max(masses):.3f}"
+    return [
+        f"|Z| is K(w) less m w^2, with m = {mass} kg: {1e-6 * min(force):.2f} to {1e-6 * max(force):.2f} N/µm; damping adds to it."
+    ]
 
 
 def _what_was_run(comparison: Findings) -> str:
     axes = [f"{axis.key} ({', '.join(shown(v) for v in _few(axis))})" for axis in comparison.axes]
-    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {listed(axes)}."
+    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_listed(axes)}."
     if not comparison.factorials:
         return text
     one, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
     text += f" The effects compare the first with the last value of each axis ({one.corners.size} runs)"
     text += ", as geometric means over the other settings"
-    text += f", at {settings(comparison.held)}" if comparison.held else ""
+    text += f", at {_settings(comparison.held)}" if comparison.held else ""
     text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
-    unknown = sum(row.doubt is None and not row.estimated for row in comparison.rows)
+    unknown = sum(row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows)
     return text + (f" Of {unknown} runs no error was estimated: they count as exact." if unknown else "")
 
 
@@ -72,7 +144,7 @@ def _doubts(comparison: Findings) -> list[str]:
         )
     if comparison.held and words:
         words.append(
-            f"Some of them stand at the ends of the axes, so the effects hold for {settings(comparison.held)} only."
+            f"Some of them stand at the ends of the axes, so the effects hold for {_settings(comparison.held)} only."
         )
     return words
 
@@ -84,8 +156,9 @@ def _why_no_effects(comparison: Findings) -> str:
 
 
 def _main_effects(comparison: Findings, quantity: str) -> list[str]:
-    factorial, label = comparison.factorials[quantity], LABELS[quantity]
-    low, high = factorial.corners.min() / 1e6, factorial.corners.max() / 1e6
+    factorial, about = comparison.factorials[quantity], comparison.quantities[quantity]
+    label, unit = about.label, about.unit
+    low, high = about.scale * factorial.corners.min(), about.scale * factorial.corners.max()
     parts, hidden, weak, inert = [], [], [], []
     largest = factorial.effects[0]
     for effect in (e for e in factorial.effects if len(e.term) == 1):
@@ -102,20 +175,21 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             if effect is not largest and largest.share > 0.9:
                 share = f"{100.0 * effect.share / (1.0 - largest.share):.2g} % of the rest"
             mixed = ", a mean of rises and falls" if _mixed(factorial, key) else ""
-            change = f"{percent(effect.log_change)} ({(effect.difference or 0.0) / 1e6:+.2f} N/µm; {share}{mixed})"
-            parts.append(f"{step(comparison.axis(key))} changes it by {change}")
+            change = f"{percent(effect.log_change)} ({about.scale * (effect.difference or 0.0):+.2f} {unit}; {share}{mixed})"
+            parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
     none = "no axis is seen to move it" if hidden else "no axis moves it"
-    words = [f"{label} lies between {low:.2f} and {high:.2f} N/µm. On average {'; '.join(parts) or none}."]
+    order = "On average" if len(parts) < 2 else "On average, the strongest first:"
+    words = [f"{label} lies between {low:.2f} and {high:.2f} {unit}. {order} {'; '.join(parts) or none}."]
     if hidden:
         words.append(
-            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {listed(hidden)}."
+            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_listed(hidden)}."
         )
     if weak:
         words.append(
-            f"{label} on average hardly depends on {listed(weak)}, but does so together with other axes (see below)."
+            f"{label} on average hardly depends on {_listed(weak)}, but does so together with other axes (see below)."
         )
     if inert:
-        words.append(f"{label} hardly depends on {listed(inert)}: no effect of it, alone or with others, reaches 0.5 %.")
+        words.append(f"{label} hardly depends on {_listed(inert)}: no effect of it, alone or with others, reaches 0.5 %.")
     return words
 
 
@@ -139,7 +213,7 @@ def _where_resolved(comparison: Findings, factorial: Factorial, key: str) -> str
 
 
 def _interactions(comparison: Findings, quantity: str) -> list[str]:
-    factorial, label = comparison.factorials[quantity], LABELS[quantity]
+    factorial, label = comparison.factorials[quantity], comparison.quantities[quantity].label
     large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= HARDLY and e.resolved]
     words = []
     for effect in large[:_MOST_INTERACTIONS]:
@@ -147,7 +221,7 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
         changes = [factorial.log_change(moved.key, {given.key: end}) for end in (0, 1)]
         words.append(
             f"{label}, interaction of {given.key} and {moved.key}: with {given.key} = {shown(given.ends[0])}, "
-            f"{step(moved)} changes it by {percent(changes[0])}, with {shown(given.ends[1])} by {percent(changes[1])}."
+            f"{_step(moved)} changes it by {percent(changes[0])}, with {shown(given.ends[1])} by {percent(changes[1])}."
         )
     high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= HARDLY and e.resolved]
     if high:

@@ -3,21 +3,43 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cached_property
-from itertools import product
+from typing import Any
 
 import attrs
 import numpy as np
 
+from raceway.framework.doors import member
 from raceway.storage.tables import Tables
 from raceway.studies.compare.effects import Factorial, trend, whole_part
-from raceway.studies.many.axes import Axis, shown
+from raceway.studies.many.axes import Axis
 
-#: What is explained: name in the answer, label for people, path in ``identification``.
-QUANTITIES = {
-    "equivalent_stiffness": ("K(w)", ("equivalent_stiffness",)),
-    "dynamic_stiffness": ("|Z|", ("dynamic_stiffness", "abs")),
+
+@attrs.frozen
+class Quantity:
+    """What is explained: label, its place in result.json, unit on the screen with the factor to it, SI unit and words."""
+
+    label: str
+    path: tuple[str | int, ...]
+    unit: str
+    scale: float
+    si: str
+    words: str
+
+
+#: Of runs with an excitation, and of static ones.
+MOVING = {
+    "equivalent_stiffness": Quantity(
+        "K(w)", ("identification", "equivalent_stiffness"), "N/µm", 1e-6, "N/m", "K = Re Z + m w^2"
+    ),
+    "dynamic_stiffness": Quantity(
+        "|Z|", ("identification", "dynamic_stiffness", "abs"), "N/µm", 1e-6, "N/m", "size of Z = F/x"
+    ),
+}
+STATIC = {
+    "kxx": Quantity("kxx", ("equilibrium", "stiffness", 0, 0), "N/µm", 1e-6, "N/m", "axial tangent stiffness, tilts held"),
+    "kyy": Quantity("kyy", ("equilibrium", "stiffness", 1, 1), "N/µm", 1e-6, "N/m", "radial tangent stiffness, tilts held"),
+    "x": Quantity("x", ("equilibrium", "displacement", "x"), "µm", 1e6, "m", "axial displacement"),
 }
 #: A row whose error is as large as its value, or whose motion is less 1x than other, is no basis for an explanation.
 MOST_ERROR, MOST_RESIDUAL = 1.0, 1.0
@@ -36,11 +58,22 @@ class Row:
     def failed(self) -> bool:
         return "reason" in self.result
 
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """``STATIC`` of a scene without excitation, else ``MOVING``."""
+        return STATIC if not self.failed and self.result.get("identification") is None else MOVING
+
     def value(self, quantity: str) -> float | None:
-        """One of ``QUANTITIES`` [N/m]; None where the run has none."""
-        value = self.result.get("identification")
-        for name in QUANTITIES[quantity][1]:
-            value = value.get(name) if isinstance(value, dict) else None
+        """One of ``quantities`` in SI; None where the run has none."""
+        value: Any = self.result
+        for step in (MOVING | STATIC)[quantity].path:
+            value = (
+                value[step]
+                if isinstance(value, list) and isinstance(step, int)
+                else value.get(step)
+                if isinstance(value, dict)
+                else None
+            )
         return value
 
     @property
@@ -66,9 +99,9 @@ class Row:
         return float((self.result.get("error") or {}).get("total") or 0.0)
 
     def error_of(self, quantity: str) -> float:
-        """Relative error of one of ``QUANTITIES``: that of Z over its own size, since m w^2 has none."""
+        """Relative error of a quantity: of K that of Z over its own size, since m w^2 has none; 0 of static ones, solved to rounding."""
         own, z = self.value(quantity), self.value("dynamic_stiffness")
-        return self.error * (z or 0.0) / own if own else 0.0
+        return self.error * (z or 0.0) / own if own and quantity in MOVING else 0.0
 
     @property
     def estimated(self) -> bool:
@@ -80,16 +113,13 @@ class Row:
         """Why the row is left out of the explanation; None when it is not."""
         if self.failed:
             return f"{self.result['status']}: {self.result['reason']}"
-        found = self.result.get("identification")
-        if found is None:
-            return "the scene is static: no stiffness is identified"
-        for quantity, (label, _) in QUANTITIES.items():
-            value = self.value(quantity)
-            if value is None or not math.isfinite(value) or value <= 0.0:
-                return f"{label} is not positive"
-            if self.error_of(quantity) >= MOST_ERROR:
-                return f"the estimated error of {label} is as large as its value"
-        if (found.get("residual") or 0.0) > MOST_RESIDUAL:
+        for name, quantity in self.quantities.items():
+            value = self.value(name)
+            if value is None or not math.isfinite(value) or (value <= 0.0 and quantity.si == "N/m"):
+                return f"{quantity.label} is not positive"
+            if self.error_of(name) >= MOST_ERROR:
+                return f"the estimated error of {quantity.label} is as large as its value"
+        if ((self.result.get("identification") or {}).get("residual") or 0.0) > MOST_RESIDUAL:
             return "the motion is larger at other frequencies than at the excitation's"
         return None
 
@@ -111,16 +141,13 @@ class Findings:
 
     def axis(self, key: str) -> Axis:
         """The axis of a key that was varied."""
-        return next(axis for axis in self.axes if axis.key == key)
+        axes = {axis.key: axis for axis in self.axes}
+        return axes[member("key", key, axes)]
 
-    def settings(self, keys: Sequence[str]) -> list[tuple[dict[str, int], str]]:
-        """All ends (0 first, 1 last) of those axes in ``keys`` that have effects, with words for them."""
-        present = [key for key in keys if any(key in factorial.keys for factorial in self.factorials.values())]
-        found = []
-        for ends in product((0, 1), repeat=len(present)):
-            given = dict(zip(present, ends, strict=True))
-            found.append((given, ", ".join(f"{key} = {shown(self.axis(key).ends[end])}" for key, end in given.items())))
-        return found
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """What is compared: of the first run that gave an answer."""
+        return next((row.quantities for row in self.rows if not row.failed), MOVING)
 
     @property
     def varied(self) -> list[Axis]:
@@ -146,9 +173,10 @@ class Findings:
         keys = tuple(axis.key for axis, end in zip(self.varied, part, strict=True) if end is None)
         corners = self._corners[index]
         found = {}
-        for name in QUANTITIES:
+        for name in self.quantities:
             values, errors = (np.array([of(row, name) for row in corners.flat]) for of in (Row.value, Row.error_of))
-            found[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
+            if (values > 0.0).all():  # x may have either sign: then it has no logarithm
+                found[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
         return found
 
     @cached_property
@@ -195,7 +223,7 @@ class Findings:
                 good = sorted((row for row in rows if row.doubt is None), key=lambda row: row.point[axis.key])
                 if axis.values[0] > axis.values[-1]:
                     good.reverse()
-                for quantity in QUANTITIES:
+                for quantity in self.factorials or self.quantities:
                     found.append({"quantity": quantity, "axis": axis.key, "at": at, **_trend(quantity, good, rows, axis)})
         return found
 
@@ -206,7 +234,11 @@ def _same(a: object, b: object) -> bool:
 
 def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> Tables:
     values = [row.value(quantity) or 0.0 for row in good]
-    reaches = len(good) > 1 and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
+    reaches = (
+        len(good) > 1
+        and min(values) > 0.0
+        and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
+    )
     return {
         "trend": trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown",
         "percent": 100.0 * (values[-1] / values[0] - 1.0) if reaches else None,

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from raceway.commands.progress import ShowProgress, telling
+from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.pipeline.result import write_json
 from raceway.scene.given import plain_tables
@@ -19,6 +20,7 @@ from raceway.studies.compare.study import compare as study
 ROWS, CONTENT = "compare-rows.jsonl", "compare.json"
 
 
+@door
 def compare(
     scene: Any,
     vary: Mapping[str, Any] | Iterable[str],
@@ -75,7 +77,7 @@ def compare(
     with telling(progress) as told:
         found = study(tables, vary, registry, told, None if kept is None else Path(kept))
     if found.fault is not None:
-        warnings.warn(str(found.fault), stacklevel=2)
+        warnings.warn(str(found.fault), stacklevel=3)
     if folder is not None:
         write_json(found.to_dict(), folder / CONTENT)
     return found

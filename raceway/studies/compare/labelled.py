@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.errors import RacewayError, extra
-from raceway.studies.compare.findings import QUANTITIES, Findings
+from raceway.plugins.reports.labelled import labelled_dataset, labels
+from raceway.studies.compare.findings import MOVING, Findings
 from raceway.studies.sweep.dataset import axis_labels
 
 if TYPE_CHECKING:
@@ -22,31 +22,25 @@ def labelled(found: Findings) -> Dataset:
     RacewayError
         xarray is missing.
     """
-    try:
-        import xarray
-    except ImportError as why:
-        raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
     keys = [axis.key for axis in found.axes]
     shape = tuple(len(axis.values) for axis in found.axes)
-    numbers = {name: np.full(shape, np.nan) for name in (*QUANTITIES, "equivalent_stiffness_error", "equivalent_damping")}
+    moving = found.quantities is MOVING
+    extra_words = {
+        "equivalent_stiffness_error": ("N/m", "estimated error of K"),
+        "equivalent_damping": ("N s/m", "C = Im Z / w"),
+    }
+    words = {name: (one.si, one.words) for name, one in found.quantities.items()} | (extra_words if moving else {})
+    numbers = {name: np.full(shape, np.nan) for name in words}
     status = np.full(shape, "waiting", dtype=object)
     for row in found.rows:
         place = tuple(axis.values.index(row.point[axis.key]) for axis in found.axes)
         status[place] = row.result["status"] if row.failed else "done"
-        values = {name: row.value(name) for name in QUANTITIES} | {"equivalent_damping": row.damping}
-        if row.estimated and values["dynamic_stiffness"] is not None:
-            values["equivalent_stiffness_error"] = row.error * values["dynamic_stiffness"]
+        values = {name: row.value(name) for name in found.quantities}
+        if moving:
+            z = values["dynamic_stiffness"] if row.estimated else None
+            values |= {"equivalent_damping": row.damping, "equivalent_stiffness_error": None if z is None else row.error * z}
         for name, value in values.items():
             numbers[name][place] = np.nan if value is None else value
-    words = {
-        "equivalent_stiffness": "K = Re Z + m w^2",
-        "dynamic_stiffness": "size of Z = F/x",
-        "equivalent_stiffness_error": "estimated error of K",
-        "equivalent_damping": "C = Im Z / w",
-    }
-    variables = {
-        name: (keys, values, {"units": "N s/m" if name == "equivalent_damping" else "N/m", "long_name": words[name]})
-        for name, values in numbers.items()
-    }
+    variables = {name: (keys, values, labels(name, *words[name])) for name, values in numbers.items()}
     coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in found.axes}
-    return xarray.Dataset({**variables, "status": (keys, status)}, coordinates, {"title": found.title})
+    return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": found.title})

@@ -1,7 +1,9 @@
-"""The picture of a comparison: K(w) and |Z| as small multiples."""
+"""The picture of a comparison: its quantities as small multiples."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
@@ -11,6 +13,9 @@ import attrs
 from raceway.framework.options import between, option
 from raceway.plugins.reports.pictures import given_axes, new_figure, save_figure
 from raceway.storage.tables import Tables
+from raceway.studies.compare.findings import MOVING, STATIC, Quantity, Row
+from raceway.studies.many.axes import is_number
+from raceway.studies.many.axes import shown as _text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,13 +25,12 @@ if TYPE_CHECKING:
 _COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b")
 _LINES = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)))
 _MARKERS = ("o", "s", "^", "D", "v", "P")
-_LABELS = {"equivalent_stiffness": "K(w)", "dynamic_stiffness": "|Z|"}
 _MOST_COLUMNS = 4
 
 
 @attrs.frozen
 class ComparisonPicture:
-    """K(w) above |Z| over the axis of numbers with most values; without one, a dot for each run.
+    """K(w) above |Z|, of static scenes kxx, kyy and x, over the axis of numbers with most values; without one, a dot for each run.
 
     Columns are the values of the axis that interacts with it most; colour, line and marker those of the next ones.
     """
@@ -56,7 +60,7 @@ def draw(result: Tables) -> Figure:
     """The figure of a comparison."""
     axes = {axis["key"]: axis["values"] for axis in result["axes"]}
     varied = [key for key, values in axes.items() if len(values) > 1]
-    numeric = [key for key in varied if all(_is_number(v) for v in axes[key])]
+    numeric = [key for key in varied if all(is_number(v) for v in axes[key])]
     along = max(numeric, key=lambda key: len(axes[key]), default=None)
     if along is None:
         return _dots(result, varied)
@@ -65,25 +69,33 @@ def draw(result: Tables) -> Figure:
     styles = {key: [_text(v) for v in axes[key]] for key in others if key != column}
     columns = [_text(v) for v in axes[column]] if column else [""]
     figure = new_figure(12.8, 7.6)
-    panels = figure.subplots(2, len(columns), sharex=True, sharey="col", squeeze=False)
+    quantities = quantities_of(result)
+    one_scale = len({about.unit for about in quantities.values()}) == 1
+    panels = figure.subplots(len(quantities), len(columns), sharex=True, sharey="col" if one_scale else "row", squeeze=False)
     for place, value in enumerate(columns):
         rows = [row for row in result["rows"] if column is None or _text(row["point"][column]) == value]
-        low, high = _limits(rows)
-        for quantity, panel in zip(_LABELS, panels[:, place], strict=True):
-            _curves(panel, rows, quantity, along, styles, (low, high))
-            panel.set_ylabel(f"{_LABELS[quantity]}  [N/µm]" if place == 0 else "")
+        for (quantity, about), panel in zip(quantities.items(), panels[:, place], strict=True):
+            _curves(
+                panel,
+                rows,
+                quantity,
+                along,
+                styles,
+                _limits(rows if one_scale else result["rows"], quantities if one_scale else [quantity]),
+            )
+            panel.set_ylabel(f"{about.label}  [{about.unit}]" if place == 0 else "")
         panels[0, place].set_title(f"{column} = {value}" if column else "", fontsize=12)
         panels[-1, place].set_xlabel(along)
-    figure.suptitle(f"K(w) and |Z| over {along}: {result['title']}", fontsize=13)
+    figure.suptitle(f"{_named(quantities)} over {along}: {result['title']}", fontsize=13)
     _legend(figure, styles, any(map(in_doubt, result["rows"])))
     return figure
 
 
 def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
-    """One quantity [N/µm] of a comparison on axes."""
+    """One quantity of a comparison on axes."""
     known = {axis["key"]: axis["values"] for axis in result["axes"]}
     varied = [key for key, values in known.items() if len(values) > 1]
-    along = max((key for key in varied if all(map(_is_number, known[key]))), key=lambda key: len(known[key]), default=None)
+    along = max((key for key in varied if all(map(is_number, known[key]))), key=lambda key: len(known[key]), default=None)
     panel = given_axes(axes, 8.0, 5.0)
     if along is None:
         _dots_on(panel, result["rows"], quantity)
@@ -91,26 +103,42 @@ def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
         panel.set_ylim(len(result["rows"]) - 0.5, -0.5)
         return panel
     styles = {key: [_text(value) for value in known[key]] for key in varied if key != along}
-    _curves(panel, result["rows"], quantity, along, styles, _limits(result["rows"]))
+    quantities = quantities_of(result)
+    _curves(
+        panel,
+        result["rows"],
+        quantity,
+        along,
+        styles,
+        _limits(result["rows"], quantities if quantity in MOVING else [quantity]),
+    )
     panel.set_xlabel(along)
-    panel.set_ylabel(f"{_LABELS[quantity]}  [N/µm]")
+    panel.set_ylabel(f"{quantities[quantity].label}  [{quantities[quantity].unit}]")
     if handles := _handles(styles, any(map(in_doubt, result["rows"]))):
         panel.legend(handles=handles, frameon=False, fontsize=9)
     return panel
 
 
+def quantities_of(result: Tables) -> dict[str, Quantity]:
+    """What was compared."""
+    rows = (Row(row["point"], row["result"]) for row in result["rows"])
+    return next((row.quantities for row in rows if not row.failed), MOVING)
+
+
+def _named(quantities: Iterable[str]) -> str:
+    *labels, last = ((MOVING | STATIC)[name].label for name in quantities)
+    return f"{', '.join(labels)} and {last}"
+
+
 def value_of(row: Tables, quantity: str) -> float | None:
-    """K(w) or |Z| of a row [N/µm]; None where the run gave none."""
-    found = row["result"].get("identification")
-    if found is None:
-        return None
-    value = found["dynamic_stiffness"]["abs"] if quantity == "dynamic_stiffness" else found["equivalent_stiffness"]
-    return None if value is None else value / 1e6
+    """A quantity of a row on the screen's scale; None where the run gave none."""
+    value = Row(row["point"], row["result"]).value(quantity)
+    return None if value is None else (MOVING | STATIC)[quantity].scale * value
 
 
 def in_doubt(row: Tables) -> bool:
     """Whether a row with a number is left out of the explanation."""
-    return row.get("doubt") is not None and value_of(row, "equivalent_stiffness") is not None
+    return row.get("doubt") is not None and "reason" not in row["result"]
 
 
 def _curves(
@@ -121,14 +149,15 @@ def _curves(
     styles: dict[str, list[str]],
     limits: tuple[float, float],
 ) -> None:
-    """One curve for each combination of the styled axes; runs in doubt as crosses, at the edge where they lie outside."""
+    """One curve for each combination of the styled axes, broken where a run failed or is in doubt; those are crosses, at the edge
+    where they lie outside."""
     for combination in product(*styles.values()):
         found = [row for row in rows if all(_text(row["point"][k]) == v for k, v in zip(styles, combination, strict=True))]
-        found = sorted((row for row in found if value_of(row, quantity) is not None), key=lambda row: row["point"][along])
+        found = sorted(found, key=lambda row: row["point"][along])
         look = _look([values.index(text) for values, text in zip(styles.values(), combination, strict=True)])
-        good = [row for row in found if not in_doubt(row)]
         bad = [row for row in found if in_doubt(row)]
-        panel.plot([row["point"][along] for row in good], [value_of(row, quantity) or 0.0 for row in good], **look)
+        good = [math.nan if row.get("doubt") or (v := value_of(row, quantity)) is None else v for row in found]
+        panel.plot([row["point"][along] for row in found], good, **look)
         clipped = [min(max(value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
         (cross,) = panel.plot([row["point"][along] for row in bad], clipped, "x", color=look["color"], clip_on=False)
         cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
@@ -138,10 +167,10 @@ def _curves(
     panel.spines[["top", "right"]].set_visible(False)
 
 
-def _limits(rows: list[Tables]) -> tuple[float, float]:
-    """Range of K(w) and |Z| together, so that both panels of a column have one scale; runs in doubt do not count."""
+def _limits(rows: list[Tables], quantities: Iterable[str]) -> tuple[float, float]:
+    """Range of quantities together, so that panels of a column have one scale; runs in doubt do not count."""
     chosen = [row for row in rows if not in_doubt(row)] or rows
-    values = [v for row in chosen for quantity in _LABELS if (v := value_of(row, quantity)) is not None] or [0.0, 1.0]
+    values = [v for row in chosen for quantity in quantities if (v := value_of(row, quantity)) is not None] or [0.0, 1.0]
     margin = 0.06 * (max(values) - min(values)) or 0.01 * abs(max(values)) or 1.0
     return min(values) - margin, max(values) + margin
 
@@ -184,15 +213,15 @@ def _handles(styles: dict[str, list[str]], doubt: bool) -> list[Line2D]:
 
 
 def _dots(result: Tables, varied: list[str]) -> Figure:
-    """A dot for each run, where no axis has numbers: one line a combination, K(w) and |Z| side by side."""
-    rows = result["rows"]
+    """A dot for each run, where no axis has numbers: one line a combination, the quantities side by side."""
+    rows, quantities = result["rows"], quantities_of(result)
     figure = new_figure(12.8, 2.2 + 0.32 * len(rows))
-    panels = figure.subplots(1, 2, sharey=True)
-    for quantity, panel in zip(_LABELS, panels, strict=True):
+    panels = figure.subplots(1, len(quantities), sharey=True)
+    for quantity, panel in zip(quantities, panels, strict=True):
         _dots_on(panel, rows, quantity)
     panels[0].set_yticks(range(len(rows)), _names(rows, varied))
     panels[0].set_ylim(len(rows) - 0.5, -0.5)
-    figure.suptitle(f"K(w) and |Z|: {result['title']}", fontsize=13)
+    figure.suptitle(f"{_named(quantities)}: {result['title']}", fontsize=13)
     return figure
 
 
@@ -204,7 +233,7 @@ def _dots_on(panel: Axes, rows: list[Tables], quantity: str) -> None:
         else:
             words = row["result"].get("status", "no value")
             panel.annotate(words, (0.02, place), xycoords=("axes fraction", "data"), va="center")
-    panel.set_xlabel(f"{_LABELS[quantity]}  [N/µm]")
+    panel.set_xlabel(f"{(MOVING | STATIC)[quantity].label}  [{(MOVING | STATIC)[quantity].unit}]")
     panel.grid(True, color="#e3e7eb", linewidth=0.8)
     panel.spines[["top", "right"]].set_visible(False)
 
@@ -221,18 +250,8 @@ def _by_interaction(keys: list[str], along: str, effects: list[Tables]) -> list[
         found = [
             abs(e["log_change"])
             for e in effects
-            if e["quantity"] == "equivalent_stiffness" and set(e["term"]) == {key, along}
+            if e["quantity"] in ("equivalent_stiffness", "kxx") and set(e["term"]) == {key, along}
         ]
         return max(found, default=0.0)
 
     return sorted(keys, key=lambda key: -strength(key))
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _text(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -8,22 +8,20 @@ from rich.console import Group, RenderableType
 
 from raceway.commands.screen import Words, rows_table, written
 from raceway.storage.tables import ReadTables
-from raceway.studies.compare.causes import IN_SHORT
 
 
 def compare_screen(
     title: str, rows: Sequence[ReadTables], words: Sequence[str], files: Sequence[str], more: bool = False
 ) -> RenderableType:
-    """What decides, a line for each point, and what causes what in words; without one that decides, all words first.
+    """The effects, the largest first, a line for each point, and the other words.
 
     Parameters
     ----------
     more : whether there are more words than these
     """
-    first = [text for text in words if text.startswith(IN_SHORT)] or words
-    rest = [text for text in words if text not in first]
-    parts: list[RenderableType] = [Words(title, "bold"), *map(Words, first)]
-    parts += [rows_table(rows), *map(Words, rest)]
+    parts: list[RenderableType] = [Words(title, "bold"), *map(Words, words[:1]), rows_table(rows), *map(Words, words[1:])]
     if more:
-        parts.append(Words("interactions, |Z| and inertia in words: raceway compare ... --explain, or compare.json", "dim"))
+        parts.append(
+            Words("all quantities, courses and inertia in words: raceway compare ... --explain, or compare.json", "dim")
+        )
     return Group(*parts, *written(files))

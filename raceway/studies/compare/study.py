@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
@@ -21,9 +21,6 @@ from raceway.studies.many.axes import Axis, points
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.points import axes_of, refuse_mistakes, tables_at
 from raceway.studies.many.row_store import RowStore, row_key, tables_key
-
-if TYPE_CHECKING:
-    pass
 
 
 class StudyInterrupt(KeyboardInterrupt):

@@ -32,11 +32,10 @@ class FitOptions(NamedTuple):
     free: tuple[str, ...]
     scene: Path | None
     changes: tuple[str, ...]
-    mass: float
+    mass: float | None
     slow_roll: Path | None
     run_out: str | None
     columns: tuple[str, ...]
-    posterior: int
     out: Path | None
     pictures: bool
     plugins: tuple[Path, ...]
@@ -53,19 +52,12 @@ class FitOptions(NamedTuple):
     help="Keys that are free; a search begins at the scene's numbers.",
 )
 @click.option("--scene", type=PATH, metavar="SCENE", help="The bearing, with load and speed as in the measurement.")
-@click.option("--mass", type=float, default=0.0, metavar="KG", help="Moving mass of a record of force and displacement [0].")
+@click.option("--mass", type=float, metavar="KG", help="Moving mass of a record of force and displacement; else it is free.")
 @slow_roll_option
 @run_out_option
 @click.option(
     "--map", "columns", multiple=True, metavar='"HEAD=NAME"', help='A column by its head: "Ch 1=K [N/µm]", or =ignore; repeat for more.'
 )  # fmt: skip
-@click.option(
-    "--posterior",
-    type=click.IntRange(0),
-    default=0,
-    metavar="STEPS",
-    help="Also sample the posterior by MCMC (needs emcee) [0].",
-)
 @set_keys
 @out_option(f"{RESULTS}/DATA-fitted")
 @click.option("--pictures/--no-pictures", default=True, help="Draw data, fit, residuals and region as PNG (default).")
@@ -105,7 +97,6 @@ def fit(given: FitOptions) -> int:
             slow_roll=given.slow_roll,
             run_out=run_out,
             columns=columns,
-            posterior=given.posterior,
             plugins=given.plugins,
             progress=progress,
         )

@@ -13,7 +13,7 @@ Seber, Wild, Nonlinear Regression, Wiley 1989, chapters 2 and 3: linearised regi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import attrs
@@ -24,6 +24,8 @@ from raceway.studies.fit.free import Free
 
 #: Probability of intervals and regions.
 CONFIDENCE = 0.95
+#: Half-width of that over the standard error, of a normal distribution.
+NORMAL = 1.959964
 #: Singular value over the largest one that is rounding of derivatives; part of a number in a combination below which it is not told.
 _ROUNDING, _TOLD = 1e-7, 0.1
 #: Relative change of numbers and of the sum of squares that ends the search, and evaluations at most.
@@ -69,14 +71,15 @@ class Estimate:
 
     Attributes
     ----------
-    free, values : (p,);  covariance : (p, p), of the linearised model, along what the data determine
-    reach : half-width at 95 % over the standard error;  half : (p,) half-widths, infinite where the data do not determine a number
+    free, values : (p,);  covariance : (p, p), of the linearised model by noise, along what the data determine
+    reach : half-width at 95 % over the standard error of noise;  half : (p,) half-widths, infinite where the data do not determine a number
     residuals, jacobian : (n,), (n, p), weighted, there
     scatter : root of the sum of squares over the degrees of freedom: 1 where errors are as stated; None without freedom
     widened : factor on stated errors where residuals are too large for them, else 1
     undetermined : combinations;  open : the same by singular vectors (k, p), in the units of the numbers
     at_limit : names of numbers at the end of their range
     evaluations : of the model
+    shifts : cause beside noise -> (k, p), what k independent standard errors of it move the numbers by
     """
 
     free: tuple[Free, ...]
@@ -92,22 +95,40 @@ class Estimate:
     open: np.ndarray
     at_limit: tuple[str, ...]
     evaluations: int
+    shifts: dict[str, np.ndarray] = attrs.field(factory=dict)
 
     @property
     def freedom(self) -> int:
         """Degrees of freedom: data less free numbers."""
         return self.jacobian.shape[0] - self.jacobian.shape[1]
 
-    def half_widths(self, slopes: np.ndarray) -> np.ndarray:
+    @property
+    def parts(self) -> dict[str, np.ndarray]:
+        """Cause -> half-widths at 95 % (p,) by it alone, noise first."""
+        noise = {"noise": self.reach * np.sqrt(np.diag(self.covariance))}
+        return noise | {cause: NORMAL * np.linalg.norm(one, axis=0) for cause, one in self.shifts.items()}
+
+    def with_shifts(self, cause: str, columns: np.ndarray) -> Estimate:
+        """With another cause, whose independent standard errors move the weighted residuals by columns (n, k)."""
+        sizes = np.array([one.size for one in self.free])
+        u, s, v = np.linalg.svd(self.jacobian * sizes, full_matrices=False)
+        inverse = np.divide(1.0, s, out=np.zeros_like(s), where=s > _ROUNDING * s[0])
+        moved = -((columns.T @ u) * inverse @ v)
+        moved = (moved - moved @ (self.open / sizes).T @ (self.open / sizes)) * sizes
+        wider = np.hypot(self.half, NORMAL * np.linalg.norm(moved, axis=0))
+        return attrs.evolve(self, half=wider, shifts={**self.shifts, cause: moved})
+
+    def half_widths(self, slopes: np.ndarray, directly: Mapping[str, np.ndarray] | None = None) -> np.ndarray:
         """Half-widths at 95 % (m,) of numbers whose derivatives by the free ones are given (m, p).
 
-        Notes
-        -----
-        Combinations that the data do not determine count as known to the sizes of the numbers.
+        ``directly``: cause -> (m, k), what its standard errors move them by at the same free numbers.  Combinations that the data do not
+        determine count as known to the sizes of the numbers.
         """
-        known = self.reach**2 * np.einsum("ij,jk,ik->i", slopes, self.covariance, slopes)
-        found: np.ndarray = np.sqrt(np.maximum(known, 0.0) + ((slopes @ self.open.T) ** 2).sum(axis=1))
-        return found
+        squares = self.reach**2 * np.einsum("ij,jk,ik->i", slopes, self.covariance, slopes)
+        squares += ((slopes @ self.open.T) ** 2).sum(axis=1)
+        for cause, one in self.shifts.items():
+            squares += NORMAL**2 * ((slopes @ one.T + (directly or {}).get(cause, 0.0)) ** 2).sum(axis=1)
+        return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
 def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate:
@@ -166,9 +187,15 @@ def _no_derivative(free: Sequence[Free], values: np.ndarray, why: SceneError) ->
 
 
 def judged(
-    free: tuple[Free, ...], values: np.ndarray, residuals: np.ndarray, jacobian: np.ndarray, stated: bool, evaluations: int
-) -> Estimate:
-    """What residuals (n,) and derivatives (n, p) at the least sum of squares tell of the numbers."""
+    free: tuple[Free, ...], values: np.ndarray, residuals: np.ndarray, jacobian: np.ndarray, stated: bool, evaluations: int,
+    scores: np.ndarray | None = None,
+) -> Estimate:  # fmt: skip
+    """What residuals (n,) and derivatives (n, p) at the least sum of squares tell of the numbers.
+
+    Parameters
+    ----------
+    scores : (m, p) of independent groups of residuals that are not alike, derivatives times residuals: they tell the covariance
+    """
     from scipy.stats import chi2, t
 
     n, p = jacobian.shape
@@ -177,13 +204,17 @@ def judged(
     noise, widened = 1.0 if stated else (scatter or 0.0), 1.0
     if stated and scatter is not None and scatter > 1.0 and chi2.sf(squares, freedom) < _UNLIKELY:
         noise = widened = scatter
-    reach = float(t.ppf(0.5 + 0.5 * CONFIDENCE, freedom)) if freedom and noise != 1.0 else 1.959964
+    reach = float(t.ppf(0.5 + 0.5 * CONFIDENCE, freedom)) if freedom and noise != 1.0 else NORMAL
     sizes = np.array([one.size for one in free])
     _, s, directions = np.linalg.svd(jacobian * sizes, full_matrices=False)
     open_ = (s <= _ROUNDING * s[0]) | (reach * noise > s) if s[0] > 0.0 else np.ones(p, bool)
     known = directions[~open_]
     root = known / s[~open_, None]
-    covariance = noise**2 * root.T @ root * np.outer(sizes, sizes)
+    bread = root.T @ root
+    covariance = noise**2 * bread * np.outer(sizes, sizes)
+    if scores is not None:
+        each = scores * sizes @ bread * sizes
+        covariance = each.T @ each
     half = reach * np.sqrt(np.diag(covariance))
     if freedom == 0 and not stated:  # as many data as numbers, errors not stated: nothing tells the scatter
         half[:] = np.inf

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
+from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown, number, number_within
 from raceway.pipeline.result import without_nan, write_json
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
-
-if TYPE_CHECKING:
-    from raceway.studies.fit.posterior import Posterior
 
 
 @attrs.frozen(eq=False)
@@ -63,7 +60,7 @@ class Fitted(Shown):
     title : of the scene or the model;  source : of the data;  kind : "table", "rig" or "record"
     stated : whether errors of the data were stated; else their scatter tells them
     estimate : numbers, covariance, what is not determined;  series : data beside the fit;  derived : K and C of a rig
-    notes : what a reader of the numbers should know;  posterior : by MCMC, where it was asked for
+    notes : what a reader of the numbers should know
 
     Examples
     --------
@@ -82,7 +79,6 @@ class Fitted(Shown):
     series: tuple[Series, ...]
     derived: tuple[Derived, ...] = ()
     notes: tuple[str, ...] = ()
-    posterior: Posterior | None = None
 
     def __getitem__(self, name: str) -> float:
         """A free number, in the unit of its key, or a derived one, in SI."""
@@ -90,7 +86,7 @@ class Fitted(Shown):
 
     def half_width(self, name: str) -> float:
         """Half-width of its interval at 95 %; infinite where the data do not determine it."""
-        return self._found()[name][1]
+        return self._found()[member("name", name, self._found())][1]
 
     @property
     def determined(self) -> bool:
@@ -113,21 +109,19 @@ class Fitted(Shown):
                 f"the model misses the data by {one.widened:.2g} times their stated errors: intervals are that much wider, and the "
                 "model or the errors are wrong"
             )
-        if self.posterior is not None and self.posterior.short:
-            long = f"{self.posterior.steps} steps for an autocorrelation of {self.posterior.correlation:.3g}"
-            out.append(f"the posterior's chain is short, {long}: take more")
         return [*out, *self.notes]
 
     def to_dict(self) -> Tables:
         """Plain tables, as in fit.json."""
         one = self.estimate
+        parts = [dict(zip(one.parts, halves, strict=True)) for halves in np.array([*one.parts.values()]).T.tolist()]
         free = [
             {
                 "key": key.name, "unit": key.unit, "start": key.start, "value": float(value), "error": float(half),
                 "low": float(value - half), "high": float(value + half), "determined": bool(np.isfinite(half)),
-                "at_limit": key.name in one.at_limit,
+                "at_limit": key.name in one.at_limit, "parts": causes,
             }
-            for key, value, half in zip(one.free, one.values, one.half, strict=True)
+            for key, value, half, causes in zip(one.free, one.values, one.half, parts, strict=True)
         ]  # fmt: skip
         content: Tables = {
             "title": self.title,
@@ -136,7 +130,7 @@ class Fitted(Shown):
             "stated": self.stated,
             "confidence": CONFIDENCE,
             "free": free,
-            "covariance": one.covariance.tolist(),
+            "covariance": sum((moved.T @ moved for moved in one.shifts.values()), one.covariance).tolist(),
             "undetermined": [{"changes": c.changes, "moves_standard_errors": c.moves} for c in one.undetermined],
             "derived": [attrs.asdict(each) for each in self.derived],
             "fit": {
@@ -146,8 +140,6 @@ class Fitted(Shown):
             "series": [each.to_dict() for each in self.series],
             "warnings": self.warnings,
         }  # fmt: skip
-        if self.posterior is not None:
-            content["posterior"] = self.posterior.to_dict()
         return dict(without_nan(content))
 
     def save(self, folder: Path) -> Path:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.commands.progress import telling
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.scene.given import as_scene
 from raceway.studies.fit.data import over_time
@@ -15,7 +16,6 @@ from raceway.studies.fit.data import read as read_data
 from raceway.studies.fit.fitted import Fitted
 from raceway.studies.fit.kinds import of_record, of_rig, of_table
 from raceway.studies.fit.observed import observed
-from raceway.studies.fit.posterior import require_emcee
 from raceway.studies.measured.from_files import roll_of
 from raceway.studies.measured.run_out import given
 from raceway.studies.measured.signals import signals_of
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from raceway.commands.progress import ShowProgress
 
 
+@door
 def fit(
     data: Any,
     scene: Any = None,
     free: Iterable[str] | str = (),
     *,
-    mass: float = 0.0,
+    mass: float | None = None,
     slow_roll: Any = None,
     run_out: tuple[float, float] | None = None,
     columns: Mapping[str, str] | None = None,
-    posterior: int = 0,
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> Fitted:
@@ -46,10 +46,9 @@ def fit(
         or a record of force and displacement, ``time_s, force_n, x_um``, of one axis or two
     scene : Scene, path, TOML text or dict of tables; with a table ``rig`` for signals; None for a record of force and displacement
     free : keys such as "bearing.contact_angle_deg", a search begins at the scene's numbers; of a record "K", "C", "mass"
-    mass : that moves with a record's displacement, where it is not free [kg]
+    mass : that moves with a record's displacement, where it is known [kg]; None: it is free
     slow_roll, run_out : of a rig's signals, as ``identify`` takes them
     columns : head -> what it is taken for, or "ignore"
-    posterior : steps of each walker of a posterior by MCMC, which needs the package emcee; 0: none
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
@@ -62,8 +61,6 @@ def fit(
     ------
     SceneError
         What is wrong with data, keys or scene.
-    RacewayError
-        emcee is missing.
     ConvergenceError
         The scene has no answer where the search begins, or the search finds no end.
 
@@ -75,10 +72,8 @@ def fit(
     >>> found.determined, found.estimate.freedom
     (True, 2)
     """
-    names = [part for word in ([free] if isinstance(free, str) else free) for part in word.split(",")]
+    names = [part for word in free for part in word.split(",")]
     registry = registry_with(plugins)
-    if posterior:
-        require_emcee()
     with telling(progress) as told:
         told("reading", 0, 2)
         record = signals_of(data, columns) if over_time(data, columns) else None
@@ -91,21 +86,16 @@ def fit(
             refuse(
                 slow_roll is not None or run_out is not None, "slow roll", "belongs to the signals of a rig, without a force"
             )
-            refuse(
-                posterior != 0,
-                "posterior",
-                "is offered for keys of a scene: a linear model's region is the one that is told",
-            )
             told("searching", 1, 2)
             return of_record(record, names, mass)
-        refuse(mass != 0.0, "mass", "belongs to a record of force and displacement; a scene has its own")
+        refuse(mass is not None, "mass", "belongs to a record of force and displacement; a scene has its own")
         refuse(scene is None, "scene", "is missing: give --scene, whose answers the data are fitted by")
         read = as_scene(scene, plugins=plugins)
         if record is not None:
             roll = roll_of(None if slow_roll is None else signals_of(slow_roll, columns))
             told("searching", 1, 2)
             known = None if run_out is None else given(*run_out)
-            return of_rig(record, read, names, registry, known, roll, posterior, told)
+            return of_rig(record, read, names, registry, known, roll)
         refuse(
             slow_roll is not None or run_out is not None,
             "slow roll",
@@ -113,7 +103,7 @@ def fit(
         )
         table, source = read_data(data)
         told("searching", 1, 2)
-        return of_table(observed(table, source, read, columns), read, names, posterior, told)
+        return of_table(observed(table, source, read, columns), read, names)
 
 
 def refuse(wrong: bool, path: str, why: str) -> None:

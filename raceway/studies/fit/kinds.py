@@ -6,7 +6,6 @@ import numpy as np
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry
-from raceway.pipeline.simulate import OnProgress
 from raceway.scene.continuous import continuous_keys
 from raceway.scene.reading import rig_of
 from raceway.scene.scene import Scene
@@ -15,7 +14,6 @@ from raceway.studies.fit.fitted import Derived, Fitted, Series
 from raceway.studies.fit.free import free_keys
 from raceway.studies.fit.linear import Linear, fit_lines, free_parts, lines_of
 from raceway.studies.fit.observed import MEASURED, Observed, refuse_few
-from raceway.studies.fit.posterior import posterior
 from raceway.studies.fit.predicted import Predicted
 from raceway.studies.fit.rig_line import RigLine, refuse_across
 from raceway.studies.measured.orders import Order
@@ -26,19 +24,12 @@ from raceway.studies.measured.signals import Signals
 #: Words of keys by which a bearing is damped: without a free one C is the scene's, not the signals'.
 _DAMPING = ("damping", "time_constant", "loss_factor")
 
-#: Part of a record's force that a model may leave; what to do about more.
+#: Part of a record's force that a model may leave.
 _LEFT = 0.1
-_LEFT_OVER = "free C or mass, too, give --mass, or cut the record to frequencies below the next resonance"
 
 
-def of_table(
-    data: Observed, scene: Scene, names: list[str], steps: int = 0, on_progress: OnProgress | None = None
-) -> Fitted:
+def of_table(data: Observed, scene: Scene, names: list[str]) -> Fitted:
     """Free keys of a scene from a table.
-
-    Parameters
-    ----------
-    steps : of a posterior; 0: none
 
     Raises
     ------
@@ -49,21 +40,23 @@ def of_table(
     refuse_few(sum(len(one) for one in data.values.values()), len(free), data.source)
     problem = Predicted.of(data, scene, free)
     found = estimate(problem, free, data.stated)
-    series = tuple(_series(data, problem, found))
-    sampled = posterior(problem, found, data.stated, steps, on_progress=on_progress) if steps else None
-    return Fitted(scene.title, data.source, "table", data.stated, found, series, (), (), sampled)
+    fitted = problem.fitted(found.values)
+    causes, left_out = problem.uncertain()
+    notes = (*problem.notes(), *left_out)
+    for cause, columns in causes.items():
+        found = found.with_shifts(cause, columns)
+    series = tuple(_series(data, problem, found, fitted, causes))
+    return Fitted(scene.title, data.source, "table", data.stated, found, series, (), notes)
 
 
 def of_rig(
-    signals: Signals, scene: Scene, names: list[str], registry: Registry, known: RunOut | None, roll: Order | None, steps: int = 0,
-    on_progress: OnProgress | None = None,
-) -> Fitted:  # fmt: skip
+    signals: Signals, scene: Scene, names: list[str], registry: Registry, known: RunOut | None, roll: Order | None
+) -> Fitted:
     """Free keys of a scene from the signals of its rig.
 
     Parameters
     ----------
     known : run-out, or None;  roll : 1x line of a slow roll, or None
-    steps : of a posterior; 0: none
 
     Raises
     ------
@@ -84,30 +77,33 @@ def of_rig(
     problem.residuals(found.values)
     state, line = problem.state, problem.line
     assert state is not None
-    halves = found.half_widths(problem.slopes)
+    causes = problem.uncertain(found.values)
+    for cause, (column, _, _) in causes.items():
+        found = found.with_shifts(cause, column[:, None])
+    halves = found.half_widths(problem.slopes, {cause: slopes[:, None] for cause, (_, slopes, _) in causes.items()})
     derived = [Derived("K", "N/m", state.stiffness, float(halves[0]))]
     if problem.found.marked and any(word in one.name for one in free for word in _DAMPING):
         derived.append(Derived("C", "N s/m", state.damping, float(halves[1])))
     parts = [("real", np.real), ("imaginary", np.imag)][: problem.count]
     seen, fitted = (line, state.sensor) if problem.found.marked else (abs(line), abs(state.sensor))
     slopes = np.array([part(problem.line_slopes) for _, part in parts])
+    directly = {cause: np.array([[part(line)] for _, part in parts]) for cause, (_, _, line) in causes.items()}
     series = Series(
         f"line at the sensor ({' and '.join(name for name, _ in parts)} part)", "m", "part", "", np.arange(1.0, len(parts) + 1.0),
         np.array([part(seen) for _, part in parts]), np.array([part(fitted) for _, part in parts]),
-        np.full(len(parts), found.widened * problem.errors[0]), found.half_widths(slopes),
+        np.full(len(parts), found.widened * problem.errors[0]), found.half_widths(slopes, directly),
     )  # fmt: skip
     speed = problem.found.speed * 30.0 / np.pi
     title, notes = f"{scene.title}, {speed:.1f} r/min", problem.notes()
-    sampled = posterior(problem, found, True, steps, on_progress=on_progress) if steps else None
-    return Fitted(title, signals.source, "rig", True, found, (series,), tuple(derived), notes, sampled)
+    return Fitted(title, signals.source, "rig", True, found, (series,), tuple(derived), notes)
 
 
-def of_record(signals: Signals, names: list[str], mass: float) -> Fitted:
+def of_record(signals: Signals, names: list[str], mass: float | None) -> Fitted:
     """K, C and mass of a linear model from a record of force and displacement.
 
     Parameters
     ----------
-    mass : where it is not free [kg]
+    mass : where it is not free [kg]; None: it is free, named or not
 
     Raises
     ------
@@ -116,15 +112,26 @@ def of_record(signals: Signals, names: list[str], mass: float) -> Fitted:
     ConvergenceError
         The search finds no end.
     """
-    if not (np.isfinite(mass) and mass >= 0.0):
+    if mass is not None and mass < 0.0:
         raise SceneError.at("mass", mass, "must be at least 0 kg")
     lines = lines_of(signals)
     free = free_parts(names, lines, mass)
     refuse_few(2 * lines.force.size, len(free) + len(lines.axes), signals.source)
-    found, model = fit_lines(lines, free, mass)
+    found, model = fit_lines(lines, free, mass or 0.0)
     title = f"F = K x + C x' + m x'', {lines.omega[0] / 2.0 / np.pi:.4g} to {lines.omega[-1] / 2.0 / np.pi:.4g} Hz"
-    left = float(np.linalg.norm(model.rest) / np.linalg.norm(lines.force))
-    notes = [f"the model leaves {100.0 * left:.2g} % of the force (root mean square): {_LEFT_OVER}"] if left > _LEFT else []
+    words = {one.name.rstrip("yz").replace("k", "K").replace("c", "C") for one in free}
+    notes = []
+    if mass is None and not any("mass" in name for name in names):
+        notes.append("mass was neither free nor given: it is free, too. --mass gives it; --mass 0 where nothing moves along")
+    if absent := [word for word in ("K", "C") if word not in words]:
+        notes.append(f"{' and '.join(absent)} is not free: taken as 0")
+    notes += model.remarks
+    there = model.excited
+    left = float(np.linalg.norm(model.rest[there]) / np.linalg.norm(lines.force[there]))
+    if left > _LEFT:
+        more = [f"free {word}" for word in [*absent, *(["mass"] if mass is not None else [])]]
+        remedy = " or ".join([*more, "cut the record to frequencies below the next resonance"])
+        notes.append(f"the model leaves {100.0 * left:.2g} % of the force (root mean square): {remedy}")
     for one, value, half in zip(found.free, found.values, found.half, strict=True):
         if one.name in ("K", "mass", "kyy", "kzz") and value + half < 0.0:
             notes.append(
@@ -134,25 +141,31 @@ def of_record(signals: Signals, names: list[str], mass: float) -> Fitted:
 
 
 def _spectra(model: Linear, found: Estimate) -> list[Series]:
-    """Sizes of the force's lines beside the model's, an axis each."""
-    lines = model.lines
-    error = np.sqrt(0.5 * model.variance(found.values))
-    apart = model.rest
-    return [
-        Series(
-            f"force along {axis}", "N", "frequency", "Hz", lines.omega / 2.0 / np.pi, np.abs(lines.force[:, k]),
-            np.abs(lines.force[:, k] + apart[:, k]), error[:, k], 0.0 * error[:, k],
-        )
-        for k, axis in enumerate(lines.axes)
-    ]  # fmt: skip
+    """Real and imaginary part of F / x over frequency beside the model's, an axis each, at lines where there is force.
+
+    Of two axes the force that moves the other one is taken off, and so is what beginning and end of the record add.
+    """
+    lines, there = model.lines, model.excited
+    hz, out = lines.omega[there] / 2.0 / np.pi, []
+    stiffness, slopes = model.stiffness(found.values)[there], model.slopes[there]
+    for k, axis in enumerate(lines.axes):
+        moved = lines.displacement[there, k]
+        measured = stiffness[:, k, k] - model.rest[there, k] / moved
+        error = np.sqrt(0.5 * model.variance(found.values)[there, k]) / np.abs(moved)
+        for word, part in (("real", np.real), ("imaginary", np.imag)):
+            name, band = f"F / x along {axis}, {word} part", found.half_widths(part(slopes[:, k, k]))
+            fitted = part(stiffness[:, k, k])
+            out.append(Series(name, "N/m", "frequency", "Hz", hz, part(measured), fitted, error, band))
+    return out
 
 
-def _series(data: Observed, problem: Predicted, found: Estimate) -> list[Series]:
-    fitted = problem.fitted(found.values)
+def _series(
+    data: Observed, problem: Predicted, found: Estimate, fitted: dict[str, np.ndarray], causes: dict[str, np.ndarray]
+) -> list[Series]:
     key = next((path for path, numbers in data.keys.items() if np.ptp(numbers) > 0.0), None)
     count = len(next(iter(data.values.values())))
     x = data.keys[key] if key else np.arange(1.0, count + 1.0)
-    band = found.half_widths(found.jacobian).reshape(-1, count)
+    band = found.half_widths(found.jacobian, causes).reshape(-1, count)
     units = {one.path: one.unit for one in continuous_keys(problem.scenes[0])}
     noise = found.widened if data.stated else (found.scatter or 0.0)
     return [

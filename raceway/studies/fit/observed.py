@@ -10,6 +10,7 @@ import numpy as np
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
+from raceway.framework.shown import read_in
 from raceway.pipeline.gradient.quantities import UNITS
 from raceway.scene.continuous import Key, continuous_keys, with_number
 from raceway.scene.scene import Scene
@@ -129,6 +130,10 @@ def columns_of(header: Sequence[str], scene: Scene, heads: Mapping[str, str] | N
         raise ValueError(
             f"no measured quantity among {', '.join(map(repr, header))}: name one of {', '.join(MEASURED)}, such as K [N/µm]"
         )
+    if "kyy_tilts_follow" in values and scene.supports.tilt == "locked":
+        raise ValueError(
+            "kyy_tilts_follow is none of a scene with supports.tilt = 'locked': name it kyy, or let the tilts follow"
+        )
     if lonely := next((one.name for one in columns if one.kind == "error" and one.name not in values), None):
         raise ValueError(f"'{lonely} error' has no column {lonely} beside it")
     return columns
@@ -139,10 +144,10 @@ def _column(text: str, head: str, keys: Mapping[str, Key]) -> Column:
         return Column(IGNORE, head, 0.0)
     match = _HEAD.match(text)
     name, unit = (match["name"], match["unit"]) if match else (text, None)
-    base, _, word = name.partition(" ")
-    if base in MEASURED and word in ("", "error"):
+    base, word = "_".join(name.removesuffix(" error").split()), name.endswith(" error")
+    if base in MEASURED:
         if not unit:
-            raise ValueError(f"'{head}' has no unit: write {name} [{_usual(MEASURED[base])}]")
+            raise ValueError(f"'{head}' has no unit: write {name} [{read_in(1.0, MEASURED[base])[1]}]")
         return Column("error" if word else "value", base, _factor(head, MEASURED[base], unit))
     path = _path(name, keys)
     if path is None:
@@ -169,10 +174,6 @@ def _factor(head: str, unit: str, given: str) -> float:
         return number_in(unit, f"1 {given}")
     except ValueError as why:
         raise ValueError(f"'{head}': {why}") from None
-
-
-def _usual(unit: str) -> str:
-    return {"N/m": "N/µm", "m": "µm"}.get(unit, unit)
 
 
 def _taken(table: NumberTable, columns: Sequence[Column]) -> Observed:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _DATA, _FIT, _REGION = "#17202b", "#0b5fa5", "#c8501e"
 #: Factor and unit of quantities in pictures; columns of panels at most, errors of residuals that are marked.
 _UNITS = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm")}
-_MOST, _MARKED = 3, 2.0
+_MOST, _MARKED = 4, 2.0
 
 
 def draw(content: ReadTables) -> Figure:
@@ -63,7 +63,7 @@ def _residuals(panel: Axes, one: ReadTables) -> None:
 
 
 def _region(panel: Axes, content: ReadTables) -> None:
-    """The ellipse of two numbers at 95 %; of one number its interval; samples of the posterior where there are some."""
+    """The ellipse of two numbers at 95 %; of one number its interval."""
     known = [k for k, one in enumerate(content["free"]) if one["determined"]][:2]
     panel.set_title("confidence region, 95 %", fontsize=10)
     if not known:
@@ -79,13 +79,9 @@ def _region(panel: Axes, content: ReadTables) -> None:
         panel.set_axis_off()
         return
     free = [content["free"][k] for k in known]
-    samples = np.array(content.get("posterior", {}).get("samples", np.empty((0, len(content["free"])))))[:, known]
     if len(known) == 1:
         (one,) = free
         panel.errorbar([one["value"]], [0.0], xerr=[one["error"]], fmt="o", color=_REGION, capsize=4)
-        if len(samples):
-            heights, edges = np.histogram(samples[:, 0], 24)
-            panel.stairs(heights / heights.max(), edges, color=_FIT)
         panel.set_yticks([])
         panel.set_ylim(-0.4, 1.1)
     else:
@@ -95,8 +91,6 @@ def _region(panel: Axes, content: ReadTables) -> None:
         circle = np.linspace(0.0, 2.0 * np.pi, 181)
         path = vectors @ (np.sqrt(np.maximum(s, 0.0))[:, None] * size * np.array([np.cos(circle), np.sin(circle)]))
         path = path * np.sqrt(np.diag(covariance))[:, None] + np.array([[one["value"]] for one in free])
-        if len(samples):
-            panel.plot(samples[:, 0], samples[:, 1], ".", ms=1.5, color="#8793a0", alpha=0.5)
         panel.plot(path[0], path[1], color=_REGION)
         panel.plot([free[0]["value"]], [free[1]["value"]], "o", ms=4, color=_REGION)
         panel.set_ylabel(_label(free[1]), fontsize=9)

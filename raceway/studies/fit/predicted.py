@@ -11,7 +11,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.errors import SceneError
 from raceway.pipeline.gradient.gradients import Gradient, Gradients
-from raceway.pipeline.gradient.quantities import derivatives, values
+from raceway.pipeline.gradient.quantities import definitions, derivatives, values
 from raceway.pipeline.gradient.statics import static_gradient
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.pipeline.settle import settle
@@ -20,6 +20,7 @@ from raceway.scene.continuous import key_of, with_number
 from raceway.scene.scene import Scene
 from raceway.studies.fit.free import Free
 from raceway.studies.fit.observed import MEASURED, Observed
+from raceway.studies.fit.uncertain import uncertain
 
 #: Quantities of a motion, which need its orbit; place of displacements in the coordinates at rest.
 _MOTION, _PLACES = ("K", "C", "amplitude"), {"y": 1, "z": 2}
@@ -69,12 +70,28 @@ class Predicted:
         return {name: np.array([row[name] for row in rows]) for name in self.observed.values}
 
     def jacobian(self, at: np.ndarray) -> np.ndarray:
-        columns = []
-        for one in self.free:
-            gradients = [self._gradient(answer, one.name) for answer in self._answers]
-            rows = [self._derivatives(a, g) for a, g in zip(self._answers, gradients, strict=True)]
-            columns.append(self._weighted({name: np.array([row[name] for row in rows]) for name in self.observed.values}))
-        return np.column_stack(columns)
+        return np.column_stack([self._column(one.name) for one in self.free])
+
+    def uncertain(self) -> tuple[dict[str, np.ndarray], list[str]]:
+        """Cause -> what a standard error of it moves the residuals by (n, 1), at the last numbers; what is left out of them."""
+        names, keys = [one.name for one in self.free], tuple(self.observed.keys)
+        found, left_out = {}, []
+        rows = [uncertain(one, names, keys) for one in self.scenes]  # a range in per cent is that of each row's number
+        for same in zip(*rows, strict=True):
+            try:
+                parts = [self._column(path, [one.sizes[path] for one in same]) for path in same[0].sizes]
+            except SceneError as why:
+                left_out.append(f"what {same[0].cause} may be off by is no part of the intervals: {why.mistakes[0].message}")
+            else:
+                found[same[0].cause] = np.sum(parts, axis=0)[:, None]
+        return found, left_out
+
+    def _column(self, path: str, sizes: Sequence[float] | None = None) -> np.ndarray:
+        """Derivatives of the weighted residuals by a key, times a size a row."""
+        gradients = [self._gradient(answer, path) for answer in self._answers]
+        rows = [self._derivatives(a, g) for a, g in zip(self._answers, gradients, strict=True)]
+        factors = np.ones(len(rows)) if sizes is None else np.array(sizes)
+        return self._weighted({name: factors * [row[name] for row in rows] for name in self.observed.values})
 
     def _answer(self, scene: Scene, at: np.ndarray) -> Gradients:
         for one, value in zip(self.free, at, strict=True):
@@ -93,6 +110,12 @@ class Predicted:
                 lacking, None, f"[{MEASURED[lacking]}] is no number that this scene has: its motion has too little of it"
             )
         return found
+
+    def notes(self) -> tuple[str, ...]:
+        """What the measured numbers are taken for, where their names may mean another thing to who measured."""
+        model, words = self._answers[0].model, definitions(self._answers[0].model, self._answers[0].equilibrium)
+        names = ["largest_ball_load", *(["kyy"] if model.scene.supports.tilt != "locked" else [])]
+        return tuple(f"{name} is taken as {words[name]}" for name in names if name in self.observed.values)
 
     @property
     def _moving(self) -> bool:

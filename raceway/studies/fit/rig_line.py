@@ -17,11 +17,12 @@ import numpy as np
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
-from raceway.scene.continuous import with_number
+from raceway.scene.continuous import key_of, with_number
 from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
 from raceway.studies.fit.free import Free
 from raceway.studies.fit.observed import COVERAGE
+from raceway.studies.fit.uncertain import uncertain
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.from_files import refuse_no_load
 from raceway.studies.measured.identify import seen
@@ -94,25 +95,36 @@ class RigLine:
         return self._whitened(self.state.sensor if self.found.marked else abs(self.state.sensor), self.line)
 
     def jacobian(self, at: np.ndarray) -> np.ndarray:
-        columns, slopes, lines = [], [], []
-        kept = self.state, self.line, self.errors
-        for k, one in enumerate(self.free):
-            step = _STEP * one.size
-            ends = []
-            for sign in (-1.0, 1.0):
-                moved = at.copy()
-                moved[k] += sign * step
-                state = self._balanced(moved)
-                ends.append((state, self.line))
-            self.state, self.line, self.errors = kept
-            (less, under), (more, over) = ends
-            change = [state.sensor if self.found.marked else abs(state.sensor) for state in (less, more)]
-            # Of the run-out, too: what the unbalance does in a slow roll depends on the bearing.
-            columns.append(self._whitened(change[1] - over, change[0] - under) / (2.0 * step))
-            slopes.append([(more.stiffness - less.stiffness) / (2.0 * step), (more.damping - less.damping) / (2.0 * step)])
-            lines.append((change[1] - change[0]) / (2.0 * step))
+        steps = [_STEP * one.size * along for one, along in zip(self.free, np.eye(len(at)), strict=True)]
+        found = [self._difference((self.scene, at - step), (self.scene, at + step), 2.0 * step.sum()) for step in steps]
+        columns, slopes, lines = zip(*found, strict=True)
         self.slopes, self.line_slopes = np.array(slopes).T, np.array(lines)
         return np.column_stack(columns)
+
+    def uncertain(self, at: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray, complex]]:
+        """Cause -> what a standard error of it moves residuals (n,), K and C (2,) and the line by."""
+        found = {}
+        for one in uncertain(self.scene, [key.name for key in self.free]):
+            path, size = next(iter(one.sizes.items()))
+            step = min(_STEP * abs(key_of(self.scene, path).value) / size or 1.0, 1.0)
+            before, after = ((one.moved(self.scene, sign * step), at) for sign in (-1.0, 1.0))
+            found[one.cause] = self._difference(before, after, 2.0 * step)
+        return found
+
+    def _difference(
+        self, before: tuple[Scene, np.ndarray], after: tuple[Scene, np.ndarray], over: float
+    ) -> tuple[np.ndarray, np.ndarray, complex]:
+        """Of residuals (n,), of K and C (2,) and of the line between two scenes with numbers, over a step."""
+        kept, ends = (self.state, self.line, self.errors), []
+        for scene, at in (before, after):
+            state = self._balanced(at, scene)
+            ends.append((state, self.line, state.sensor if self.found.marked else abs(state.sensor)))
+        self.state, self.line, self.errors = kept
+        (less, under, low), (more, line, high) = ends
+        # Of the run-out, too: what the unbalance does in a slow roll depends on the bearing.
+        column = self._whitened(high - line, low - under) / over
+        slopes = np.array([more.stiffness - less.stiffness, more.damping - less.damping]) / over
+        return column, slopes, (high - low) / over
 
     def notes(self) -> tuple[str, ...]:
         """What a reader of the numbers should know."""
@@ -131,9 +143,9 @@ class RigLine:
         along, across = self.errors
         return np.array([apart.real / along, apart.imag / across][: self.count])
 
-    def _balanced(self, at: np.ndarray) -> State:
+    def _balanced(self, at: np.ndarray, scene: Scene | None = None) -> State:
         """State of the rig with a bearing of such numbers; the line and its errors, less the run-out that it leaves."""
-        scene = self.scene
+        scene = scene or self.scene
         for one, value in zip(self.free, at, strict=True):
             try:
                 scene = with_number(scene, one.name, float(value))

@@ -9,6 +9,9 @@ from raceway.framework.shown import number, number_within
 from raceway.storage.tables import ReadTables
 from raceway.studies.fit.fitted import in_units
 
+#: Part of a half-width below which a cause of it is not shown.
+_SMALL = 0.02
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
@@ -24,6 +27,8 @@ def fit_screen(content: ReadTables, files: list[str]) -> RenderableType:
         row = {"free": one["key"], "from": start, "found": number(value, unit, 4), "at 95 %": "not determined"}
         if one["determined"]:
             row |= {"found": number_within(value, half, unit), "at 95 %": f"± {number(half, unit, 2)}"}
+            if len(one["parts"]) > 1:
+                row["of which"] = _parts(one)
         rows.append(row)
     for one in content["derived"]:
         row = {"free": one["name"], "from": "", "found": "", "at 95 %": "not determined"}
@@ -31,21 +36,19 @@ def fit_screen(content: ReadTables, files: list[str]) -> RenderableType:
             value, half, unit = in_units(one["value"], one["half"], one["unit"])
             row |= {"found": number_within(value, half, unit), "at 95 %": f"± {number(half, unit, 2)}"}
         rows.append(row)
-    for name, one in content.get("posterior", {}).get("numbers", {}).items():
-        rows.append(
-            {
-                "free": f"{name}, MCMC",
-                "from": "",
-                "found": number(one["median"], one["unit"], 5),
-                "at 95 %": f"{one['low']:.5g} to {one['high']:.5g}",
-            }
-        )
     fit = content["fit"]
     words = f"{fit['data']} data, {len(content['free'])} free, {fit['evaluations']} evaluations"
     if fit["scatter"] is not None and content["kind"] != "record":
         words += f"; {_scatter(content)}"
     lines = [Words(words), *(Words(text, "yellow") for text in content["warnings"])]
     return Group(rows_table(rows, f"{content['title']}\nfitted to {content['file']}"), *lines, *written(files))
+
+
+def _parts(one: ReadTables) -> str:
+    """Half-widths by cause, the larger ones first."""
+    parts = sorted(one["parts"].items(), key=lambda part: -part[1])
+    shown = [(cause, in_units(0.0, half, one["unit"])) for cause, half in parts if half > _SMALL * one["error"]]
+    return ", ".join(f"{cause} {number(half, unit, 2)}" for cause, (_, half, unit) in shown)
 
 
 def _scatter(content: ReadTables) -> str:

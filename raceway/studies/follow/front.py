@@ -8,6 +8,7 @@ from typing import Any
 
 from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.scene.changes import parse_value, with_value
 from raceway.scene.continuous import key_of
@@ -25,6 +26,7 @@ POINTS, AIM = 1000, 1e-3
 _FORM = "must have the form table.key=first:last, for instance excitation.speed_rpm=500:30000"
 
 
+@door
 def follow(
     scene: Any,
     over: str,
@@ -85,7 +87,7 @@ def follow(
     >>> [label.kind for label in found.labels], found.rows[-1].verdict
     ([], 'stable')
     """
-    registry = registry_with([Path(one) for one in plugins])
+    registry = registry_with(plugins)
     tables = plain_tables(scene, *changes, registry=registry)
     parameter = parameter_of(tables, over, registry)
     try:

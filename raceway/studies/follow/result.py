@@ -10,6 +10,7 @@ from pathlib import Path
 import attrs
 
 from raceway.core.periodic.branch import Point
+from raceway.framework.doors import door
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.follow.instead import Instead
@@ -106,6 +107,7 @@ class Followed:
             "doubled": [one.to_dict() for one in self.doubled],
         }
 
+    @door
     def write(self, folder: str | Path, picture: bool = True) -> list[Path]:
         """Write follow.json, follow.csv and follow.png; the folder is made when it is missing.
 

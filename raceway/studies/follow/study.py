@@ -61,7 +61,7 @@ def follow(parameter: Parameter, rule: Rule, on_progress: OnProgress | None = No
         On Ctrl-C, with the orbits so far.
     """
     model, equilibrium = parameter.settled(parameter.first)
-    q, tangent, mass = equilibrium.displacement, equilibrium.stiffness, model.mass_used
+    q, tangent, mass = equilibrium.displacement, equilibrium.stiffness_rows_held, model.mass_used
     try:
         end = parameter.settled(parameter.last)[1]
     except ConvergenceError as why:
@@ -73,7 +73,7 @@ def follow(parameter: Parameter, rule: Rule, on_progress: OnProgress | None = No
     first = _first(problem, q, tangent)
     unit = abs(parameter.last - parameter.first) / 10.0
     last = parameter.problem_at(parameter.last, symmetry)
-    squares = [(highest_order(at, k) * at.speed) ** 2 for at, k in ((problem, tangent), (last, end.stiffness))]
+    squares = [(highest_order(at, k) * at.speed) ** 2 for at, k in ((problem, tangent), (last, end.stiffness_rows_held))]
 
     def fastest(p: float) -> float:
         """Highest natural frequency [rad/s]: its square is linear in a stiffness."""

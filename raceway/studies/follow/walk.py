@@ -16,7 +16,7 @@ from raceway.core.periodic.special import located, special_points
 from raceway.errors import ConvergenceError
 from raceway.studies.follow.parameter import Parameter
 from raceway.studies.follow.result import OPENS, PEAK, Followed, Label
-from raceway.studies.follow.row import growth_of_swing, openness, row_of
+from raceway.studies.follow.row import Row, growth_of_swing, openness, resonance, row_of
 
 #: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
 ERROR, _LOST = 1e-6, 1e-3
@@ -54,7 +54,7 @@ class Walk:
 
     def _go(self, here: Point, size: float, on_progress: OnProgress | None, closed: Callable[[Point], bool] | None) -> None:
         curve, least = self.curve, 1e-6 * size
-        self._tell(here)
+        self._tell(here, row_of(here, self.arc, self.mass))
         while len(curve.rows) < self.points:
             if on_progress is not None:
                 on_progress("orbits", len(curve.rows), self.points)
@@ -63,24 +63,26 @@ class Walk:
                 if there.strayed > _STRAYED * size:
                     raise ConvergenceError("the branch bends too much for the step")
                 there, size, end = self._within(here, there, size)
+                row = row_of(there, self.arc + size, self.mass)
             except ConvergenceError as why:
                 size *= 0.5
                 if size < least:
                     if not self._at_the_last(here):
-                        curve.end = f"the branch ends at {here.parameter:.6g}: {why}"
+                        curve.end = f"the branch ends at {here.parameter:.6g}: {why}{resonance(here.solved)}"
                     return
                 continue
             if closed is not None and closed(there):
                 return
             self._between(here, there, size)
             self.arc += size
-            self._tell(there)
+            self._tell(there, row)
             if there.error > _LOST:
                 curve.end = (
                     f"left at {there.parameter:.6g}: no mesh follows the orbit closer than {there.error:.1e} of its size"
                 )
                 if curve.rows[-1].lost:
                     curve.end += f" where up to {curve.rows[-1].lost} balls lose their inner race at once"
+                curve.end += resonance(there.solved)
                 return
             if end is not None:
                 curve.end = "" if end == self.parameter.last else f"the branch comes back to {end:.6g}"
@@ -102,7 +104,7 @@ class Walk:
         except ConvergenceError:
             return False
         self.arc += abs(gap) / self.branch.unit
-        self._tell(there)
+        self._tell(there, row_of(there, self.arc, self.mass))
         return True
 
     def _within(self, one: Point, two: Point, size: float) -> tuple[Point, float, float | None]:
@@ -112,8 +114,8 @@ class Walk:
                 return *located(self.branch, one, two, size, _reached(end)), end
         return two, size, None
 
-    def _tell(self, point: Point) -> None:
-        row, before = row_of(point, self.arc, self.mass), self.curve.rows[-1] if self.curve.rows else None
+    def _tell(self, point: Point, row: Row) -> None:
+        before = self.curve.rows[-1] if self.curve.rows else None
         self.curve.rows.append(row)
         if row.verdict == "unstable":
             worst = self.curve.worst

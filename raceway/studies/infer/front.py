@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.scene.units import number_in
 from raceway.studies.infer.infer import infer_printed
 from raceway.studies.infer.inferred import Inferred
@@ -14,6 +15,7 @@ from raceway.studies.infer.printed import PairStiffness, Printed, Rating
 Quantity = float | str
 
 
+@door
 def infer(
     bore: Quantity,
     outer_diameter: Quantity,
@@ -61,11 +63,11 @@ def infer(
         outer_diameter=quantity("outer diameter", "m", outer_diameter),
         width=None if width is None else quantity("width", "m", width),
         ratings=tuple(
-            Rating(float(angle), quantity("dynamic rating", "N", c), quantity("static rating", "N", c0))
+            Rating(angle, quantity("dynamic rating", "N", c), quantity("static rating", "N", c0))
             for angle, (c, c0) in ratings.items()
         ),
         pairs=tuple(
-            PairStiffness(float(angle), quantity("preload", "N", load), quantity("stiffness", "N/m", stiffness))
+            PairStiffness(angle, quantity("preload", "N", load), quantity("stiffness", "N/m", stiffness))
             for angle, load, stiffness in pairs
         ),
         names=(name,) if name else (),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.damping import damping_origin
@@ -104,6 +104,7 @@ class LawCurves(Shown):
         )
 
 
+@door
 def law(
     name: str,
     scene: Any = None,
@@ -147,11 +148,8 @@ def law(
     >>> [round(row["stiffness_ratio"], 2) for row in found.rows]  # against Hertz', at 1/4 to 2 times the approach at rest
     [0.67, 0.94, 1.33, 1.63, 1.89]
     """
-    for key, value in (("amplitude", amplitude), ("frequency", frequency)):
-        if value is not None and not (math.isfinite(value) and value > 0.0):
-            raise SceneError.at(key, value, "must be finite and above 0")
     given = as_given(BASE if scene is None else scene).changed({"contact.kind": name}, *changes)
-    read = given.scene(registry_with([Path(one) for one in plugins]))
+    read = given.scene(registry_with(plugins))
     if read.contact.in_a_band:
         low, high = TIME_CONSTANTS
         rule = (

@@ -84,10 +84,8 @@ class _Moved:
     @property
     def sprung(self) -> np.ndarray:
         """(rows,) whether a row sits on a spring."""
-        bearing = self.model.scene.bearing
-        if not bearing.preloaded or bearing.preload_kind != "spring":
-            return np.zeros(len(bearing.rows), dtype=bool)
-        return np.array([side != bearing.rows[0][0] for side, _ in bearing.rows])
+        rows, sprung = self.model.scene.bearing.rows, self.model.system.sliding is not None
+        return np.array([sprung and side != rows[0][0] for side, _ in rows])
 
     def at(self, x: float, rest: _State | None = None) -> _State:
         """The forces; rows on a spring keep those of ``rest``."""

@@ -118,7 +118,7 @@ def axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POIN
 
     Parameters
     ----------
-    values : a list, an array (n,), one value, or the text "a,b,c" or "start:stop:count"
+    values : a list, an array (n,), a range, an iterator, one value, or the text "a,b,c" or "start:stop:count"
 
     Raises
     ------
@@ -127,7 +127,7 @@ def axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POIN
     """
     if isinstance(values, str):
         return parse_axis(f"{key}={values}", option, most)
-    found = tidy(values)
+    found = tidy(list(itertools.islice(values, most + 1)) if isinstance(values, Iterator) else values)
     if not isinstance(found, list):
         found = [found]
     if not found:

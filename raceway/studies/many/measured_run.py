@@ -24,7 +24,7 @@ def quantities(result: Tables) -> dict[str, float]:
 
     Returns
     -------
-    quantities : Re Z, Im Z and K [N/m], mean axial displacement [m], peak ball load [N], peak pressure [Pa]
+    quantities : Re Z, Im Z and K [N/m], mean axial displacement [m], peak ball load [N] and pressure [Pa], of both races
     """
     found: dict[str, float] = {}
     known, motion = result["identification"], result["motion"]
@@ -32,15 +32,11 @@ def quantities(result: Tables) -> dict[str, float]:
         z = known["dynamic_stiffness"]
         found |= {"z_real": z["real"], "z_imag": z["imag"], "equivalent_stiffness": known["equivalent_stiffness"]}
     if motion is not None:
-        pressures = (motion["peak_pressure_inner_pa"], motion["peak_pressure_outer_pa"])
         found |= {"axial_displacement": motion["axial_displacement_m"], "peak_ball_load": motion["peak_ball_load_n"]}
-        return found | {"p0": max(pressures)}
-    balls = result["equilibrium"]["balls"]
-    return found | {
-        "axial_displacement": result["equilibrium"]["displacement"]["x"],
-        "peak_ball_load": max(ball["load_inner_n"] for ball in balls),
-        "p0": max(max(ball["peak_pressure_inner_pa"], ball["peak_pressure_outer_pa"]) for ball in balls),
-    }
+        return found | {"p0": motion["peak_pressure_pa"]}
+    still = result["equilibrium"]
+    found |= {"axial_displacement": still["displacement"]["x"], "peak_ball_load": still["largest_ball_load_n"]}
+    return found | {"p0": still["largest_pressure_pa"]}
 
 
 def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: RowStore) -> tuple[Tables, bool]:

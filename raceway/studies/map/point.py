@@ -58,7 +58,7 @@ def point_row(scene: Scene, registry: Registry) -> Tables:
 def small_signal(result: Result) -> float:
     """Radial stiffness k_yy of the tangent at rest with what the supports leave free let go [N/m]."""
     system = result.model.system
-    tangent = result.equilibrium.stiffness + system.stiffness
+    tangent = result.equilibrium.stiffness_rows_held + system.stiffness
     others = [i for i in (0, 2, 3, 4) if system.free[i] > 0.0]
     if not others:
         return float(tangent[1, 1])

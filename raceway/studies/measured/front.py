@@ -8,6 +8,7 @@ from typing import Any
 
 from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.pipeline.result import write_json
 from raceway.scene.given import as_scene
@@ -21,6 +22,7 @@ from raceway.studies.measured.signals import signals_of
 CONTENT = "identify.json"
 
 
+@door
 def identify(
     signals: Any,
     scene: Any,

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.errors import RacewayError, SceneError, extra
+from raceway.errors import SceneError
 from raceway.framework.shown import Fact, Shown, number, number_within
+from raceway.plugins.reports.labelled import labelled_dataset
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.measured.identify import Found
@@ -100,10 +101,6 @@ class Identified(Shown):
         RacewayError
             xarray is missing.
         """
-        try:
-            import xarray
-        except ImportError as why:
-            raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
         record = self.found.turning.recording
         given = {"y": (record.y, "m"), "z": (record.z, "m"), "key": (record.key, ""), "speed": (record.speed, "rad/s")}
         variables = {
@@ -111,7 +108,7 @@ class Identified(Shown):
             for name, (values, unit) in given.items()
             if values is not None
         }
-        return xarray.Dataset(variables, {"time": ("time", record.time, {"units": "s"})}, {"title": self.title})
+        return labelled_dataset(variables, {"time": ("time", record.time, {"units": "s"})}, {"title": self.title})
 
     def plot(self, what: str = "orbits", ax: Axes | None = None) -> Axes:
         """Draw the orbits at the sensor and in the bearing [um], or the spectrum over orders.

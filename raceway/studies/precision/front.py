@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from raceway.commands.progress import ShowProgress, telling
+from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.scene.given import plain_tables
 from raceway.storage.files import writable
@@ -19,6 +20,7 @@ from raceway.studies.precision.study import precision as study
 ROWS = "precision-rows.jsonl"
 
 
+@door
 def precision(
     scene: Any,
     vary: Mapping[str, Any] | Iterable[str] | None = None,
@@ -77,7 +79,7 @@ def precision(
     with telling(progress) as told:
         found = study(tables, vary or (), reference, repeats, limit_s, None if kept is None else Path(kept), registry, told)
     if found.fault is not None:
-        warnings.warn(str(found.fault), stacklevel=2)
+        warnings.warn(str(found.fault), stacklevel=3)
     if folder is not None:
         found.write(folder, pictures=False)
     return found

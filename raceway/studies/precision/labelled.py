@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.errors import RacewayError, extra
+from raceway.plugins.reports.labelled import labelled_dataset, labels
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -22,10 +22,6 @@ def labelled(found: Precision) -> Dataset:
     RacewayError
         xarray is missing.
     """
-    try:
-        import xarray
-    except ImportError as why:
-        raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
     content = found.to_dict()
     about = {
         "value": ("N/m", "size of Z, or of the tangent where nothing is identified"),
@@ -38,7 +34,7 @@ def labelled(found: Precision) -> Dataset:
         name: (
             "setting",
             np.array([np.nan if row[name] is None else row[name] for row in rows], dtype=float),
-            {"units": unit, "long_name": words},
+            labels(name, unit, words),
         )
         for name, (unit, words) in about.items()
     }
@@ -47,4 +43,4 @@ def labelled(found: Precision) -> Dataset:
         "family": ("setting", np.array([row["family"] for row in rows], dtype=object)),
         "status": ("setting", np.array([row["status"] for row in rows], dtype=object)),
     }
-    return xarray.Dataset({**variables, **more}, {"setting": names}, {"title": found.title})
+    return labelled_dataset({**variables, **more}, {"setting": names}, {"title": found.title})

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.tables import Tables
@@ -107,7 +108,7 @@ class Precision(Shown):
 
         Errors below the reference's bound count as the bound: nobody knows which of them is smaller.
         """
-        bound = self.references[physics].bound
+        bound = self.references[member("physics", physics, self.references)].bound
         rows = [(r["cost"]["time_s"], max(r["error"], bound), k) for k, r in enumerate(self.judged) if _counts(r, physics)]
         found, best = [], math.inf
         for _, error, place in sorted(rows):

@@ -60,11 +60,22 @@ class Coefficients:
     tangent_damping: np.ndarray
     tilt: str | float
 
+    @property
+    def ending(self) -> str:
+        """Of the coefficients' names: kyy has the tilts held, as everywhere; other supports make it kyy_tilts_follow."""
+        return "" if self.tilt == "locked" else "_tilts_follow"
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        """``speed``, ``frequency`` [rad/s], those that the table has."""
+        both = {"speed": self.speed, "frequency": self.frequency}
+        return {name: values for name, values in both.items() if values is not None}
+
     def columns(self) -> dict[str, np.ndarray]:
-        """``kyy`` ... ``czz`` and ``kxx``, each of the table's shape."""
-        found = {f"k{name}": self.stiffness[..., i, j] for name, (i, j) in ENTRIES.items()}
-        found |= {f"c{name}": self.damping[..., i, j] for name, (i, j) in ENTRIES.items()}
-        return {**found, "kxx": self.axial}
+        """``kyy`` ... ``czz`` and ``kxx`` with their ``ending``, each of the table's shape."""
+        both = {"k": self.stiffness, "c": self.damping}
+        found = {f"{k}{name}{self.ending}": one[..., i, j] for k, one in both.items() for name, (i, j) in ENTRIES.items()}
+        return {**found, f"kxx{self.ending}": self.axial}
 
     def to_dict(self) -> Tables:
         """Axes [rad/s] and columns as plain tables."""

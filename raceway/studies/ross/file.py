@@ -121,7 +121,7 @@ def ross_file(table: Coefficients, generation: int, tag: str, node: int, head: t
     axes = _axes(table, generation)
     columns = table.columns()
     content: Tables = {"n": node, "tag": tag}
-    content |= {ross: columns[ours].tolist() for ours, ross in NAMES.items()}
+    content |= {ross: columns[ours + table.ending].tolist() for ours, ross in NAMES.items()}
     content |= {name: values.tolist() for name, values in axes.items()}
     notes = (
         *head,
@@ -144,7 +144,7 @@ def _axes(table: Coefficients, generation: int) -> dict[str, np.ndarray]:
         axis = table.speed if table.speed is not None else table.frequency
         assert axis is not None
         return {"frequency": axis}
-    return {name: axis for name, axis in (("speed", table.speed), ("frequency", table.frequency)) if axis is not None}
+    return table.axes
 
 
 def _reading_notes(table: Coefficients, generation: int) -> list[str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.commands.inputs import slug
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
 from raceway.scene.changes import parse_value
 from raceway.scene.given import tidy
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from raceway.studies.sweep.selection import Selection
 
 
+@door
 def export_ross(
     data: Any,
     path: str | Path | None = None,

@@ -13,6 +13,7 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
+from raceway.bodies.mounting import evaluate_following
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.settle import settle
@@ -88,7 +89,9 @@ class NodeBearing:
         viscous = 0.5 * (
             system.damping + system.damping.T
         )  # the ring's gyroscopic moments are the rotor model's, as its mass
-        whole = rest.stiffness + system.stiffness + 1j * w * (rest.damping + viscous)
+        contacts = rest.stiffness + 1j * w * (rest.damping - rest.damping_rows_held)
+        contacts += system.viscous_stiffness_at(rest.displacement, rest.ball, w)
+        whole = contacts + system.stiffness + 1j * w * viscous
         whole[:3, :3] += 1j * w * self.damping * np.eye(3)
         inside = self._inside(model)
         seen = _condensed(whole, list(range(self.size)), [i for i in inside if i > 0])
@@ -142,7 +145,7 @@ class NodeBearing:
         q[shared] += displacement[shared]
         size = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
         for _ in range(_MOST):
-            now = system.evaluate(q, ball=rest.ball)
+            now = evaluate_following(model.scene, system, q, rest.ball)
             left, tangent = now.force + system.stiffness @ q - system.load, now.stiffness + system.stiffness
             if not inside or np.abs((left / size)[inside]).max() <= _TOLERANCE * np.abs(now.contact_force).max():
                 break

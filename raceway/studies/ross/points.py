@@ -19,7 +19,7 @@ def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
     shown = {name: v for name, v in columns.items() if np.max(np.abs(v)) > _ROUNDING * largest[name[0]]}
     groups = _alike(shown)
     constant = [
-        f"{' = '.join(names)} = {_text(name, values.flat[0])} {_unit(name)} at all points"
+        f"{_joined(names)} = {_text(name, values.flat[0])} {_unit(name)} at all points"
         for name, names, values in groups
         if np.ptp(values) <= _ROUNDING * largest[name[0]]
     ]
@@ -31,7 +31,7 @@ def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
             continue
         row = {f"{name}\nr/min": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
         for name, names, values in varying:
-            row[f"{' = '.join(names)}\n{_unit(name)}"] = _text(name, float(values[place]))
+            row[f"{_joined(names)}\n{_unit(name)}"] = _text(name, float(values[place]))
         rows.append(row)
     zero = [name for name in columns if name not in shown]
     return rows, [*constant, *([f"0 at all points: {', '.join(zero)}"] if zero else [])]
@@ -49,6 +49,11 @@ def _alike(columns: dict[str, np.ndarray]) -> list[tuple[str, list[str], np.ndar
         else:
             found.append((name, [name], values))
     return found
+
+
+def _joined(names: list[str]) -> str:
+    """kyy = kzz; what all names end with stands once."""
+    return " = ".join(name[:3] for name in names) + names[0][3:].replace("_", " ")
 
 
 def _unit(name: str) -> str:

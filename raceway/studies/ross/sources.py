@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.shown import tilt_words
 from raceway.studies.many.axes import is_number
 from raceway.studies.sweep.selection import Selection, listed
 
@@ -174,12 +175,18 @@ def tangent(selection: Selection) -> Found:
     if size > 1e-6:
         notes.append(f"left out: the coupling of axial and radial motions, {size:.1e} of the geometric mean of kxx and kyy")
     notes.append("small motions about the equilibrium under the constant loads: the unbalance does not change them")
+    if selection.value("bearing.preload_kind") == "spring":
+        notes.append("rows on the spring follow without friction; kxx with these rows held, as in a motion, is larger")
     damping = np.zeros_like(radial)
     if "damping" in selection.dataset:
         damping = np.swapaxes(kept, -1, -2) @ np.array(selection.dataset["damping"].values, dtype=float) @ kept
     damped = bool(damping.any())
     notes.insert(
-        0, "damping of the contacts at the equilibrium" if damped else "the tangent of an equilibrium has no damping"
+        0,
+        "damping of the contacts at the equilibrium, of slow motions; at w their time constant tau changes K and C by about "
+        "(w tau)^2 / 4: those of the running speed are a sweep's with identifier.kind = 'tangent' (source 'rotating')"
+        if damped
+        else "the tangent of an equilibrium has no damping",
     )
     resolved = np.broadcast_to(damped, radial.shape)
     return radial, damping, resolved, f"tangent of the equilibrium, {_tilt_words(selection)}", notes
@@ -219,8 +226,8 @@ def tilt_note(selection: Selection) -> list[str]:
     except np.linalg.LinAlgError:  # nothing resists a tilt: there is no free one
         return []
     return [
-        f"{_tilt_words(selection)} in these numbers: the tangent kyy is {_micro_range(locked)} with the tilt locked and "
-        f"{_micro_range(free)} with it free; supports.tilt = locked is for a stiff rotor, free for a compliant shaft"
+        f"{_tilt_words(selection)} in these numbers; of the tangent, kyy, with the tilts held, is {_micro_range(locked)}, and kyy_tilts_follow, with "
+        f"them free, {_micro_range(free)}; supports.tilt = locked is for a stiff rotor, free for a compliant shaft"
     ]
 
 
@@ -230,8 +237,7 @@ def _micro_range(stiffness: np.ndarray) -> str:
 
 
 def _tilt_words(selection: Selection) -> str:
-    tilt = selection.value("supports.tilt", "locked")
-    return f"tilt {tilt}" if isinstance(tilt, str) else f"tilt against {tilt:g} N m/rad"
+    return tilt_words(selection.value("supports.tilt", "locked"))
 
 
 def _kind_words(selection: Selection) -> str:

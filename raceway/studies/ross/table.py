@@ -10,7 +10,9 @@ import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, extra
+from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown
+from raceway.plugins.reports.labelled import labelled_dataset
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.ross.coefficients import Coefficients
@@ -49,7 +51,7 @@ class RossTable(Shown):
     @property
     def names(self) -> dict[str, str]:
         """Our coefficient -> ROSS's."""
-        return dict(NAMES)
+        return {f"{ours}{self.coefficients.ending}": ross for ours, ross in NAMES.items()}
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -115,17 +117,13 @@ class RossTable(Shown):
         RacewayError
             xarray is missing.
         """
-        try:
-            import xarray
-        except ImportError as why:
-            raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
-        axes = self._axes()
+        axes = self.coefficients.axes
         variables = {
             name: (tuple(axes), values, {"units": "N/m" if name[0] == "k" else "N s/m"})
             for name, values in self.coefficients.columns().items()
         }
         coordinates = {name: (name, values, {"units": "rad/s"}) for name, values in axes.items()}
-        return xarray.Dataset(
+        return labelled_dataset(
             variables, coordinates, {"definition": self.coefficients.definition, "notes": "\n".join(self.notes)}
         )
 
@@ -134,7 +132,7 @@ class RossTable(Shown):
 
         Parameters
         ----------
-        names : of stiffnesses [N/µm], or of dampings [N s/m]
+        names : of stiffnesses [N/µm], or of dampings [N s/m]; without their ending
         ax : matplotlib axes; new ones without
 
         Raises
@@ -143,31 +141,26 @@ class RossTable(Shown):
             matplotlib is missing.
         """
         panel, columns = given_axes(ax), self.coefficients.columns()
-        name, values = list(self._axes().items())[-1]
-        stiff = all(one[0] == "k" for one in names)
+        name, values = list(self.coefficients.axes.items())[-1]
+        stiff = all(one.startswith("k") for one in names)
         for one in names:
-            column = columns[one] if columns[one].ndim == 1 else columns[one][0]
-            panel.plot(_RPM * values, column * (1e-6 if one[0] == "k" else 1.0), marker="o", label=one)
+            column = columns[member("names", one.removesuffix(self.coefficients.ending) + self.coefficients.ending, columns)]
+            column = column if column.ndim == 1 else column[0]
+            panel.plot(_RPM * values, column * (1e-6 if one.startswith("k") else 1.0), marker="o", label=one)
         panel.set_xlabel(f"{name} [r/min]")
         panel.set_ylabel("[N/µm]" if stiff else "[N s/m]")
         panel.legend(frameon=False)
         return panel
 
-    def _axes(self) -> dict[str, np.ndarray]:
-        given = {"speed": self.coefficients.speed, "frequency": self.coefficients.frequency}
-        return {name: values for name, values in given.items() if values is not None}
-
     def _shown(self) -> tuple[str, list[Fact]]:
         from raceway.studies.ross.points import point_rows
 
         rows, constant = point_rows(self.to_dict())
-        over = " x ".join(f"{len(values)} values of {name}" for name, values in self._axes().items())
+        over = " x ".join(f"{len(values)} values of {name}" for name, values in self.coefficients.axes.items())
         ends = [(*_words(row),) for row in (rows[0], rows[-1])]
         same = [("everywhere", "", text) for text in constant]
         # What may make the numbers wrong for a rotor leads: of a text of 15 lines the last notes fall away.
-        notes = sorted(
-            self.notes, key=lambda note: "next to nothing" not in note and "in these numbers: the tangent" not in note
-        )
+        notes = sorted(self.notes, key=lambda note: "next to nothing" not in note and "in these numbers" not in note)
         told = [("note", "", text) for text in notes]
         return f"{self.tag}, coefficients for ROSS {self.file.generation}\n{over}", [*ends, *same, *told]
 

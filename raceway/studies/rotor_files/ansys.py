@@ -52,6 +52,7 @@ def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
     lines = comments(head, _COMMENT)
     constants = []
     for constant, ours in CONSTANTS.items():
+        ours += table.ending
         values, name = columns[ours], f"{constant}_{number}"
         unit = "N/m" if constant[0] == "K" else "N s/m"
         there = bool(np.max(np.abs(values)) > ROUNDING * largest[constant[0]])

@@ -8,6 +8,7 @@ from typing import Any
 
 from raceway.commands.inputs import slug
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.studies.ross.coefficients import coefficients
 from raceway.studies.ross.front import chosen, data_of, name_of
 from raceway.studies.rotor_files.ansys import ansys_notes, ansys_text
@@ -23,6 +24,7 @@ KINDS = ("nastran", "ansys", "csv", "json")
 _LEAST = 2
 
 
+@door
 def export_coefficients(
     data: Any,
     path: str | Path | None = None,

@@ -14,15 +14,9 @@ from raceway.studies.ross.coefficients import Coefficients
 from raceway.studies.sweep.variables import DOF
 
 
-def axes_of(table: Coefficients) -> dict[str, np.ndarray]:
-    """``speed``, ``frequency`` [rad/s], those that the table has."""
-    given = {"speed": table.speed, "frequency": table.frequency}
-    return {name: values for name, values in given.items() if values is not None}
-
-
 def csv_text(table: Coefficients, head: Sequence[str]) -> str:
     """A line each point; the head's lines begin with #, and the line behind them names the columns and their units."""
-    axes = axes_of(table)
+    axes = table.axes
     points = np.meshgrid(*axes.values(), indexing="ij")
     columns = {f"{name} [rad/s]": values for name, values in zip(axes, points, strict=True)}
     columns |= {f"{name} [{'N/m' if name[0] == 'k' else 'N s/m'}]": values for name, values in table.columns().items()}
@@ -42,7 +36,7 @@ def json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:
         "notes": list(head),
         "source": table.source,
         "definition": table.definition,
-        **{name: {"unit": "rad/s", "values": values.tolist()} for name, values in axes_of(table).items()},
+        **{name: {"unit": "rad/s", "values": values.tolist()} for name, values in table.axes.items()},
         "coefficients": {
             name: {"unit": "N/m" if name[0] == "k" else "N s/m", "values": values.tolist()}
             for name, values in table.columns().items()
@@ -58,7 +52,7 @@ def numbers_notes() -> list[str]:
     """What the reader of the file has to know."""
     return [
         "SI; coordinates x (the axis), y, z, tilt_y, tilt_z (about y, z) of the bearing",
-        "kyy ... czz, kxx: with the tilts and x as told; K, C: 5x5 of the contacts at the equilibrium, every other motion held: "
+        "kyy ... czz, kxx: the tilts held, or, by their names, following; x as told; K, C: 5x5 of the contacts at the equilibrium, every other motion held: "
         "small motions, without shaft, rotor and supports",
     ]
 

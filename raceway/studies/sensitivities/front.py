@@ -10,6 +10,7 @@ from raceway.bodies.model import build_model
 from raceway.commands.progress import telling
 from raceway.core.jit import working_processor_time
 from raceway.errors import Mistake, SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from raceway.commands.progress import ShowProgress
 
 
+@door
 def sensitivities(
     scene: Any, keys: Iterable[str] = (), *, progress: ShowProgress = None, plugins: Iterable[str | Path] = ()
 ) -> Sensitivities:

@@ -24,7 +24,7 @@ def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableTyp
     heads = []
     for name, one in quantities.items():
         value, unit = read_in(one["value"], one["unit"])
-        heads.append(f"{name.replace('_', ' ')} {value:.5g} {unit}")
+        heads.append(f"{name.replace('_', ' ')} {value:.5g} {unit}: {one['definition']}")
     rows = []
     for key in (one for one in content["keys"] if one["influence"]):
         row = {"key": key["key"], "value": f"{key['value']:.6g} {key['unit']}".strip()}

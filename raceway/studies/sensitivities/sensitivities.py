@@ -13,7 +13,7 @@ import numpy as np
 from raceway.core.jit import working_processor_time
 from raceway.framework.shown import Fact, Shown, number
 from raceway.pipeline.gradient.gradients import Gradient, Gradients
-from raceway.pipeline.gradient.quantities import UNITS, derivatives, values
+from raceway.pipeline.gradient.quantities import UNITS, definitions, derivatives, described, values
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.simulate import OnProgress
@@ -55,7 +55,7 @@ class Sensitivities(Shown):
 
     Attributes
     ----------
-    values : quantity -> number, SI;  rows : of keys that change something
+    values : quantity -> number, SI;  definitions : quantity -> what it is;  rows : of keys that change something
     without_effect : keys that change nothing;  refused : (key, why it has no derivative)
     run_s, gradients_s : processor time of equilibrium and orbit, and of all derivatives [s];  models : built for these
     warnings : what to know of the answer itself
@@ -70,6 +70,7 @@ class Sensitivities(Shown):
 
     title: str
     values: dict[str, float]
+    definitions: dict[str, str]
     rows: tuple[Sensitivity, ...]
     without_effect: tuple[Key, ...]
     refused: tuple[tuple[Key, str], ...]
@@ -96,7 +97,7 @@ class Sensitivities(Shown):
             without_nan(
                 {
                     "title": self.title,
-                    "quantities": {name: {"value": value, "unit": UNITS[name]} for name, value in self.values.items()},
+                    "quantities": {n: described(n, value, self.definitions) for n, value in self.values.items()},
                     "keys": [_table(row) for row in self.rows],
                     "without_effect": [key.path for key in self.without_effect],
                     "refused": [{"key": key.path, "value": key.value, "reason": why} for key, why in self.refused],
@@ -177,7 +178,10 @@ def sensitivities_of(
     took = working_processor_time() - begun
     warning = "" if gradients.orbit is None else gradients.orbit.warning
     warnings = (warning,) if warning else ()
-    return Sensitivities(model.scene.title, now, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models, warnings)
+    words = definitions(model, equilibrium)
+    return Sensitivities(
+        model.scene.title, now, words, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models, warnings
+    )
 
 
 def _table(row: Sensitivity) -> Tables:

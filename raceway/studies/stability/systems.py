@@ -122,5 +122,5 @@ def still(scene: Scene) -> Still:
     equilibrium = settle(model)
     system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
     damping = system.evaluate(equilibrium.displacement, ball=equilibrium.ball).damping
-    limit = system.damped_time_step(equilibrium.stiffness, damping)
+    limit = system.damped_time_step(equilibrium.stiffness_rows_held, damping)
     return Still(model, system, equilibrium, limit, scene.contact.law.dissipative)

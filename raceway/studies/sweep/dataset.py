@@ -8,17 +8,20 @@ import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
+from warnings import warn
 
 import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
+from raceway.plugins.reports.labelled import labelled_dataset, labels
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.files import scratch_file, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import is_number
+from raceway.studies.sweep.store import DAMAGED
 from raceway.studies.sweep.survey import key_facts
 from raceway.studies.sweep.variables import ARRAYS, DOF, NUMBERS
 
@@ -75,27 +78,23 @@ def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
     RacewayError
         xarray is missing.
     """
-    try:
-        import xarray
-    except ImportError as why:
-        raise RacewayError(f"labelled results need xarray: {extra('sweep')} ({why})") from None
     found = table_of(store, registry)
-    return xarray.Dataset(found.variables, found.coordinates, found.attributes)
+    return labelled_dataset(found.variables, found.coordinates, found.attributes)
 
 
 def table_of(store: Rows, registry: Registry | None = None) -> Table:
     """The same as plain arrays: xarray, and what it imports, takes longer than a hundred points."""
     design = store.design
     dims = design.keys if design.axes else ("point",)
-    columns, status, warnings = _columns(store)
+    columns, status, warnings, damaged = _columns(store)
     variables: dict[str, Labelled] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
     if columns:
-        about = {"units": "1", "long_name": "number of warnings of the point: their words are in the JSON and the CSV"}
+        about = labels("warnings", "1", "number of warnings of the point: their words are in the JSON and the CSV")
         variables["warnings"] = (dims, warnings.reshape(design.shape), about)
     for name, column in columns.items():
         more, unit, words = ARRAYS[name] if name in ARRAYS else ((), *NUMBERS[name])
         shape = (*design.shape, *column.shape[1:])
-        variables[name] = ((*dims, *more), column.reshape(shape), {"units": unit, "long_name": words})
+        variables[name] = ((*dims, *more), column.reshape(shape), labels(name, unit, words))
     attributes = {
         "title": store.title,
         "scene": json.dumps(store.scene),
@@ -105,16 +104,23 @@ def table_of(store: Rows, registry: Registry | None = None) -> Table:
         "schema": store.facts["schema"],
         "created": store.facts["created"],
         "note": "NaN: not finished, or not estimated; see status",
+        "damaged_rows": damaged,
     }
+    if damaged:
+        warn(
+            f"`{store.path}`: {damaged} of {design.size} rows are damaged and read as waiting; --resume computes them again",
+            stacklevel=3,
+        )
     return Table(variables, _coordinates(store, registry or default_registry()), attributes)
 
 
-def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
-    """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,)."""
-    size, found = store.design.size, dict[str, np.ndarray]()
+def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, int]:
+    """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,); damaged rows."""
+    size, damaged, found = store.design.size, 0, dict[str, np.ndarray]()
     status, warnings = np.full(size, "waiting", dtype=object), np.full(size, np.nan)
     for number, row in enumerate(store.rows()):
         status[number] = row["status"]
+        damaged += row["reason"] == DAMAGED
         if row["status"] == "done":
             warnings[number] = len(row["warnings"])
         for name, value in row["values"].items():
@@ -122,7 +128,7 @@ def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray
                 found[name] = np.full((size, *np.shape(value)), np.nan)
             found[name][number] = value
     order = [*NUMBERS, *ARRAYS]
-    return {name: found[name] for name in order if name in found}, status, warnings
+    return {name: found[name] for name in order if name in found}, status, warnings, damaged
 
 
 def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
@@ -137,15 +143,15 @@ def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
         values = next(a.values for a in design.axes if a.key == key) if design.axes else [p[key] for p in design.listed]
         unit, words = ("", "") if scene is None else key_facts(scene, key)
         dim = key if design.axes else "point"
-        found[key] = ((dim,), axis_labels(values), {"units": unit or "1", "long_name": f"{key}: {words}" if words else key})
+        found[key] = ((dim,), axis_labels(values), {"units": unit or "1", "long_name": key, "description": words})
     if not design.axes:
         found["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
     return found
 
 
 def axis_labels(values: Sequence[object]) -> np.ndarray:
-    """Numbers as numbers; anything else as text."""
-    if all(is_number(value) for value in values):
+    """Numbers as numbers, booleans as booleans; anything else as text."""
+    if all(is_number(value) for value in values) or all(isinstance(value, bool) for value in values):
         return np.array(values)
     return np.array([value if isinstance(value, str) else json.dumps(value) for value in values], dtype=object)
 
@@ -179,6 +185,8 @@ def _put(
     file: h5netcdf.File, name: str, dims: tuple[str, ...], values: np.ndarray, about: Mapping[str, str], coordinates: str
 ) -> None:
     """One variable by the conventions that xarray follows: a number that is missing is NaN."""
+    if values.dtype == bool:  # NetCDF has none
+        values, about = values.astype(np.int8), {**about, "dtype": "bool"}
     kind = _WORDS if values.dtype == object else values.dtype
     variable = file.create_variable(name, dims, kind, fillvalue=np.nan if values.dtype.kind == "f" else None)
     variable[...] = values

@@ -12,6 +12,7 @@ import attrs
 
 from raceway.commands.progress import telling
 from raceway.errors import ConvergenceError, PluginError, SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.scene.given import plain_tables
 from raceway.storage.files import writable
@@ -39,6 +40,7 @@ _FROM_ZERO = (
 Axes = Mapping[str, Any] | Iterable[Mapping[str, Any]] | Design
 
 
+@door
 def sweep(
     scene: Any,
     axes: Axes,

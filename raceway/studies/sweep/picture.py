@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.errors import RacewayError
+from raceway.framework.shown import read_in
 from raceway.plugins.reports.pictures import new_figure
 from raceway.storage.files import write_whole
+from raceway.studies.many.axes import is_number
+from raceway.studies.many.axes import shown as _text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable
 
     from matplotlib.axes import Axes
     from matplotlib.collections import Collection
@@ -25,8 +28,6 @@ _WORDS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#3a
 _MARKERS = "os^DvPX*"
 _GRID = "#e3e7eb"
 _NO_RESULT = "#c3cad1"
-#: SI unit -> what people read, and its factor.
-_SCALES = {"N/m": ("N/µm", 1e-6), "m": ("µm", 1e6), "Pa": ("MPa", 1e-6)}
 _LIST = "point"
 _FORMATS = (".png", ".svg")
 _DOTS_PER_INCH = 150
@@ -37,7 +38,7 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
 
     Parameters
     ----------
-    data : over ``x``, ``y``, ``panels`` or over ``point``; nan where there is no result; attrs units, long_name
+    data : over ``x``, ``y``, ``panels`` or over ``point``; nan where there is no result; attrs units, description
     kind : "curves", "map" or "surface"
     title, remark : the first line over the picture, and a second, smaller one
 
@@ -46,9 +47,9 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
     RacewayError
         matplotlib is missing.
     """
-    unit, factor = _SCALES.get(str(data.attrs.get("units", "")), (str(data.attrs.get("units", "")), 1.0))
+    factor, unit = read_in(1.0, str(data.attrs.get("units", "")))
     name = str(data.name).replace("_", " ").replace(":", " ")
-    words = str(data.attrs.get("long_name", ""))
+    words = str(data.attrs.get("description", ""))
     label = name if unit in ("", "1") else f"{name} [{unit}]"
     data = data.copy(data=data.values * factor).assign_coords({key: data[key] for key in data.coords})
     parts = (
@@ -226,11 +227,5 @@ def _unit(data: DataArray, key: str, brackets: bool = False) -> str:
     return f" [{unit}]" if brackets else f" {unit}"
 
 
-def _numeric(values: Sequence[object]) -> bool:
-    return all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
-
-
-def _text(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _numeric(values: Iterable[object]) -> bool:
+    return all(map(is_number, values))

@@ -31,7 +31,7 @@ class Layout:
 
     Attributes
     ----------
-    data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; units and long_name in its attributes
+    data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; units and description in its attributes
     x, y : keys; in curves y is what the colours stand for and may be None
     panels : key of one panel a value, or None
     """

@@ -64,5 +64,7 @@ def _sweep_row(row: ReadTables) -> dict[str, str]:
     else:
         text |= {"K N/µm": "", "Re Z N/µm": ""}
     text["kyy N/µm"] = "" if kyy is None else f"{kyy[1][1] / 1e6:.3f}"
+    if "kyy_tilts_follow" in values:
+        text["kyy tilts follow N/µm"] = f"{values['kyy_tilts_follow'] / 1e6:.3f}"
     error = values.get("error_total")
     return {**text, "error %": "" if error is None else f"{100.0 * error:.2g}", "status": row["status"]}

@@ -217,7 +217,7 @@ def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
     keys = list(axes)
     if LIST not in part.dims:
         part = part.isel({key: 0 for key in fixed if key in part.dims})
-        return part.sel({key: axes[key] for key in keys}).transpose(*keys, ...)
+        return _ordered(part, axes)
     part = part.drop_vars([key for key in fixed if key in part.coords])
     if not keys:
         return part.isel({LIST: 0})
@@ -230,7 +230,13 @@ def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
         part = part.swap_dims({LIST: keys[0]})
     else:
         part = part.set_index(point=keys).unstack(LIST)
-    part = part.sel(axes).transpose(*keys, ...)
+    part = _ordered(part, axes)
     for key, attributes in kept.items():
         part[key].attrs.update(attributes)
     return part
+
+
+def _ordered(part: Dataset, axes: ReadTables) -> Dataset:
+    """Values of the axes in their order, by place: a list of booleans would be a mask."""
+    places = {key: [part[key].values.tolist().index(value) for value in values] for key, values in axes.items()}
+    return part.isel(places).transpose(*axes, ...)

@@ -33,8 +33,9 @@ _MOMENT_S = 0.2
 POINTS, LOCK = "points.sqlite", ".lock"
 _CONTENT = "state, reason, key, content, warnings, cost"
 #: What a row that was damaged is read as: the point waits to be computed again.
+DAMAGED = "its row in the store is damaged"
 _EMPTY: Tables = {
-    "status": "waiting", "reason": "its row in the store is damaged", "values": {}, "warnings": [], "key": "", "cost": {},
+    "status": "waiting", "reason": DAMAGED, "values": {}, "warnings": [], "key": "", "cost": {},
 }  # fmt: skip
 _TABLES = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
@@ -356,7 +357,7 @@ def told(folder: Path) -> Iterator[None]:
     """Faults of the disk or of the file, in words."""
     try:
         yield
-    except sqlite3.DatabaseError as why:
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as why:
         if isinstance(why, sqlite3.OperationalError):
             raise RacewayError(
                 f"`{folder}` cannot be written or read: {why}. What is finished is kept: free some space, and go on with "

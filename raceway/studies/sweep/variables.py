@@ -28,26 +28,38 @@ NUMBERS: dict[str, tuple[str, str]] = {
     "orbit_minor": ("m", "minor semi-axis of the 1x orbit"),
     "residual": ("1", "motion that is not 1x, rms over rms of 1x"),
     "axial_displacement": ("m", "mean axial displacement"),
-    "peak_ball_load": ("N", "largest load of a ball on the inner race"),
+    "kyy_tilts_follow": ("N/m", "radial tangent with tilts that follow as supports.tilt lets them, x and z held"),
+    "peak_ball_load": ("N", "largest load of a ball, of both races"),
+    "peak_ball_load_inner": ("N", "largest load of a ball on the inner race"),
+    "peak_ball_load_outer": ("N", "largest load of a ball on the outer race"),
     "min_ball_load": ("N", "least load of a ball on the inner race, 0 where one is loose"),
-    "p0": ("Pa", "largest Hertz pressure of both races"),
+    "p0": ("Pa", "largest Hertz pressure, of both races"),
+    "p0_inner": ("Pa", "largest Hertz pressure on the inner race"),
+    "p0_outer": ("Pa", "largest Hertz pressure on the outer race"),
     "error_total": ("1", "estimated relative error of Z"),
     "error_time_step": ("1", "part of the time step in the relative error of Z"),
     "error_transient": ("1", "part of the transient in the relative error of Z"),
     "error_mesh": ("1", "part of the mesh in the relative error of Z"),
     "error_contact": ("1", "part of the contact law in the relative error of Z"),
     "error_identification": ("1", "part of the identification in the relative error of Z"),
+    "error_model_bound": ("1", "upper estimate of the change of kyy by hypotheses of [kinematics] left at their defaults"),
 }
 #: Arrays over ``dof``: name -> (dimensions, unit, words).
 ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "displacement": (("dof",), "m, rad", "equilibrium under the constant loads"),
-    "stiffness": (("dof", "dof2"), "N/m, N/rad, N m/m, N m/rad", "tangent of the contacts at the equilibrium"),
+    "stiffness": (
+        ("dof", "dof2"),
+        "N/m, N/rad, N m/m, N m/rad",
+        "tangent of the contacts at the equilibrium: kyy is y, y, tilts held",
+    ),
     "damping": (("dof", "dof2"), "N s/m, N s/rad, N m s/m, N m s/rad", "damping of the contacts at the equilibrium"),
 }
 
 
 def values_of(result: Result) -> Tables:
     """Plain numbers and lists of a result; what it does not have is absent."""
+    from raceway.pipeline.error.hypotheses import closed_bound
+
     found, still = result.identification, result.equilibrium
     values: Tables = {}
     if found is not None:
@@ -66,30 +78,29 @@ def values_of(result: Result) -> Tables:
             "orbit_minor": found.orbit_minor,
             "residual": found.residual,
         }
-    values |= _loads(result)
-    values |= {f"error_{name}": size for name, size in result.error.items() if name != "how"}
+    values |= {"kyy_tilts_follow": result.kyy_tilts_follow, **_loads(result)}
+    values |= {f"error_{name}": size for name, size in result.error.items() if name not in ("how", "unresolved")}
+    values["error_model_bound"] = closed_bound(result.model, still)
     values = {name: float(value) for name, value in values.items() if value is not None and math.isfinite(value)}
     return values | {name: getattr(still, name).tolist() for name in ARRAYS}
 
 
 def _loads(result: Result) -> Tables:
     """Of the motion where there is one, else of the equilibrium."""
-    from raceway.pipeline.motion import motion_table
+    from raceway.pipeline.motion import largest_contacts, motion_table, pressures
 
     model, z = result.model, result.model.system.ball_count
     if result.simulation is not None:
         record = result.simulation.record
-        told = motion_table(model, record)
-        return {
-            "axial_displacement": told["axial_displacement_m"],
-            "peak_ball_load": told["peak_ball_load_n"],
-            "p0": max(told["peak_pressure_inner_pa"], told["peak_pressure_outer_pa"]),
-            "min_ball_load": record.contact_force[:, :z].min(),
-        }
-    inner, outer = result.equilibrium.contact_force[:z], result.equilibrium.contact_force[z:]
+        told, loads = motion_table(model, record), record.contact_force
+    else:
+        loads = result.equilibrium.contact_force
+        told = largest_contacts(loads, pressures(model, loads), "peak")
     return {
-        "axial_displacement": result.equilibrium.displacement[0],
-        "peak_ball_load": inner.max(),
-        "p0": max(model.bearing.contact_ellipse(model, race, load)[0].max() for race, load in enumerate((inner, outer))),
-        "min_ball_load": inner.min(),
+        "axial_displacement": told.get("axial_displacement_m", result.equilibrium.displacement[0]),
+        "min_ball_load": loads[..., :z].min(),
+        "peak_ball_load": told["peak_ball_load_n"],
+        "p0": told["peak_pressure_pa"],
+        **{f"peak_ball_load_{race}": told[f"peak_ball_load_{race}_n"] for race in ("inner", "outer")},
+        **{f"p0_{race}": told[f"peak_pressure_{race}_pa"] for race in ("inner", "outer")},
     }

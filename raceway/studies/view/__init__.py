@@ -6,7 +6,6 @@ surfaces      triangles of rings, balls and grooves
 bearing       rings, balls, arrows and contact ellipses of one state
 scene         the bearing, drawn by pyvista
 contacts      the most loaded ball in section
-animation     a turn as a GIF
 page          the page with WebGL
 front         ``raceway.view``;  view: its answer
 fields        displacement and stress fields of elastic bodies

@@ -19,6 +19,7 @@ from raceway.commands.frame import (
 )
 from raceway.commands.inputs import load, slug, tell_faults
 from raceway.framework.registry import registry_with
+from raceway.framework.shown import largest_facts
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
@@ -33,8 +34,6 @@ class ViewOptions(NamedTuple):
     changes: tuple[str, ...]
     out: Path | None
     page: bool
-    animate: bool
-    frames: int
     plugins: tuple[Path, ...]
     as_json: bool
 
@@ -43,12 +42,6 @@ class ViewOptions(NamedTuple):
 @on_scene
 @out_folder
 @click.option("--html", "page", is_flag=True, help="Also write view.html: the bearing to turn about, tables, all pictures.")
-@click.option(
-    "--animate", is_flag=True, help="Also write orbit.gif: one turn, motions exaggerated by a factor that it says."
-)
-@click.option(
-    "--frames", type=click.IntRange(2, 720), default=36, show_default=True, help="Pictures of a turn, for --animate."
-)
 @plugin_files
 @common
 @record(ViewOptions)
@@ -58,7 +51,7 @@ def view(given: ViewOptions) -> int:
 
     \b
     Example:
-      raceway view examples/b7206.toml --html --animate
+      raceway view examples/b7206.toml --html
     """
     registry = registry_with(given.plugins)
     loaded = load(given.scene, given.changes, registry)
@@ -67,7 +60,7 @@ def view(given: ViewOptions) -> int:
     with show_progress() as progress:
         from raceway.studies.view.front import view as study
 
-        found = study(loaded, folder, page=given.page, animate=given.animate, frames=given.frames, progress=progress)
+        found = study(loaded, folder, page=given.page, progress=progress)
     content = found.to_dict()
     show(content, given.as_json, None, lambda: _screen(content))
     return 0
@@ -79,13 +72,7 @@ def _screen(content: Tables) -> RenderableType:
 
     from raceway.commands.screen.text import sections, written
 
-    rows = [
-        (f"Pictures {content['shown']}", "", ""),
-        ("largest ball load", f"{content['largest_ball_load_n']:.4g} N", "on the inner race"),
-        ("largest pressure", f"{1e-6 * content['largest_pressure_pa']:.4g} MPa", "Hertz"),
-    ]
-    if content["exaggeration"] is not None:
-        rows.append(("motions in orbit.gif", f"x {content['exaggeration']:g}", "times as large as they are"))
+    rows = [(f"Pictures {content['shown']}", "", ""), *largest_facts(content, content["shown"])]
     if content["assumed"]:
         rows.append(("rings drawn with usual", "", f"{', '.join(content['assumed'])}: the scene does not say"))
     notes = [Text(f"note: {text}", style="yellow") for text in content["warnings"]]

@@ -19,9 +19,9 @@ _RACES = ("inner", "outer")
 
 
 def contacts(bearing: Bearing, state: State, heading: str) -> Figure:
-    """Section and ellipses of the ball with the largest load."""
+    """Section and ellipses of the ball with the largest load of both races."""
     z = len(state.azimuth)
-    ball = int(np.argmax(state.load[:z]))
+    ball = int(np.argmax(state.load)) % z
     figure = new_figure(12.8, 6.2)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.25))
     _section(figure.add_subplot(grid[:, 0]), bearing, state, ball)

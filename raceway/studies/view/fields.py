@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.core.elastic.contacts.stress_profile import cells_near
 from raceway.core.hexahedron.recovery import centre_stress, largest_shear, von_mises
+from raceway.pipeline.motion import pressures
 from raceway.storage.files import write_whole
 from raceway.studies.view.mesh_picture import _png
 from raceway.studies.view.scene import new_plotter, pyvista_of, quietly
@@ -93,6 +95,17 @@ def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarra
     return Fields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
 
 
+def contacts_left_out(result: Result) -> str:
+    """What all elements' stresses lack of the contacts' own, for titles; empty where the mesh resolves the most loaded ones."""
+    words = "structure only, without the contacts' own stresses"  # resultants press on footprints far wider than Hertz's
+    if not result.model.traits.resultants:
+        if all(side.resolved for side in below_contacts(result.model.bearing, result.model, result.equilibrium)):  # type: ignore[arg-type]
+            return ""
+        words = "the mesh does not resolve the contacts' own stresses"
+    peak = pressures(result.model, result.equilibrium.contact_force).max()
+    return f"{words} (Hertz's pressure up to {1e-6 * peak:.4g} MPa)"
+
+
 def write_fields(result: Result, folder: Path) -> list[Path]:
     """Write fields.vtu and stress.png.
 
@@ -106,6 +119,7 @@ def write_fields(result: Result, folder: Path) -> list[Path]:
     balls = result.equilibrium.contact_force[: result.model.system.ball_count]
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"
+    title += f"\n{contacts_left_out(result)}".rstrip()
     image = quietly(pyvista, _section, pyvista, grid, float(result.model.azimuth[most]), title)
     return [write_whole(vtu(grid), folder / "fields.vtu"), write_whole(_png(image), folder / "stress.png")]
 
@@ -144,7 +158,7 @@ def _section(pyvista: ModuleType, grid: Any, azimuth: float, title: str) -> np.n
     section = half.slice(normal=across, origin=(0.0, 0.0, 0.0))
     stress = section.cell_data["stress"] = 1e-6 * section.cell_data["von Mises stress [Pa]"]
     top = _below(np.asarray(stress), section.compute_cell_sizes(length=False, volume=False).cell_data["Area"], _SHOWN)
-    title += f"\ncolours end at {top:.3g} MPa; the largest, below a contact, is {stress.max():.4g} MPa"
+    title += f"\ncolours end at {top:.3g} MPa; the largest of an element here is {stress.max():.4g} MPa"
     plotter = new_plotter(pyvista, _SIZE)
     bar = {
         "title": "MPa", "color": "#20262c", "title_font_size": 28, "label_font_size": 26, "fmt": "%.0f", "vertical": True,

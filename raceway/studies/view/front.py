@@ -10,7 +10,8 @@ from typing import Any
 
 from raceway.bodies.meshing import mesh_scene
 from raceway.commands.progress import ShowProgress, telling
-from raceway.errors import RacewayError, SceneError, extra
+from raceway.errors import RacewayError, extra
+from raceway.framework.doors import door
 from raceway.framework.duties import traits_of
 from raceway.framework.registry import registry_with
 from raceway.pipeline.result import Result
@@ -23,13 +24,12 @@ from raceway.studies.view.study import Wanted, draw
 from raceway.studies.view.view import View
 
 
+@door
 def view(
     scene: Any,
     out: str | Path | None = None,
     *,
     page: bool = False,
-    animate: bool = False,
-    frames: int = 36,
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> View:
@@ -40,7 +40,6 @@ def view(
     scene : Scene, path, TOML text or dict of tables, which is run first; or the Result of a run
     out : folder of the pictures; None: they are kept in memory
     page : also view.html, the bearing to turn about with all pictures, which opens without a network
-    animate : also orbit.gif, one turn with motions exaggerated;  frames : pictures in it
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
@@ -52,7 +51,7 @@ def view(
     Raises
     ------
     SceneError
-        A mistake in the scene; an animation of what does not move.
+        A mistake in the scene.
     RacewayError
         pyvista or matplotlib is missing, or a system library of theirs; a folder that cannot be written.
 
@@ -70,14 +69,12 @@ def view(
         if find_spec(package) is None:
             raise RacewayError(f"pictures need {package}: {extra('view')}")
     refuse_pictures()
-    if animate and read.excitation is None:
-        raise SceneError.at("excitation", None, "is missing, so that nothing moves: add the table, or leave out --animate")
     with tempfile.TemporaryDirectory(prefix="raceway-view-") as temporary, telling(progress) as told:
         result = given if isinstance(given, Result) else run(given, registry_with(plugins), told)
         place = Path(temporary) if folder is None else folder
         mesh = None
         if traits_of(read).every_node:
             mesh = draw_mesh(mesh_scene(read), f"{read.title}\nthe mesh", place / "mesh.png")
-        content = draw(result, place, Wanted(page, frames if animate else 0, mesh), told)
+        content = draw(result, place, Wanted(page, mesh), told)
         pictures = {Path(name).name: Path(name).read_bytes() for name in content["files"]}
         return View(content if folder is not None else {**content, "files": []}, pictures)

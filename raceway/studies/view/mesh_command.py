@@ -17,7 +17,6 @@ from raceway.commands.frame import (
     on_scene,
     out_folder,
     plugin_files,
-    programs,
     show,
 )
 from raceway.commands.inputs import load, slug, tell_faults
@@ -48,7 +47,6 @@ if TYPE_CHECKING:
     help="Format of the files by its name or ending: vtu, abaqus or inp, msh; plug-ins bring more.",
 )
 @click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
-@programs
 @plugin_files
 @common
 def mesh(

@@ -1,4 +1,4 @@
-"""The pictures of one result: PNG files, on request an HTML page and an animation.  ``raceway view``."""
+"""The pictures of one result: PNG files, on request an HTML page.  ``raceway view``."""
 
 from __future__ import annotations
 
@@ -6,21 +6,22 @@ from pathlib import Path
 from textwrap import wrap
 
 import attrs
+import numpy as np
 
+from raceway.framework.shown import race_words
+from raceway.pipeline.motion import largest_contacts
 from raceway.pipeline.result import Result
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.reports.pictures import ball_loads, orbit, save_figure
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
-from raceway.studies.many.page import Page
-from raceway.studies.view.animation import animate
 from raceway.studies.view.bearing import Bearing, State
 from raceway.studies.view.contact_stress import write_contact_stress
 from raceway.studies.view.contacts import contacts
-from raceway.studies.view.fields import write_fields
+from raceway.studies.view.fields import contacts_left_out, write_fields
 from raceway.studies.view.page import view_page
 from raceway.studies.view.scene import overview
-from raceway.studies.view.states import at_peak, at_rest, last_turn
+from raceway.studies.view.states import at_peak, at_rest
 
 
 @attrs.frozen
@@ -29,16 +30,12 @@ class Wanted:
 
     Attributes
     ----------
-    page : the HTML page;  frames : of the animation, 0 for none;  mesh : a picture of it that stands there already
+    page : the HTML page;  mesh : a picture of it that stands there already
     """
 
     page: bool = False
-    frames: int = 0
     mesh: Path | None = None
 
-
-#: A page larger than this [bytes] has its animation beside it; some room is left below the 5 MB that a page may have.
-LARGEST_PAGE = 4_900_000
 
 #: File -> its path, what is seen on it, what is told below it.
 Pictures = dict[str, tuple[Path, str, str]]
@@ -50,10 +47,9 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
     Raises
     ------
     RacewayError
-        A package that is missing, a folder that cannot be written; an animation of what does not move.
+        A package that is missing, a folder that cannot be written.
     """
 
-    turn = last_turn(result, wanted.frames) if wanted.frames else None
     bearing = Bearing.of(result)
     rest = at_rest(result)
     shown, when = rest, "at rest"
@@ -61,13 +57,6 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         shown, angle = at_peak(result)
         when = f"when a ball carries most, {angle:.0f} deg into the turn"
     pictures = _still(result, bearing, rest, (shown, when), folder, on_progress)
-    if turn is not None:
-        heading = f"{_short(result.title)}\nmotion x {turn.factor:g}"
-        path = animate(
-            bearing, turn, heading, folder / "orbit.gif", lambda done, total: on_progress("drawing orbit.gif", done, total)
-        )
-        told = f"The last turn; motions of ring and balls {turn.factor:g} times as large as they are, the orbit in the bore to fit it"
-        pictures["orbit.gif"] = path, "the turning load, ball loads and orbit", told
     if wanted.mesh is not None:
         pictures[wanted.mesh.name] = wanted.mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away"
     fields: list[Path] = []
@@ -75,6 +64,7 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         on_progress("drawing stress.png", len(pictures), 0)
         *fields, path = write_fields(result, folder)
         told = "von Mises stress at the elements' centres, in the plane of the axis and the most loaded ball, at rest"
+        told = "; ".join(filter(None, (told, contacts_left_out(result))))
         pictures["stress.png"] = path, "stress in a section of rings and ball", told
         if not result.model.traits.resultants:
             on_progress("drawing stress_contact.png", len(pictures), 0)
@@ -89,15 +79,13 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
             "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown),
             "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, shown)}."],
         }  # fmt: skip
-        path = _page(bearing, shown, text, pictures).write(folder / "view.html")
+        images = [(path.read_bytes(), seen, told) for path, seen, told in pictures.values()]
+        path = view_page(bearing, shown, text, images).write(folder / "view.html")
         pictures["view.html"] = path, "", ""
-    z = result.model.system.ball_count
     return {
         "title": result.title,
         "shown": when,
-        "largest_ball_load_n": float(shown.load[:z].max()),
-        "largest_pressure_pa": float(shown.peak.max()),
-        "exaggeration": None if turn is None else turn.factor,
+        **largest_contacts(shown.load, shown.peak, "largest"),
         "assumed": list(bearing.assumed),
         "warnings": list(result.warnings),
         "files": [str(path) for path in (*(path for path, _, _ in pictures.values()), *fields)],
@@ -136,19 +124,11 @@ def _still(
     return pictures
 
 
-def _page(bearing: Bearing, state: State, text: Tables, pictures: Pictures) -> Page:
-    """The page with all pictures, the animation among them where it has room."""
-    images = {name: (path.read_bytes(), seen, told) for name, (path, seen, told) in pictures.items()}
-    page = view_page(bearing, state, text, list(images.values()))
-    if "orbit.gif" not in images or len(page.html().encode()) <= LARGEST_PAGE:
-        return page
-    note = f"orbit.gif, {1e-6 * len(images.pop('orbit.gif')[0]):.1f} MB, is too large for this page and lies beside it; fewer `--frames` bring it in."
-    return view_page(bearing, state, {**text, "notes": [*text["notes"], note]}, list(images.values()))
-
-
 def _loads(state: State) -> str:
-    inner = state.load[: len(state.azimuth)]
-    return f"balls {inner.min():.4g} to {inner.max():.4g} N, pressure up to {1e-6 * state.peak.max():.4g} MPa"
+    loads = [f"{some.min():.4g} to {some.max():.4g} N" for some in np.split(state.load, 2)]
+    most = largest_contacts(state.load, state.peak, "largest")
+    where = race_words(most["largest_pressure_race"])
+    return f"inner race {loads[0]}, outer race {loads[1]}, pressure up to {1e-6 * most['largest_pressure_pa']:.4g} MPa ({where})"
 
 
 def _widened(bearing: Bearing, state: State) -> str:

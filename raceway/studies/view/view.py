@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.errors import SceneError
-from raceway.framework.shown import Fact, Shown, number
+from raceway.framework.shown import Fact, Shown, largest_facts
 from raceway.plugins.reports.pictures import given_axes
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
@@ -25,7 +25,7 @@ class View(Shown):
 
     Attributes
     ----------
-    content : what is shown: the largest load [N] and pressure [Pa], the exaggeration of an animation, warnings
+    content : what is shown: the largest load [N] and pressure [Pa], warnings
     pictures : name -> content of the file
 
     Examples
@@ -83,11 +83,7 @@ class View(Shown):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         shown = self.content
-        facts: list[Fact] = [
-            ("largest ball load", number(shown["largest_ball_load_n"], "N", 4), f"on the inner race, {shown['shown']}"),
-            ("largest pressure", number(1e-6 * shown["largest_pressure_pa"], "MPa", 4), "Hertz"),
-            ("pictures", "", ", ".join(self.pictures)),
-        ]
+        facts = [*largest_facts(shown, shown["shown"]), ("pictures", "", ", ".join(self.pictures))]
         where = [("written", "", str(path)) for path in self.files] or [("in memory", "", "save(folder) writes them")]
         return shown["title"], [*facts, *where, *(("warning", "", text) for text in shown["warnings"])]
 

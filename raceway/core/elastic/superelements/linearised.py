@@ -91,39 +91,41 @@ class Linearised:
         from scipy.linalg import lu_factor, lu_solve
         from scipy.sparse.linalg import LinearOperator, gmres
 
-        size, m, carried = self._size, len(self._frame), self._carried
+        size, m, carried, frame_stiffness, unknown = self._size, len(self._frame), self._carried, self._frame, self._unknown
+        # What is kept below knows the arrays and not this object, which would know it: all iterations' would stay in memory.
+        rings, balls, at = self._rings, self._balls, self._places
         factors = {}
-        for k, places in self._places.items():
-            own = self._rings.among(places, self._balls[k].stiffness)
+        for k, places in at.items():
+            own = rings.among(places, balls[k].stiffness)
             own[np.arange(len(own)), np.arange(len(own))] += 1.0
             factors[k] = lu_factor(own, overwrite_a=True, check_finite=False)
 
         def pressed(moved: np.ndarray) -> np.ndarray:
             out = np.zeros_like(moved)
-            for k, places in self._places.items():
-                out[places] = self._balls[k].stiffness @ moved[places]
+            for k, places in at.items():
+                out[places] = balls[k].stiffness @ moved[places]
             return out
 
         def apart(right: np.ndarray) -> np.ndarray:
             out = right.copy()
-            for k, places in self._places.items():
+            for k, places in at.items():
                 out[places] = lu_solve(factors[k], right[places], check_finite=False)
             return out
 
         along = apart(carried)
-        small = np.where(self._unknown[:, None], self._frame + carried.T @ pressed(along), np.eye(m))
+        small = np.where(unknown[:, None], frame_stiffness + carried.T @ pressed(along), np.eye(m))
 
         def preconditioned(right: np.ndarray) -> np.ndarray:
             moved = apart(right[:size])
-            rest = right[size:] - np.where(self._unknown, carried.T @ pressed(moved), 0.0)
+            rest = right[size:] - np.where(unknown, carried.T @ pressed(moved), 0.0)
             frame = np.linalg.solve(small, rest)
             return np.concatenate([moved + along @ frame, frame])
 
         def applied(moved: np.ndarray) -> np.ndarray:
             moved = moved.ravel()
             force, frame = pressed(moved[:size]), moved[size:]
-            on_frame = np.where(self._unknown, carried.T @ force + self._frame @ frame, frame)
-            out = moved[:size] + self._rings.times(force) - carried @ frame
+            on_frame = np.where(unknown, carried.T @ force + frame_stiffness @ frame, frame)
+            out = moved[:size] + rings.times(force) - carried @ frame
             return preconditioned(np.concatenate([out, on_frame]))
 
         operator = LinearOperator((size + m, size + m), matvec=applied, dtype=float)

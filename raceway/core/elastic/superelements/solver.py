@@ -231,6 +231,7 @@ class _Step:
             close = 0.0  # a point that begins to slide changes little of its tangent and all of its force
         if solver.last is not None and solver.last[0] is face and _alike(solver.last[1], made_of, close):
             return solver.last[2]
+        solver.last = None  # one at a time: they are large
         ball = contact.pair[chosen] % face.ball_count
         tangents = {}
         for k in range(face.ball_count):

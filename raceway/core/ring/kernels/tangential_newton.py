@@ -177,7 +177,7 @@ def settles(k, attempt, contacts, lo, table, ball, work):
     work[row.MERIT, z + k] = size
     if not np.sqrt(da * da + dr * dr) <= 1e-10 * max(-work[GAP, k], -work[GAP, z + k], 1e-12):
         return False
-    # Forces and tangents are kept from before this step.
+    # Forces and tangents are kept from before this step, which ``add_settled`` adds to the forces.
     work[row.KEPT_FORCE, k], work[row.KEPT_FORCE, z + k] = inner.force, outer.force
     work[row.KEPT_BY_GAP, k], work[row.KEPT_BY_GAP, z + k] = work[FORCE_BY_GAP, k], work[FORCE_BY_GAP, z + k]
     work[row.KEPT_BY_RATE, k], work[row.KEPT_BY_RATE, z + k] = work[FORCE_BY_RATE, k], work[FORCE_BY_RATE, z + k]

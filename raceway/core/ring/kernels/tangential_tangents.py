@@ -20,6 +20,7 @@ from raceway.core.ring.kernels import (
     BY_RADIAL,
     BY_RADIAL_SPEED,
     BY_TURN,
+    CONTACT_FORCE,
     COUPLE_BY_CENTRE,
     COUPLE_BY_SHIFT,
     FORCE,
@@ -95,9 +96,15 @@ def add_settled(k, ball_gain, seat, work, f, K, C):
     z = work.shape[1] // 2
     contacts = contacts_of(k, ball_gain, work)
     inner, outer = contacts
-    h = work[row.TANGENTIAL, k]
-    force = Pair(inner.force * inner.axial + h * inner.radial, inner.force * inner.radial + h * -inner.axial)
-    b = _linearised(k, contacts, work)
+    # Forces are those before the ball's last step: with what that changes they are off by its square.
+    b, h, da, dr = _linearised(k, contacts, work), work[row.TANGENTIAL, k], work[row.STEP, k], work[row.STEP, z + k]
+    force = Pair(
+        inner.force * inner.axial + h * inner.radial + b.p.aa * da + b.p.ar * dr,
+        inner.force * inner.radial + h * -inner.axial + b.p.ra * da + b.p.rr * dr,
+    )
+    lost, gained = inner.axial * da + inner.radial * dr, outer.axial * da + outer.radial * dr
+    work[CONTACT_FORCE, k] = max(inner.force - inner.stiffness * lost, 0.0)
+    work[CONTACT_FORCE, z + k] = max(outer.force + outer.stiffness * gained, 0.0)
     det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
     if det == 0.0:
         return False
@@ -107,11 +114,12 @@ def add_settled(k, ball_gain, seat, work, f, K, C):
     stretch, angle = work[row.COUPLE_BY_LENGTH, z + k], work[row.COUPLE_BY_ANGLE, k] * (1.0 / inner.length)
     by_e = Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial + angle * -inner.axial)
     angle = work[row.COUPLE_BY_ANGLE, z + k] * (1.0 / outer.length)
-    u = row_times_adjugate(Pair(angle * outer.radial - by_e.axial, angle * -outer.axial - by_e.radial), b.j)
+    by_place = Pair(angle * outer.radial - by_e.axial, angle * -outer.axial - by_e.radial)
+    u, couple = row_times_adjugate(by_place, b.j), work[row.COUPLE, k] + by_place.axial * da + by_place.radial * dr
     u = Pair(u.axial / det, u.radial / det)
     force_by_turn, couple_by_centre = less_column(b.by_turn, t, b.by_turn), less_row(by_e, u, b.x)
     couple_by_turn = work[row.COUPLE_BY_TURN, k] - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
-    add_couple(seat, work[row.COUPLE, k], force_by_turn, couple_by_centre, couple_by_turn, f, K)
+    add_couple(seat, couple, force_by_turn, couple_by_centre, couple_by_turn, f, K)
     by_centre, by_speed = less(b.e, t, b.x), less(b.m, t, b.m)
     if work.shape[0] > WORK_ROWS:
         work[FORCE, k], work[FORCE, z + k] = force

@@ -1,4 +1,5 @@
-"""The compiled loop; equations in ``raceway.core.schemes.one_step``.  ``coefficients``: am, af, beta, gamma, tolerance."""
+"""The compiled loop; equations in ``raceway.core.schemes.one_step``.  ``coefficients``: am, af, beta, gamma, tolerance,
+imbalance that is rounding [N]."""
 
 from typing import NamedTuple
 
@@ -10,7 +11,17 @@ from raceway.core.ring.dense import copy_matrix, solve
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.columns import accept_balls, next_balls, work_rows
 from raceway.core.ring.kernels.layout import TILT_ARM
-from raceway.core.schemes.compiled import BALLS, EVALUATIONS, NEWTON, REASON, RESIDUAL, UNBOUNDED, note_step, outer_force
+from raceway.core.schemes.compiled import (
+    BALLS,
+    EVALUATIONS,
+    EXCITATION,
+    NEWTON,
+    REASON,
+    RESIDUAL,
+    UNBOUNDED,
+    note_step,
+    outer_force,
+)
 from raceway.core.signatures import LINEAR, LOOP, MATRIX, RESPONSE, VECTOR, Balls, Contacts, Response, record
 
 _NEWTON_LIMIT = 40
@@ -55,12 +66,12 @@ def differences(formula, free, motion, trial):
         trial.v[i] = motion[1, i] + dt * ((1.0 - gamma) * motion[2, i] + gamma * trial.a[i])
 
 
-@jit(types.UniTuple(float64, 2)(FORMULA, LINEAR, MATRIX, TRIAL, RESPONSE, VECTOR, float64), inline=True)
+@jit(types.UniTuple(float64, 3)(FORMULA, LINEAR, MATRIX, TRIAL, RESPONSE, VECTOR, float64), inline=True)
 def imbalance(formula, linear, motion, trial, response, push, arm):
-    """Largest imbalance [N] and the force that it is measured by; fills ``rest`` and ``residual``.  Tilts count by the arm [m]."""
+    """Largest imbalance [N], inertia force and force of all; fills ``rest`` and ``residual``.  Tilts count by the arm [m]."""
     mass, damping, stiffness, free, load = linear
     q, v, a, rests, residual = trial
-    norm, scale = 0.0, 0.0
+    norm, moving, scale = 0.0, 0.0, 0.0
     for i in range(response.work.shape[1]):
         scale += abs(response.work[CONTACT_FORCE, i])
     for i in range(5):
@@ -74,8 +85,9 @@ def imbalance(formula, linear, motion, trial, response, push, arm):
         residual[i] = (inertia + (1.0 - formula.af) * rest + formula.af * motion[3, i]) * free[i]
         norm = max(norm, abs(residual[i]) * weight)
         # Below the rounding of the inertia forces nothing can be asked.
-        scale = max(scale, abs(push[i] + load[i]) * weight, abs(inertia) * weight, 1e-6 * held * formula.to_a * weight)
-    return norm, scale
+        moving = max(moving, abs(inertia) * weight, 1e-6 * held * formula.to_a * weight)
+        scale = max(scale, abs(push[i] + load[i]) * weight)
+    return norm, moving, max(scale, moving)
 
 
 @jit(boolean(FORMULA, LINEAR, RESPONSE, VECTOR, MATRIX, VECTOR), inline=True)
@@ -99,10 +111,11 @@ def newton_step(formula, linear, response, residual, J, dq):
 @jit(LOOP, allocates=True)
 def implicit(forces, linear, outer, coefficients, steps, state, recording):
     """See ``raceway.core.schemes.compiled``."""
-    am, af, beta, gamma, tolerance = (
-        coefficients[0], coefficients[1], coefficients[2], coefficients[3], coefficients[4],
+    am, af, beta, gamma, tolerance, rounding = (
+        coefficients[0], coefficients[1], coefficients[2], coefficients[3], coefficients[4], coefficients[5],
     )  # fmt: skip
     dt, constants, motion, counters = steps.dt, forces.constants, state.motion, recording.counters
+    arm = constants.scalars[TILT_ARM]
     formula = Formula(am, af, beta, gamma, dt, 1.0 / (beta * dt * dt), gamma / (beta * dt))
     trial = Trial(np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5))
     q, J, dq, push, norm = trial.q, np.empty((5, 5)), np.zeros(5), np.empty(5), np.inf
@@ -117,6 +130,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
         outer_force(outer, t, push)
         for i in range(5):
             # Start from constant acceleration.
+            counters[EXCITATION] = max(counters[EXCITATION], abs(push[i]) * (1.0 if i < 3 else 1.0 / arm))
             q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
         before, halvings, found = np.inf, 0, False
         for _ in range(_NEWTON_LIMIT):
@@ -125,11 +139,13 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
             if forces.system(t, q, trial.v, balls, contacts, constants, response) != 0:
                 counters[REASON] = BALLS
                 return step
-            norm, scale = imbalance(formula, linear, motion, trial, response, push, constants.scalars[TILT_ARM])
+            norm, moving, scale = imbalance(formula, linear, motion, trial, response, push, arm)
             if not np.isfinite(norm):
                 counters[REASON] = UNBOUNDED
                 return step
-            if norm <= tolerance * scale + _NOTHING:
+            enough = tolerance * max(counters[EXCITATION], moving) + rounding + _NOTHING
+            # Forces of a law that iterates may be rougher than rounding: what no longer shrinks is measured by the largest of all.
+            if norm <= enough or 0.5 * before < norm <= tolerance * scale:
                 found = True
                 break
             if norm > 2.0 * before and halvings < _HALVINGS:

@@ -20,7 +20,7 @@ class OneStep:
     Attributes
     ----------
     alpha_m, alpha_f : weights of the old step's inertia and other forces;  beta, gamma : Newmark's
-    tolerance : residual of a step's iteration over the largest force
+    tolerance : residual of a step's iteration over the largest force of excitation and inertia
     """
 
     alpha_m: float = 0.0
@@ -36,7 +36,8 @@ class OneStep:
         from raceway.core.schemes.advance import advance
         from raceway.core.schemes.one_step.compiled import implicit
 
-        numbers = np.array([self.alpha_m, self.alpha_f, self.beta, self.gamma, self.tolerance])
+        rounding = system.force_rounding(start.q, start.ball)
+        numbers = np.array([self.alpha_m, self.alpha_f, self.beta, self.gamma, self.tolerance, rounding])
         return advance(implicit, system, start, schedule, numbers, on_chunk)
 
     def stepped(self, system: SteppedSystem, recorder: Recorder) -> None:

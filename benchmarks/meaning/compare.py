@@ -1,0 +1,88 @@
+"""First sentences of comparisons against their own tables, by a judge that knows rows and numbers alone."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import numpy as np
+
+import raceway as rw
+from benchmarks.evidence import Row, below
+
+COMMAND = "python -m benchmarks.meaning compare"
+#: Comparisons that are made, and how far a percentage in a sentence may be off: it has two digits after the point or one.
+COUNT, _DIGIT = 20, 0.06
+_AXES: dict[str, tuple[Any, ...]] = {
+    "excitation.speed_rpm": (8000, 14000, 20000), "contact.kind": ("hertz", "penalty"), "supports.tilt": ("locked", "free"),
+    "load.axial": (400, 900, 1500), "kinematics.ball_inertia": (False, True), "excitation.kind": ("unidirectional", "bidirectional"),
+    "kinematics.gyroscopic": ("none", "outer_race"), "bearing.ball_count": (10, 12),
+}  # fmt: skip
+_FORCE = {"kind": "bidirectional", "speed_rpm": 12000, "amplitude": "constant", "force": 50.0}
+
+
+def rows() -> list[Row]:
+    rng, contradictions, judged, notes = np.random.default_rng(5), 0, 0, []
+    for number in range(COUNT):
+        names = [str(name) for name in rng.choice(list(_AXES), 2 + number % 2, replace=False)]
+        static = number % 5 == 0
+        if static:
+            names = [name for name in names if not name.startswith("excitation")] or ["load.axial"]
+        scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": float(rng.choice([500.0, 1200.0]))}}
+        scene |= (
+            {"kinematics": {"spin_speed_rpm": 12000.0}}
+            if static
+            else {"excitation": _FORCE, "integrator": {"kind": "quasi_static"}}
+        )
+        found = rw.compare(scene, {name: list(_AXES[name]) for name in names})
+        wrong = contradiction(found.short_words[0], [(row.point, value(row.result)) for row in found.rows], names)
+        contradictions += bool(wrong)
+        judged += all((number := value(row.result)) is not None and number > 0.0 for row in found.rows)
+        notes += [f"{number}: {wrong}"] if wrong else []
+    return [
+        below(
+            f"first sentences of {COUNT} comparisons that contradict their tables",
+            contradictions,
+            0,
+            COMMAND,
+            "; ".join(notes),
+        )
+    ]
+
+
+def value(result: Any) -> float | None:
+    """What a table shows first: K, or kxx of a static scene [N/m]."""
+    motion, rest = result.get("identification"), result.get("equilibrium")
+    return motion["equivalent_stiffness"] if motion else rest["stiffness"][0][0] if rest else None
+
+
+def contradiction(sentence: str, table: list[tuple[Any, float | None]], names: list[str]) -> str:
+    """What a sentence says that the table does not; empty where nothing.
+
+    Notes
+    -----
+    The mean change of an axis is that of the logarithm between its first and last value over the table's corners; an axis that the
+    sentence passes over must change nothing by half a per cent, and those that it names stand in the order of their sizes.
+    """
+    if any(number is None or number <= 0.0 for _, number in table):
+        return ""  # the sentence may hold some axes then: the words say which
+    changes = {}
+    for name in names:
+        ends = _AXES[name][0], _AXES[name][-1]
+        corners = [(point, number) for point, number in table if all(point[k] in (_AXES[k][0], _AXES[k][-1]) for k in names)]
+        means = [np.mean([math.log(number) for point, number in corners if number and point[name] == end]) for end in ends]
+        changes[name] = 100.0 * math.expm1(float(means[1] - means[0]))
+    said = {
+        name: float(found[1])
+        for name in names
+        if (found := re.search(rf"{re.escape(name)} from [^;]*? by ([+-][0-9.]+) %", sentence))
+    }
+    for name, number in said.items():
+        if abs(number - changes[name]) > _DIGIT:
+            return f"{name} {number} for {changes[name]:.2f} %"
+    for name in names:
+        if name not in said and abs(changes[name]) > 0.5:
+            return f"{name} is passed over, {changes[name]:.2f} %"
+    sizes = [abs(math.log1p(changes[name] / 100.0)) for name in sorted(said, key=sentence.index)]
+    return "" if sizes == sorted(sizes, reverse=True) else "not in the order of size"

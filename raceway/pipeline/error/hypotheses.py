@@ -1,0 +1,243 @@
+"""Spread of K and of the static stiffness over the hypotheses of ``[kinematics]`` that a scene leaves at their defaults.
+
+Notes
+-----
+No numerical error knows of it: two programs with other hypotheses solve other equations.  Each hypothesis, and all of them
+together, is put into the ring that was run; its equilibrium gives kyy, its steady orbit near the recorded one K.  Both are
+compared with the same solver's values under the scene's own hypotheses, so that errors of the orbits cancel.
+
+Nothing is solved where a bound says that it would change nothing: gyroscopic moments change kyy by less than 3 F_c / Q and the
+growth u of the inner raceway by less than u / d (F_c centrifugal force, Q inner load, d inner approach of a loaded ball).  The
+moment over the ball's diameter is some 0.4 F_c sin(beta); the factors are the largest that 400 bearings of the catalogue at random
+loads and speeds (n d_m 3e3 to 2e6 mm r/min) gave, rounded up.  They bound kyy, and K away from resonances.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import product
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import growth_of
+from raceway.bodies.equilibrium import Equilibrium
+from raceway.bodies.model import Model
+from raceway.bodies.mounting import place_ring
+from raceway.bodies.rigid.build import add_moments
+from raceway.core.ring.address import by_address
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
+from raceway.core.ring.orbit import Orbit, orbit_near
+from raceway.core.ring.surrogate import compiled, surrogate
+from raceway.core.signals.identification import Identification, stiffness
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.duties import renews
+from raceway.pipeline.error.steady_motion import last_turn
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import Simulation
+from raceway.planning.combinations import refuse_what_cannot_run
+from raceway.scene.scene import Scene
+from raceway.storage.tables import Tables
+
+#: Keys of ``[kinematics]`` that are hypotheses, with the values beside each default.
+HYPOTHESES: dict[str, tuple[Any, ...]] = {"gyroscopic": ("outer_race", "shared"), "ring_growth": (True,)}
+#: Relative change of a stiffness that is not worth a solution or a sentence.
+NEGLIGIBLE = 1e-3
+#: Times of a turn, an odd number, and residual of orbits that are compared: both cancel in their ratio.
+_SAMPLES, _TOLERANCE, _ROUGH = 17, 1e-7, 1e-4
+#: Iterations from the motion under the scene's own hypotheses, after which one from the linear response is tried.
+_LIMIT = 12
+#: Distance of the steady orbit's Z from the identified one, over its size, up to which that orbit is the motion.
+_SAME = 0.05
+_MOMENTS, _GROWTH = 3.0, 1.0
+
+Tangent = Callable[[np.ndarray], float | None]
+Secant = Callable[[Model, Equilibrium], float]
+
+
+def model_spread(
+    model: Model, equilibrium: Equilibrium, found: Identification | None, simulation: Simulation | None, follow: Tangent
+) -> tuple[Tables | None, str]:
+    """``error.model`` of result.json, and ``error.how.model``.
+
+    Parameters
+    ----------
+    follow : of a stiffness (5, 5) kyy with tilts that follow [N/m]; None where tilts are locked
+    """
+    values, why = _alternatives(model)
+    if not values:
+        return None, why
+    bound = _bound(model, equilibrium, tuple(values))
+    if bound < NEGLIGIBLE:
+        return _table(values, [], bound), f"not solved: a closed bound of the change of kyy is {bound:.1e}{why}"
+    secant, how = _secant(model, equilibrium, found, simulation)
+    scene, own = model.scene, {key: getattr(model.scene.kinematics, key) for key in values}
+    still = (equilibrium.stiffness[1, 1], follow(equilibrium.stiffness))
+    rows: list[tuple[Tables, Tables]] = []
+    for chosen in product(*([own[key], *values[key]] for key in values)):
+        changed = dict(zip(values, chosen, strict=True))
+        if changed == own:
+            continue
+        other = attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, **changed))
+        change: Tables = dict.fromkeys(("equivalent_stiffness", "kyy", "kyy_tilts_follow"))
+        try:
+            one, there = _under(model, other, equilibrium)
+            now = there.stiffness[1, 1], follow(there.stiffness)
+            change["kyy"], change["kyy_tilts_follow"] = (
+                None if a is None or b is None else float((b - a) / abs(a)) for a, b in zip(still, now, strict=True)
+            )
+            moved = np.nan if secant is None else secant(one, there)
+            change["equivalent_stiffness"] = moved if np.isfinite(moved) else None
+        except (RacewayError, ArithmeticError, np.linalg.LinAlgError) as error:
+            how += f"; not under {changed}: {str(error).splitlines()[0]}"
+        rows.append(({key: value for key, value in changed.items() if value != own[key]}, change))
+    return _table(values, rows, bound), f"equilibria under each hypothesis and all together; K: {how}{why}"
+
+
+def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
+    """Upper estimate of the relative change of kyy by the hypotheses left at their defaults; None where there are none."""
+    values, _ = _alternatives(model)
+    return _bound(model, equilibrium, tuple(values)) if values else None
+
+
+def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
+    """Values of the keys left at their defaults that the scene can run with, and what it cannot."""
+    scene = model.scene
+    if scene.spin_speed == 0.0:
+        return {}, "nothing turns"
+    left = [key for key in HYPOTHESES if not scene.says(f"kinematics.{key}")]
+    if not left:
+        return {}, "every hypothesis of [kinematics] is stated by the scene"
+    if compiled(model.system) is None:
+        return {}, f"not estimated: equilibria of bodies '{scene.bodies.name}' at surface points take too long"
+    if scene.contact.law.state_size > 0 or scene.spin_changes:
+        return {}, "not estimated: a law with memory or a speed that changes has no steady motion to compare with"
+    values: dict[str, list[Any]] = {}
+    why = ""
+    for key in left:
+        for value in HYPOTHESES[key]:
+            try:
+                refuse_what_cannot_run(attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, **{key: value})))
+            except SceneError as error:
+                why = f"{why}; without kinematics.{key}: {error.mistakes[0].message}"
+                break
+            values.setdefault(key, []).append(value)
+    return values, why if values else f"no other hypothesis can be run here{why}"
+
+
+def _bound(model: Model, equilibrium: Equilibrium, keys: tuple[str, ...]) -> float:
+    inner = equilibrium.contact_force[: model.system.ball_count]
+    loaded, out = inner > 0.0, 0.0
+    if not loaded.any():
+        return np.inf
+    if "gyroscopic" in keys:
+        out += _MOMENTS * float((model.system.table[loaded, CENTRIFUGAL] / inner[loaded]).max())
+    if "ring_growth" in keys:
+        grown = attrs.evolve(model.scene, kinematics=attrs.evolve(model.scene.kinematics, ring_growth=True))
+        more, now = growth_of(grown, model.basis.row), model.basis.growth
+        radial = np.abs(more.common[1] + more.own[:, 1] - now.common[1] - now.own[:, 1]).max()
+        out += _GROWTH * float(radial / np.max(model.inner.approach(np.where(loaded, inner, inner[loaded].min()))))
+    return out
+
+
+def _under(model: Model, scene: Scene, near: Equilibrium) -> tuple[Model, Equilibrium]:
+    """The model and its equilibrium under other ``[kinematics]``, without building its bodies again."""
+    before = compiled(model.system)
+    assert before is not None, "refused above"
+    growth, scalars, table, kernel = (
+        growth_of(scene, model.basis.row),
+        before.scalars.copy(),
+        before.table.copy(),
+        before.kernel,
+    )
+    scalars[REST_AXIAL : TILT_ARM + 1] += growth.common - model.basis.growth.common
+    table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.own - model.basis.growth.own
+    if scene.kinematics.gyroscopic != "none":
+        from raceway.core.ring.kernels.condensed import condensed
+        from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
+
+        add_moments(scalars, scene, model.geometry)
+        kernel = condensed(rigid_tangential) if before.condensed else rigid_tangential
+    system = attrs.evolve(before, scalars=scalars, table=table, kernel=kernel)
+    if system.mounted_params is not None and system.reach is not None:  # a law is renewed from standstill, as in a run
+        system = system.running(system.mounted_params, np.zeros_like(system.reach))
+    basis, q = attrs.evolve(model.basis, growth=growth), near.displacement
+    if renews(scene.contact.law) or (scene.bearing.preloaded and scene.bearing.preload_kind == "spring"):
+        q = place_ring(scene, basis, system)
+    system = by_address(system)
+    other = attrs.evolve(
+        model, scene=scene, system=system, bearing=attrs.evolve(model.bearing, basis=basis, system=system, guess=q)
+    )
+    return other, settle(other)
+
+
+def _secant(
+    model: Model, equilibrium: Equilibrium, found: Identification | None, simulation: Simulation | None
+) -> tuple[Secant | None, str]:
+    """Relative change of K by another model with its equilibrium, or None; and how, or why not."""
+    if found is None:
+        return None, "the scene is static"
+    method, identifier, period = model.scene.integrator.method, model.scene.identifier.method, model.excitation.period_s
+    if "speeds" in identifier.needs:
+        return None, "not estimated: it is fitted over several speeds"
+    if "record" not in identifier.needs:
+        here = found.equivalent_stiffness
+        return (
+            lambda other, there: float((identifier.identify([], there, other).equivalent_stiffness - here) / abs(here)),
+            f"identifier '{model.scene.identifier.kind}' at each equilibrium",
+        )
+    turn = None if simulation is None or period is None else last_turn(simulation.whole, period)
+    if model.scene.contact.friction > 0.0 or turn is None:
+        return None, "not estimated: with friction, or without whole turns, there is no steady orbit to compare with"
+    half = np.fft.rfft(turn.displacement, axis=0)[: _SAMPLES // 2 + 1] / len(turn.displacement)
+    first = _SAMPLES * np.fft.irfft(half, _SAMPLES, axis=0)
+
+    def orbit(one: Model, at: np.ndarray, limit: int) -> Orbit:
+        ring = one.bearing.orbiting(one.system)
+        return orbit_near(ring, period, at, _SAMPLES, method.inertial, _TOLERANCE, limit)
+
+    def value(one: Orbit) -> complex:
+        waves = 2.0 / _SAMPLES * np.exp(-2j * np.pi * np.arange(_SAMPLES) / _SAMPLES)
+        return stiffness(waves @ one.force, waves @ one.displacement)
+
+    try:
+        own = orbit(model, first, 5 * _LIMIT)
+    except RacewayError as error:
+        return None, f"not estimated: {str(error).splitlines()[0]}"
+    base = value(own)
+    if not abs(base - found.dynamic_stiffness) <= _SAME * abs(base):
+        return None, "not estimated: the motion that was identified is no steady orbit"
+
+    def secant(other: Model, there: Equilibrium) -> float:
+        apart = there.displacement - equilibrium.displacement
+        try:
+            now = value(orbit(other, own.displacement + apart, _LIMIT))
+        except RacewayError:  # balls lift off: from the linear response, on a mesh that follows the motion
+            if not method.inertial:
+                raise
+            from raceway.core.periodic.direct import directly, problem_of
+            from raceway.core.periodic.told import first_line
+
+            q, system = there.displacement, surrogate(other.bearing.orbiting(other.system))
+            problem = problem_of(system, found.speed, q)
+            now = first_line(directly(problem, q, there.stiffness, _ROUGH).solved)[0]
+        return float((now.real - base.real) / abs(base.real + model.mass_used * found.speed**2))
+
+    return secant, "of the steady orbit near the recorded one"
+
+
+def _table(values: dict[str, list[Any]], rows: list[tuple[Tables, Tables]], bound: float) -> Tables:
+    """``error.model``: ranges over all rows and 0, None where a row lacks the number; each hypothesis by itself; the bound."""
+    names = ("equivalent_stiffness", "kyy", "kyy_tilts_follow")
+    numbers = {name: [change[name] for _, change in rows] for name in names}
+    return {
+        **{name: None if not all_ or None in all_ else [min(0.0, *all_), max(0.0, *all_)] for name, all_ in numbers.items()},
+        "hypotheses": [
+            {"key": f"kinematics.{key}", "value": value, **change}
+            for changed, change in rows
+            if len(changed) == 1
+            for key, value in changed.items()
+        ],
+        "bound": bound,
+    }

@@ -1,0 +1,216 @@
+"""Doors of ``import raceway`` and of the command line: what is wrong is told by its name, once, and nothing is lost in silence."""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+import os
+import pickle
+import sqlite3
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.framework.doors import door
+from raceway.storage.files import write_whole
+from validation.command_line import invoke
+
+SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+
+
+@door
+def opened(out=None, points: int = 1, seed: int = 0, patience: float = 1.0, plugins=(), name: str = "", progress=None):
+    return out, points, seed, patience, plugins, name, progress
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "rule"),
+    [
+        ("out", 3, "path"), ("out", b"x", "path"), ("out", "x\0y", "path"), ("points", 0, "from 1"), ("points", 2.0, "whole"),
+        ("points", True, "whole"), ("points", 10**12, "1e+09"), ("seed", -1, "from 0"), ("patience", float("nan"), "from 0"),
+        ("patience", "3", "from 0"), ("patience", 10**400, "from 0"), ("plugins", [None], "path"), ("name", 3, "text"), ("progress", 3, "function"),
+        ("progress", len, "function"), ("progress", int, "function"),
+    ],
+)  # fmt: skip
+def test_a_wrong_argument_is_told_by_its_name(argument, value, rule):
+    with pytest.raises(rw.SceneError) as caught:
+        opened(**{argument: value})
+    (mistake,) = caught.value.mistakes
+    assert mistake.path == argument and mistake.value is value and rule in mistake.message
+
+
+def test_what_means_the_same_is_converted(tmp_path):
+    out, points, *_, plugins, _, _ = opened(str(tmp_path), np.int64(7), plugins=str(tmp_path))
+    assert out == tmp_path and (points, type(points)) == (7, int) and plugins == [tmp_path]
+    assert opened(patience=float("inf"))[3] == float("inf")
+    assert opened() == (None, 1, 0, 1.0, (), "", None)
+
+
+def test_iterators_and_ranges_are_values_of_an_axis():
+    for values in ((axial for axial in (300.0, 400.0)), range(300, 401, 100), map(float, (300, 400))):
+        assert [row.point["load.axial"] for row in rw.compare(SCENE, {"load.axial": values}).rows] == [300, 400]
+    with pytest.raises(rw.SceneError, match="10001 runs are more"):
+        rw.compare(SCENE, {"load.axial": itertools.count(1)})
+
+
+@pytest.mark.parametrize(
+    ("call", "rule"),
+    [
+        (lambda: rw.run({**SCENE, "load": {"axial": (x for x in (1.0,))}}), "no generator"),
+        (lambda: rw.sweep(SCENE, 3), "`axes` = 3: must be a mapping"),
+        (lambda: rw.fit({}, SCENE, "load.axial", run_out=iter((1e-6, "x"))), "`run_out`.*two finite numbers"),
+        (lambda: rw.fit({}, SCENE, "load.axial", columns={"x": 3}), "`columns`.*text both"),
+        (lambda: write_whole(b"", Path("")), "it is a folder"),
+    ],
+)
+def test_what_no_argument_can_be_is_refused_in_words(call, rule):
+    with pytest.raises(rw.RacewayError, match=rule):
+        call()
+
+
+def test_a_door_stays_the_function_that_it_is():
+    assert pickle.loads(pickle.dumps(rw.run)) is rw.run
+    assert "patience" in inspect.signature(rw.run).parameters and "Parameters" in rw.run.__doc__
+    with pytest.raises(TypeError, match=r"run\(\) got an unexpected keyword argument 'no_such'"):
+        rw.run(SCENE, no_such=1)
+
+
+def test_results_take_folders_as_text(tmp_path):
+    result = rw.run(SCENE)
+    assert result.save(str(tmp_path)) == tmp_path / "result.json"
+    for wrong in (3, None, b"x", [tmp_path]):
+        with pytest.raises(rw.SceneError, match="folder"):
+            result.save(wrong)
+    with pytest.raises(rw.SceneError, match="must be text"):
+        result.gradient(3)
+
+
+def test_tables_that_are_nested_without_end_are_no_scene(tmp_path):
+    deep = {}
+    for _ in range(3000):
+        deep = {"a": deep}
+    for source in (deep, f"[{'.'.join(['a'] * 3000)}]\nb = 1\n"):
+        with pytest.raises(rw.SceneError, match="nested more than 32 deep"):
+            rw.run(source)
+
+
+def test_what_ends_a_generator_does_not_end_the_loading_of_a_plugin(tmp_path):
+    file = tmp_path / "ends.py"
+    file.write_text("raise GeneratorExit('here')\n")
+    with pytest.raises(rw.PluginError, match="line 1: GeneratorExit: here"):
+        rw.check(SCENE, plugins=file)
+
+
+@pytest.mark.parametrize("threads", ["0", "-1", "many"])
+def test_a_number_of_threads_that_numba_cannot_take(threads):
+    code = "import raceway as rw\ntry: rw.run({})\nexcept rw.RacewayError as why: print(why)"
+    found = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, "NUMBA_NUM_THREADS": threads}, capture_output=True, text=True
+    )
+    assert f"`NUMBA_NUM_THREADS` = '{threads}': must be a whole number from 1" in found.stdout and not found.stderr
+
+
+def test_a_terminal_without_columns_has_those_of_any():
+    words = [sys.executable, "-m", "raceway", "plan", "examples/minimal.toml"]
+    found = subprocess.run(words, env={**os.environ, "COLUMNS": "0"}, capture_output=True, text=True)
+    assert found.returncode == 0 and "Kept" in found.stdout
+
+
+def test_damaged_rows_of_a_store_are_counted(tmp_path):
+    store = tmp_path / "store"
+    whole = rw.sweep(SCENE, {"load.axial": [400.0, 600.0, 800.0]}, store=store)
+    assert whole.attrs["damaged_rows"] == 0
+    with closing(sqlite3.connect(store / "points.sqlite")) as connection, connection:
+        connection.execute("UPDATE points SET content = replace(content, '1', '2') WHERE number = 1")
+        connection.execute("DELETE FROM points WHERE number = 2")
+    from raceway.studies.sweep.store import open_store
+
+    with open_store(store) as there, pytest.warns(UserWarning, match="2 of 3 rows are damaged"):
+        found = there.to_xarray()
+    assert found.attrs["damaged_rows"] == 2 and found.status.values.tolist() == ["done", "waiting", "waiting"]
+
+
+def test_text_of_a_store_that_is_no_text_is_told(tmp_path):
+    store = tmp_path / "store"
+    rw.sweep(SCENE, {"load.axial": [400.0, 600.0]}, store=store)
+    file = store / "points.sqlite"
+    file.write_bytes(file.read_bytes().replace(b"CREATE TABLE points", b"CREATE TABLE poi\xff\xfe\xff"))
+    with pytest.raises(rw.RacewayError, match="points.sqlite"):
+        rw.export_ross(store)
+
+
+@pytest.mark.slow
+def test_a_band_of_a_plugin_in_a_file_works_in_processes(tmp_path):
+    words = [
+        "--plugin",
+        "tests/cubic_law.py",
+        "--set",
+        "contact.kind=cubic",
+        "--tolerance",
+        "load.axial=±10 %",
+        "--count",
+        "4",
+    ]
+    found = invoke("band", "examples/minimal.toml", *words, "--processes", "2", "--out", tmp_path, "--no-pictures", "--json")
+    assert found.exit_code == 0, found.output
+
+
+def test_soft_balls_are_told_by_their_key():
+    scene = SCENE | {"bodies": {"kind": "condensed"}, "bearing": {"preset": "B7206C", "balls": {"young": 1e6}}}
+    with pytest.raises(rw.SceneError, match=r"bearing.balls.young` = 1000000.0: is too soft"):
+        rw.run(scene)
+
+
+def test_what_runs_away_is_not_meshed():
+    """A contact as large as a ball, and one that no mesh has room for, are failures of the numbers."""
+    from raceway.core.contact.hertz import Ellipse
+    from raceway.core.patches.contact import BeyondPatch
+    from raceway.core.patches.pool import Pool
+    from raceway.core.patches.reach import Reach
+
+    far = BeyondPatch(-1.0, 0.26, 1e13, across=False)
+    reach = Reach((0.2, 0.3), (0.2, 0.3), 1e-4, 100.0, 100.0)
+    bearing = rw.build_model(scene := rw.scene_from_dict(SCENE), rw.make_plan(scene)).basis
+    assert isinstance(bearing.inner, Ellipse)
+    with pytest.raises(rw.ConvergenceError, match="run away"):
+        reach.grown(far, bearing.inner, 4e-3, 1.2)
+
+    def solve():
+        raise far
+
+    def wider(_left):
+        raise rw.MeshError("no room")
+
+    with pytest.raises(rw.ConvergenceError, match=r"run away.*no room"):
+        Pool((None, None), wider=wider).widened(solve)
+
+
+def test_linearised_bearings_go_with_their_iteration():
+    """Those of all iterations stayed in memory: each knew itself through what it keeps."""
+    import gc
+    import weakref
+
+    from raceway.core.elastic.superelements import linearised
+    from tests.test_elastic_scene import scene as elastic_scene
+
+    alive, most, plain = weakref.WeakSet(), [0], linearised.Linearised.__init__
+
+    def counted(self, *given):
+        alive.add(self)
+        plain(self, *given)
+        most[0] = max(most[0], len(alive))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(linearised, "_FACTORED", 0)
+        patch.setattr(linearised.Linearised, "__init__", counted)
+        gc.disable()
+        try:
+            rw.run(elastic_scene())
+        finally:
+            gc.enable()
+    assert most[0] == 1

@@ -1,0 +1,110 @@
+"""Tangent responses of damped contacts: balls condensed out at the frequency of the motion."""
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.bodies.model import build_model
+from raceway.core.ring.kernels.layout import DAMPING, LEVER, SIDE, TILT_ARM, TIME_CONSTANT
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
+from raceway.scene.reading import scene_from_dict
+
+SPEED = 24000.0
+#: Force of whole runs over the axial load: Z of an orbit is off by its square, 6e-8, and by what the run claims, 1e-8.
+SMALL = 2.5e-4
+
+
+def tables(identifier, contact, **changes):
+    found = {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": 400.0},
+        "supports": {"tilt": "locked"},
+        "contact": contact,
+        "kinematics": {"spin_speed_rpm": SPEED},
+        "excitation": {"kind": "bidirectional", "amplitude": "constant", "force": 400.0 * SMALL, "speed_rpm": SPEED},
+        "integrator": {"kind": "periodic"},
+        "identifier": {"kind": identifier},
+    }
+    for name, table in changes.items():
+        found[name] = {**found.get(name, {}), **table}
+    return scene_from_dict(found)
+
+
+def model_of(contact, **changes):
+    scene = tables("tangent", contact, **changes)
+    model = build_model(scene, make_plan(scene))
+    return model, settle(model)
+
+
+def complex_condensation(system, equilibrium, w):
+    """S(j w) of rigid balls with Hertz contacts, by complex arithmetic ball by ball."""
+    centre, direction = system.centre_vectors(equilibrium.displacement, ball=equilibrium.ball)
+    out, count = np.zeros((5, 5), dtype=complex), system.ball_count
+    for k in range(count):
+        contacts = []
+        reaches = (centre[k] - equilibrium.ball[k, :2], equilibrium.ball[k, :2])
+        for reach, c in zip(reaches, (k, count + k), strict=True):
+            force, length = equilibrium.contact_force[c], np.linalg.norm(reach)
+            stiffness = 1.5 * force / -equilibrium.gap[c] if force > 0.0 else 0.0
+            dashpot = stiffness * system.scalars[TIME_CONSTANT] + (force > 0.0) * system.scalars[DAMPING]
+            along = np.outer(reach, reach) / length**2
+            contacts.append((stiffness + 1j * w * dashpot) * along + force / length * (np.eye(2) - along))
+        inner, outer = contacts
+        (c, s), (side, lever), arm = direction[k], system.table[k, [SIDE, LEVER]], system.scalars[TILT_ARM]
+        move = np.array([[side, 0.0, 0.0, side * arm * s, -side * arm * c], [0.0, c, s, -lever * s, lever * c]])
+        out += move.T @ (inner - inner @ np.linalg.solve(inner + outer, inner)) @ move
+    return out
+
+
+@pytest.mark.parametrize(
+    ("contact", "limit"),
+    [
+        ({"time_constant": 1e-6}, 1e-12),
+        ({"time_constant": 2e-4}, 1e-11),
+        ({"damping": 3e3}, 1e-10),
+        ({"damping": 1e5}, 1e-8),
+    ],
+)
+@pytest.mark.parametrize("load", [{"axial": 400.0}, {"axial": 400.0, "radial": [900.0, 200.0]}])
+def test_stiffness_at_a_frequency_equals_complex_arithmetic(contact, load, limit):
+    """Continued from real rates, against every ball condensed at j w; rounding grows with w c / k: 3 at 1e5 N s/m."""
+    model, equilibrium = model_of(contact, load=load)
+    for w in (0.1, 300.0, 2.0 * np.pi * SPEED / 60.0):
+        found = model.system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)
+        wanted = complex_condensation(model.system, equilibrium, w)
+        size = np.sqrt(np.abs(np.diag(wanted)))
+        assert np.abs((equilibrium.stiffness + found - wanted) / np.outer(size, size)).max() < limit
+        assert model.system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, -w) == pytest.approx(
+            found.conj()
+        )
+
+
+def test_slow_motions_have_the_damping_of_the_equilibrium():
+    """C of the equilibrium is the limit of slow motions: what is left falls with w^2."""
+    model, equilibrium = model_of({"time_constant": 1e-4})
+    off = []
+    for w in (2000.0, 1000.0):
+        found = model.system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)
+        off.append(abs(found.imag[1, 1] / w / equilibrium.damping[1, 1] - 1.0))
+    assert 1e-4 < off[1] < 0.3 * off[0] < 0.01
+
+
+CASES = [
+    ({"time_constant": 1e-4}, {}),
+    ({"time_constant": 1e-4}, {"kinematics": {"ball_inertia": False}}),
+    ({"time_constant": 1e-4}, {"kinematics": {"gyroscopic": "outer_race"}}),
+    ({"time_constant": 1e-4}, {"kinematics": {"orbiting": True}}),
+    ({"time_constant": 1e-4}, {"supports": {"tilt": "free"}}),
+    pytest.param({"time_constant": 1e-4}, {"bodies": {"kind": "condensed"}}, marks=pytest.mark.slow),
+    ({"damping": 3000.0}, {"load": {"radial": [300.0, 0.0]}}),
+]
+
+
+@pytest.mark.parametrize(("contact", "changes"), CASES)
+def test_tangent_response_is_the_limit_of_whole_runs(contact, changes):
+    """K and C under a small force against the periodic motion, which solves ring and balls in time."""
+    run = rw.run(tables("fft_1x", contact, **changes))
+    tangent = rw.run(tables("tangent", contact, **changes)).identification
+    error = abs(tangent.dynamic_stiffness / run.identification.dynamic_stiffness - 1.0)
+    assert error < 3.0 * SMALL**2 + 3.0 * run.error["total"]
