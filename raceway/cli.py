@@ -127,7 +127,7 @@ class RunOptions(NamedTuple):
 @click.option("--pictures", is_flag=True, help="The report 'pictures': orbit, spectrum and ball loads as PNG.")
 @click.option(
     "--patience", type=click.FloatRange(min=0.0), default=20.0, show_default=True, metavar="FACTOR",
-    help="Stop a run that takes this many times its planned time; inf: never.",
+    help="Stop a run that takes this many times its planned time, or far more memory than planned; inf: never.",
 )  # fmt: skip
 @plugin_files
 @explained

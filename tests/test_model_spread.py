@@ -90,7 +90,6 @@ def test_what_is_stated_is_no_spread():
         ({"kinematics": {"spin_speed_rpm": 0.0}}, "nothing turns"),
         ({"kinematics": {"spin_speed_rpm": 100.0}}, "closed bound"),
         ({"kinematics": {"spin_speed_rpm": 5000.0, "ball_inertia": False}}, "without kinematics.gyroscopic"),
-        ({"mounting": {"shaft_interference": 1e-7}}, "without kinematics.ring_growth"),
     ],
 )
 def test_what_is_not_solved_says_why(changes, why):

@@ -107,8 +107,11 @@ class Film:
 
     @classmethod
     def examples(cls) -> list[Film]:
-        """Instances for the conformance suite."""
-        return [cls(viscosity=0.03, pressure_viscosity=2e-8), cls(viscosity=0.3, pressure_viscosity=1e-8, starvation=0.5)]
+        """Instances for the conformance suite; rules for mineral oils hold in SI units alone."""
+        return [
+            cls(viscosity=0.03, pressure_viscosity=2e-8, temperature_viscosity=0.03),
+            cls(viscosity=0.3, pressure_viscosity=1e-8, temperature_viscosity=0.05, starvation=0.5),
+        ]
 
     @property
     def _line(self) -> Walther:

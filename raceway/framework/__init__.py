@@ -2,6 +2,7 @@
 
 contracts   duties of each kind, numbered
 hookspecs   hooks that a plug-in may implement;  higher_types: names of types that both are handed
+doors       arguments of public functions, read by their names
 options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
 duties      calls of the duties of bodies, with their faults put to the plug-in

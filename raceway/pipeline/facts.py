@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 def facts(result: Result) -> list[Fact]:
     """Name, value with unit, remark."""
-    return [*_identified(result), *_equilibrium(result), *_computed(result)]
+    count = len(result.warnings)
+    warned = [(f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0])] if count else []
+    return [*_identified(result), *warned, *_equilibrium(result), *_computed(result)]
 
 
 def _identified(result: Result) -> list[Fact]:
@@ -81,7 +83,7 @@ def _equilibrium(result: Result) -> list[Fact]:
 
 
 def _computed(result: Result) -> list[Fact]:
-    scene, cost, count = result.model.scene, result.cost, len(result.warnings)
+    scene, cost = result.model.scene, result.cost
     bearing: Tables = scene.source["bearing"]
     kind = f"{scene.bodies.name} bodies, {scene.contact.kind}, {scene.integrator.kind}"
     steps = f"{cost['steps']} steps" if cost["steps"] else "static"
@@ -92,6 +94,4 @@ def _computed(result: Result) -> list[Fact]:
     ]
     if result.geometry is not None:
         rows.insert(1, ("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
-    if count:
-        rows.append((f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0]))
     return rows

@@ -95,4 +95,5 @@ def model_of(sense: int = 1, direction: float = 0.0) -> SimpleNamespace:
 def equilibrium_at_rest() -> SimpleNamespace:
     """An equilibrium without displacement."""
     none = np.zeros((5, 5))
-    return SimpleNamespace(displacement=np.zeros(5), ball=np.zeros((1, 2)), stiffness=none, damping=none.copy())
+    matrices = ("stiffness", "stiffness_rows_held", "damping", "damping_rows_held")
+    return SimpleNamespace(displacement=np.zeros(5), ball=np.zeros((1, 2)), **{name: none.copy() for name in matrices})

@@ -9,7 +9,7 @@ from raceway.testing.suite import ConformityError
 #: Exponents of length, force and time.
 _UNITS: dict[str, tuple[float, float, float]] = {
     "m": (1, 0, 0), "N": (0, 1, 0), "s": (0, 0, 1), "kg": (-1, 1, 2), "Pa": (-2, 1, 0), "J": (1, 1, 0), "Hz": (0, 0, -1),
-    "W": (1, 1, -1), "rad": (0, 0, 0), "deg": (0, 0, 0), "r": (0, 0, 0), "min": (0, 0, 1), "1": (0, 0, 0), "%": (0, 0, 0),
+    "W": (1, 1, -1), "K": (0, 0, 0), "rad": (0, 0, 0), "deg": (0, 0, 0), "r": (0, 0, 0), "min": (0, 0, 1), "1": (0, 0, 0), "%": (0, 0, 0),
 }  # fmt: skip
 _FACTOR = re.compile(r"^([A-Za-z%]+|1)(?:\^?(-?\d+(?:\.\d+)?))?$")
 

@@ -132,6 +132,8 @@ def error_rows(result: ReadTables, explain: bool) -> list[Row]:
         value = error.get(name)
         if value is not None or not static:
             rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", told.get(name, "")))
+    if explain and "model" in told:
+        rows.append(("model", "beside K", told["model"]))
     if static:
         return [("Relative error of stiffness", "", ""), *rows[1:]] if rows[1:] else []
     known = [one for one in result["identification"].get("series", []) if one["error"] is not None]

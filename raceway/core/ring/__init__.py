@@ -3,6 +3,7 @@
 ring            five coordinates on balls, however their forces are computed;  increment: a step that they are asked at
 system          a ring whose forces are compiled;  surrogate: rings that are stepped, and a compiled one near each
 kernels         internal force and tangents
+viscous_stiffness   of damped contacts against small harmonic motions
 equilibrium     static state by a trust region on the total potential
 root            static state where forces have no potential: gyroscopic moments, friction
 dense           linear algebra inside kernels

@@ -6,6 +6,6 @@ free_vibration   Z without the free vibration of a transient
 steady_motion    distance from the steady motion
 other_start      with friction: the same motion from another start
 series           errors at each speed of a run-up
+hypotheses       spread over the hypotheses left at their defaults
 misfit           a K and C of several whirl speeds against Z at each of them
-contact          error of the contact law itself
 """

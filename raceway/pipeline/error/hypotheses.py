@@ -92,7 +92,7 @@ def model_spread(
         except (RacewayError, ArithmeticError, np.linalg.LinAlgError) as error:
             how += f"; not under {changed}: {str(error).splitlines()[0]}"
         rows.append(({key: value for key, value in changed.items() if value != own[key]}, change))
-    return _table(values, rows, bound), f"equilibria under each hypothesis and all together; K: {how}{why}"
+    return _table(values, rows, bound), f"equilibria under each hypothesis and under all; K: {how}{why}"
 
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:

@@ -35,7 +35,9 @@ class OneStep:
 
         from raceway.core.schemes.advance import advance
         from raceway.core.schemes.one_step.compiled import implicit
+        from raceway.core.stepping.states import check_start
 
+        check_start(system, start)
         rounding = system.force_rounding(start.q, start.ball)
         numbers = np.array([self.alpha_m, self.alpha_f, self.beta, self.gamma, self.tolerance, rounding])
         return advance(implicit, system, start, schedule, numbers, on_chunk)

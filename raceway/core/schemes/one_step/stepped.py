@@ -23,19 +23,32 @@ NOTHING = 1e-30
 def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolerance: float) -> None:
     """Take all steps of the recorder's schedule."""
     before: deque[np.ndarray] = deque(maxlen=3)
+    constant, excitation = system.external(0.0, 0.0), 0.0
     for step in range(1, recorder.schedule.steps + 1):
         before.append(recorder.state.u)
         start = 3.0 * (before[2] - before[1]) + before[0] if system.smooth and len(before) == 3 else None
-        recorder.accept(_step(system, recorder, recorder.time_of(step), numbers, tolerance, start))
+        outer = recorder.load(recorder.time_of(step))
+        excitation = max(excitation, system.measure(outer - constant))
+        recorder.accept(
+            _step(system, recorder, recorder.time_of(step), outer, excitation, numbers, tolerance, start), outer=outer
+        )
 
 
 def _step(
-    system: SteppedSystem, recorder: Recorder, t: float, numbers: Numbers, tolerance: float, start: np.ndarray | None
+    system: SteppedSystem,
+    recorder: Recorder,
+    t: float,
+    outer: np.ndarray,
+    excitation: float,
+    numbers: Numbers,
+    tolerance: float,
+    start: np.ndarray | None,
 ) -> State:
     """The state at time t, one step on.
 
     Parameters
     ----------
+    outer : (size,) outer forces at t;  excitation : largest so far [N]
     start : where Newton's method begins; None: at constant acceleration
     """
     am, af, beta, gamma = numbers
@@ -44,7 +57,6 @@ def _step(
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
     predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
     u = before.u + dt * before.v + 0.5 * dt * dt * before.a if start is None else start
-    outer = recorder.load(t)
     load = system.measure(outer)
     history: list[float] = []
     norm_before, halvings, du = np.inf, 0, np.zeros_like(u)
@@ -64,8 +76,10 @@ def _step(
             raise recorder.unbounded()
         # Below the rounding of the inertia forces nothing can be asked.
         rounding = 1e-6 * to_a * system.measure(system.mass_times(np.abs(u)))
-        scale = max(system.contacts()[2], load, system.measure(inertia), rounding)
-        if norm <= tolerance * scale + NOTHING:
+        moving = max(system.measure(inertia), rounding)
+        largest = max(system.contacts()[2], load, moving)
+        # As in the compiled loop: what no longer shrinks is rounding, and is measured by the largest force of all.
+        if norm <= tolerance * max(excitation, moving) + NOTHING or 0.5 * norm_before < norm <= tolerance * largest:
             return State(u, v, a, rest)
         if norm > (2.0 if len(history) < PATIENCE else 0.999) * norm_before and halvings < HALVINGS:
             halvings += 1
