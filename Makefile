@@ -21,10 +21,10 @@ demo: $(VENV)/.base ## the main job on a fresh clone: needs python3 (3.11 or lat
 	$(BIN)/raceway run $(SCENE)
 
 test: $(VENV)/.all ## everything installed, the quick tests: some minutes
-	$(BIN)/python -m pytest -n 2 -q -m "not slow"
+	$(BIN)/python -m pytest -n 2 -q -m "not slow and not night and not release"
 
 test-all: $(VENV)/.all ## the long proofs too
-	$(BIN)/python -m pytest -n 2 -q
+	$(BIN)/python -m pytest -n 2 -q -m "not release"
 
 lint: $(VENV)/.all ## ruff, import-linter, mypy
 	$(BIN)/ruff check .
@@ -37,8 +37,8 @@ docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials run
 	$(VENV)-docs/bin/sphinx-build -W --keep-going -E -q -b html docs docs/_build/html
 	@echo "open docs/_build/html/index.html"
 
-evidence: $(VENV)/.all ## every number that README and docs show, computed again
-	$(BIN)/python -m benchmarks.evidence
+evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
+	$(BIN)/python -m benchmarks.night
 
 reports-cheap: $(VENV)/.all ## the reports of a few seconds, computed again: does each row hold as it did?
 	$(BIN)/python -m benchmarks.evidence --check $(CHEAP)

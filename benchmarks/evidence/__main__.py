@@ -10,22 +10,18 @@ import time
 # One thread of linear algebra, as the commands take; read when numpy is imported, which is later than this.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from benchmarks.evidence import Row, _age, _files, names, report
+import attrs
+
+from benchmarks.evidence import Row, _files, names, report
 from benchmarks.evidence._kept import EARLIER
 
 _EPILOG = """\
-A report carries a digest of the areas of the package that it measures (benchmarks/evidence/_areas.py), of its own module, and of
-what that imports from benchmarks and tests.  When they change, a test fails: make the report again, or list it as older than the
-code with --list and a reason; README shows the mark beside it.  Making a report takes it off the list.
-
 examples:
-  python -m benchmarks.evidence tangent orders        compute and write two reports
-  python -m benchmarks.evidence --older               which reports are older than their code, and why they stand
-  python -m benchmarks.evidence --list "elastic bodies are being changed"
+  python -m benchmarks.evidence tangent orders        compute and write two reports, of a clean commit
   python -m benchmarks.evidence --check tangent       does each row hold as it did when the report was made?
+  pytest --evidence tests/evidence/test_tangent.py    of reports that are tests
 
-exit code: 1 when a row does not hold, when --older finds a report that its list does not tell right, or when --check finds
-another verdict; 2 for a name that does not exist.
+exit code: 1 when a row does not hold, or when --check finds another verdict; 2 for a name that does not exist, or uncommitted changes.
 """
 
 
@@ -35,15 +31,12 @@ def main(words: list[str]) -> int:
     if unknown:
         print(f"no report is called {', '.join(unknown)}; there are {', '.join(names())}", file=sys.stderr)
         return 2
-    if asked.older:
-        return older()
-    if asked.reason:
-        reports = _files.read()
-        outdated = _age.out_of_date(reports)
-        _age.put_on_list([name for name in outdated if name not in _age.listed()], asked.reason)
-    elif asked.check:
+    if asked.check:
         return max([check(name) for name in asked.names or names()])
-    elif not asked.render:
+    if not asked.render:
+        if _files.commit() is None:
+            print("a report is made of a commit: there are uncommitted changes, or there is no repository", file=sys.stderr)
+            return 2
         return max([make(name) for name in asked.names or names()])
     _refresh()
     return 0
@@ -51,12 +44,13 @@ def main(words: list[str]) -> int:
 
 def make(name: str) -> int:
     """Compute a report and write it; 1 when a row does not hold."""
-    digest = _age.digest(name)
     start = time.perf_counter()
     module = report(name)
     rows = module.rows()
-    data = _files.write(name, module.TITLE, rows, time.perf_counter() - start + EARLIER.get(name, 0.0), digest)
-    _age.take_off_list([name])
+    seconds = time.perf_counter() - start + EARLIER.get(name, 0.0)
+    data = _files.write(
+        name, module.TITLE, [attrs.asdict(row) for row in rows], seconds, f"python -m benchmarks.evidence {name}"
+    )
     failed = [row for row in rows if not row.ok]
     print(f"{name}: {len(rows) - len(failed)} of {len(rows)} rows hold, {data['seconds']} s", flush=True)
     for row in failed:
@@ -88,18 +82,6 @@ def other_verdicts(before: list[dict[str, object]], now: list[Row]) -> list[str]
     return lines
 
 
-def older() -> int:
-    """Print the reports that are older than their code; 1 when the list of them is not right."""
-    outdated, listed = _age.out_of_date(_files.read()), _age.listed()
-    for name in outdated:
-        print(f"{name}: {listed.get(name, 'NOT LISTED: make it again, or list it with --list REASON')}")
-    for name in listed:
-        if name not in outdated:
-            print(f"{name}: LISTED, BUT UP TO DATE: remove it from {_age.LISTED.relative_to(_age.ROOT)}")
-    print(f"{len(outdated)} of {len(names())} reports are older than their code")
-    return 1 if set(outdated) != set(listed) else 0
-
-
 def _refresh() -> None:
     for path in _files.refresh():
         print(f"refreshed {path.relative_to(_files.ROOT)}")
@@ -117,10 +99,6 @@ def _parser() -> argparse.ArgumentParser:
     instead.add_argument("--render", action="store_true", help="only refresh the documents")
     instead.add_argument(
         "--check", action="store_true", help="compute, write no report, compare each row's verdict with the report's"
-    )
-    instead.add_argument("--older", action="store_true", help="tell which reports are older than their code")
-    instead.add_argument(
-        "--list", dest="reason", metavar="REASON", help="list all reports that are now older than their code"
     )
     return parser
 

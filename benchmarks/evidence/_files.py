@@ -8,17 +8,13 @@ import os
 import platform
 import re
 import subprocess
-from collections.abc import Container
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import attrs
-
-from benchmarks.evidence import Row
-from benchmarks.evidence._age import ROOT, listed
 from benchmarks.evidence._chosen import CHOSEN, chosen
 
+ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "reports"
 #: What stands for the limit of a row that nothing is asked of.
 _NO_LIMIT = ("reported", "told", "for information")
@@ -42,34 +38,32 @@ def machine() -> dict[str, Any]:
     }
 
 
-def commit() -> str:
-    """Short name of the commit, with "+ changes" where tracked sources differ from it."""
+def commit() -> str | None:
+    """Short name of the commit; None where tracked files differ from it, or there is none."""
     try:
         name = _git("rev-parse", "--short", "HEAD")
-        changed = _git("status", "--porcelain", "--untracked-files=no", "--", "raceway", "tests", "benchmarks", "validation")
+        changed = _git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/reports", ":!*.md")
     except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return f"{name} + changes" if changed else name
+        return None
+    return None if changed else name
 
 
 def _git(*words: str) -> str:
     return subprocess.run(["git", *words], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
 
 
-def write(name: str, title: str, rows: list[Row], seconds: float, digest: str, folder: Path = FOLDER) -> dict[str, Any]:
-    """Write the JSON and the Markdown file of a report; returns the JSON's content.
-
-    ``digest`` is that of the code that the report measures, taken before it was computed.
-    """
+def write(
+    name: str, title: str, rows: list[dict[str, Any]], seconds: float, command: str, folder: Path = FOLDER
+) -> dict[str, Any]:
+    """Write the JSON and the Markdown file of a report; returns the JSON's content."""
     data = {
         "title": title,
-        "rows": [attrs.asdict(row) for row in rows],
-        "command": f"python -m benchmarks.evidence {name}",
+        "rows": rows,
+        "command": command,
         "commit": commit(),
         "machine": machine(),
         "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d"),
         "seconds": round(seconds, 1),
-        "digest": digest,
     }
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
@@ -84,7 +78,7 @@ def read(folder: Path = FOLDER) -> dict[str, dict[str, Any]]:
 
 def page(data: dict[str, Any]) -> str:
     """The Markdown file of a report."""
-    commands = sorted({row["command"] for row in data["rows"]})
+    commands = sorted({row["command"] for row in data["rows"] if "command" in row})
     lines = [f"# {data['title']}", "", table(data), "", _origin(data), ""]
     if commands and commands != [data["command"]]:
         lines += ["To see single rows:", "", *(f"    {command}" for command in commands), ""]
@@ -94,42 +88,72 @@ def page(data: dict[str, Any]) -> str:
 def _origin(data: dict[str, Any]) -> str:
     m = data["machine"]
     return (
-        f"Made by `{data['command']}` in {data['seconds']} s, commit {data['commit']}, {data['date']}; "
-        f"{m['cores']} cores {m['processor']}, {m['system']}, Python {m['python']}, numba {m['numba']}; "
-        f"digest of the code measured: {data['digest'] or 'none'}."
+        f"Made by `{data['command']}` in {data['seconds']} s at commit {data['commit']}, {data['date']}; "
+        f"{m['cores']} cores {m['processor']}, {m['system']}, Python {m['python']}, numba {m['numba']}."
     )
 
 
 def table(data: dict[str, Any]) -> str:
-    """Rows as a Markdown table."""
-    lines = ["| quantity | value | limit | holds | note |", "|---|---|---|---|---|"]
+    """Rows as a Markdown table: of claims with their basis, of reports that are made by a module with their note."""
+    claims = [row for row in data["rows"] if "basis" in row]
+    head = ["quantity", "value", "limit", "holds", "basis" if claims else "note"]
+    lines = [f"| {' | '.join(head)} |", "|---|---|---|---|---|"]
     for row in data["rows"]:
-        cells = row["quantity"], shown(row["value"]), row["limit"], "yes" if row["ok"] else "**no**", row["note"]
+        cells = (
+            _claim_cells(row)
+            if claims
+            else (row["quantity"], shown(row["value"]), row["limit"], _yes(holds(row)), row["note"])
+        )
         lines.append("| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines)
 
 
-def shown(value: float | str) -> str:
+def _claim_cells(row: dict[str, Any]) -> tuple[str, ...]:
+    unit = f" [{row['unit']}]" if row["unit"] else ""
+    why = (
+        row["basis"]
+        + (f": {row['source']}" if row["source"] else "")
+        + (f"; misses: {row['misses']}" if row["misses"] else "")
+    )
+    return row["quantity"] + unit, shown(row["value"]), limits(row["low"], row["high"]), _yes(holds(row)), why
+
+
+def limits(low: float | None, high: float | None) -> str:
+    """Both ends of a claim in words."""
+    if low is None or high is None:
+        return f"at most {shown(high)}" if low is None else f"at least {shown(low)}"
+    return f"{low:.6g} to {high:.6g}"
+
+
+def holds(row: dict[str, Any]) -> bool:
+    """Verdict of a claim, or of a row that a module made."""
+    return bool(row["ok"]) if "ok" in row else not row["misses"]
+
+
+def _yes(good: bool) -> str:
+    return "yes" if good else "**no**"
+
+
+def shown(value: float | str | None) -> str:
     """A value with four significant digits; whole numbers and text as they are."""
     if isinstance(value, float):
         return f"{value:.4g}"
     return str(value)
 
 
-def summary(reports: dict[str, dict[str, Any]], older: Container[str], links: str = "") -> str:
+def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
     """Every report with its counts as a Markdown table; ``links`` is the folder as seen from the document."""
-    lines = ["| report | rows that hold | date | commit |", "|---|---|---|---|"]
+    lines = ["| report | rows that hold | made at |", "|---|---|---|"]
     for name, data in reports.items():
-        commit = f"{data['commit']}, older than the code" if name in older else data["commit"]
-        lines.append(f"| [{data['title']}]({links}{name}.md) | {holding(data)} | {data['date']} | {commit} |")
+        lines.append(f"| [{data['title']}]({links}{name}.md) | {holding(data)} | {data['commit']}, {data['date']} |")
     return "\n".join(lines)
 
 
 def holding(data: dict[str, Any]) -> str:
     """How many rows with a limit hold, and how many are reported without one that could be missed."""
-    judged = [row for row in data["rows"] if row["limit"] not in _NO_LIMIT]
+    judged = [row for row in data["rows"] if row.get("limit") not in _NO_LIMIT]
     reported = len(data["rows"]) - len(judged)
-    good = f"{sum(row['ok'] for row in judged)} of {len(judged)}" if judged else ""
+    good = f"{sum(map(holds, judged))} of {len(judged)}" if judged else ""
     return ", ".join(filter(None, [good, f"{reported} reported" if reported else ""]))
 
 
@@ -141,9 +165,27 @@ def documents() -> list[Path]:
     return [path for path in [ROOT / "README.md", *pages] if path.is_file()]
 
 
-def render(text: str, reports: dict[str, dict[str, Any]], older: Container[str] = (), links: str = "docs/reports/") -> str:
-    """A document's text with every block made anew; ``evidence:summary`` is the table of reports, with a mark at the older ones,
-    and the blocks of ``_chosen`` show rows of several.
+def misses(reports: dict[str, dict[str, Any]], links: str = "") -> str:
+    """Every row outside its limits, with its reason, as a Markdown table."""
+    lines = ["| report | quantity | value | limit | why |", "|---|---|---|---|---|"]
+    for name, data in reports.items():
+        for row in data["rows"]:
+            if not holds(row):
+                limit = row["limit"] if "limit" in row else limits(row["low"], row["high"])
+                cells = (
+                    f"[{name}]({links}{name}.md)",
+                    row["quantity"],
+                    shown(row["value"]),
+                    limit,
+                    row.get("misses") or row.get("note", ""),
+                )
+                lines.append("| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines)
+
+
+def render(text: str, reports: dict[str, dict[str, Any]], links: str = "docs/reports/") -> str:
+    """A document's text with every block made anew: ``evidence:summary`` is the table of reports, ``evidence:misses`` that of rows
+    outside their limits, the blocks of ``_chosen`` show rows of several reports, all others a report.
 
     Raises
     ------
@@ -154,7 +196,9 @@ def render(text: str, reports: dict[str, dict[str, Any]], older: Container[str] 
     def block(match: re.Match[str]) -> str:
         name = match[2]
         if name == "summary":
-            body = summary(reports, older, links)
+            body = summary(reports, links)
+        elif name == "misses":
+            body = misses(reports, links)
         elif name in CHOSEN:
             body = chosen(name, reports, links)
         elif name in reports:
@@ -172,14 +216,16 @@ def links_from(document: Path) -> str:
 
 
 def refresh() -> list[Path]:
-    """Rewrite the index of reports and every block; returns the documents that changed."""
-    reports, older = read(), listed()
-    index = "# Reports\n\nMade by `make evidence`; see `benchmarks/evidence`.\n\n" + summary(reports, older) + "\n"
+    """Rewrite the index and the pages of reports and every block; returns the documents that changed."""
+    reports = read()
+    index = "# Reports\n\nMade by `make evidence`; see `benchmarks/evidence`.\n\n" + summary(reports) + "\n"
     (FOLDER / "README.md").write_text(index, encoding="utf-8")
+    for name, data in reports.items():
+        (FOLDER / f"{name}.md").write_text(page(data), encoding="utf-8")
     changed = []
     for path in documents():
         old = path.read_text(encoding="utf-8")
-        new = render(old, reports, older, links_from(path))
+        new = render(old, reports, links_from(path))
         if new != old:
             path.write_text(new, encoding="utf-8")
             changed.append(path)

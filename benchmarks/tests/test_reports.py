@@ -7,9 +7,10 @@ import json
 import attrs
 import pytest
 
-from benchmarks.evidence import Row, _age, _files, below, names, near
+from benchmarks.claims import FOLDER, Claim
+from benchmarks.evidence import Row, _files, below, names, near
 from benchmarks.evidence.__main__ import main, other_verdicts
-from benchmarks.evidence._areas import AREAS, MEASURES
+from benchmarks.night import changes
 
 REPORTS = _files.read()
 
@@ -17,18 +18,19 @@ REPORTS = _files.read()
 @pytest.mark.parametrize("document", _files.documents(), ids=lambda path: path.name)
 def test_tables_in_documents_are_those_of_the_reports(document):
     text = document.read_text(encoding="utf-8")
-    assert _files.render(text, REPORTS, _age.listed(), _files.links_from(document)) == text, (
-        "run python -m benchmarks.evidence --render"
-    )
+    assert _files.render(text, REPORTS, _files.links_from(document)) == text, "run python -m benchmarks.evidence --render"
 
 
 @pytest.mark.parametrize("name", sorted(REPORTS))
 def test_rows_hold_or_say_why_not(name):
     data = REPORTS[name]
     assert data["rows"], "a report without rows shows nothing"
-    assert {"title", "rows", "command", "commit", "machine", "date", "digest"} <= set(data)
+    assert {"title", "rows", "command", "commit", "machine", "date"} <= set(data)
     assert set(data["machine"]) == {"cores", "processor", "system", "python", "numba"}
     for row in data["rows"]:
+        if "basis" in row:
+            assert bool(row["misses"]) != Claim(**row).holds
+            continue
         assert set(row) == {field.name for field in attrs.fields(Row)}
         assert row["ok"] or row["note"], f"{row['quantity']} does not hold and has no note"
 
@@ -38,61 +40,10 @@ def test_markdown_is_made_of_the_json(name):
     assert (_files.FOLDER / f"{name}.md").read_text(encoding="utf-8") == _files.page(REPORTS[name])
 
 
-def test_every_report_has_been_run_and_every_file_has_a_module():
-    assert sorted(REPORTS) == names()
-
-
-def test_reports_older_than_their_code_are_those_on_the_list():
-    outdated, listed = set(_age.out_of_date(REPORTS)), set(_age.listed())
-    assert not outdated - listed, "make them again, or list them: python -m benchmarks.evidence --help"
-    assert not listed - outdated, "up to date: take them off docs/reports/older.toml"
-
-
-def test_every_file_of_the_package_has_an_area_and_every_report_measures_some():
-    assert not [path for path in _age.package_files() if _age.area(path) is None], "give it its place in _areas.AREAS"
-    places = [place for places in AREAS.values() for place in places.split()]
-    assert sorted(set(places)) == sorted(places)
-    stems = {place for path in _age.package_files() for place in (path.with_suffix(""), *path.parents)}
-    assert not [place for place in places if _age.PACKAGE / place not in stems], "a place that is not there"
-    words = {word for words in MEASURES.values() for word in words.split()}
-    assert sorted(MEASURES) == names() and {word for word in words if "/" not in word} == set(AREAS) - {"no report"}
-    assert all((_age.ROOT / word).exists() for word in words if "/" in word)
-
-
-@pytest.mark.parametrize(
-    ("changed", "aged", "spared"),
-    [
-        ("core/elastic/cage.py", {"elastic", "stability"}, {"sweep", "tangent", "condensed_patches"}),
-        ("studies/sweep/__init__.py", {"sweep", "dask"}, {"elastic", "tangent"}),
-        ("core/ring/equilibrium.py", {"tangent", "expected_values"}, {"sweep", "hexahedron"}),
-        ("studies/sweep/command.py", set(), set(MEASURES)),
-    ],
-)
-def test_a_change_ages_the_reports_that_measure_it_and_no_others(changed, aged, spared):
-    measuring = {name for name in MEASURES if _age.PACKAGE / changed in _age.measured(name)}
-    assert aged <= measuring and not spared & measuring
-
-
-def test_what_a_report_imports_beside_the_package_is_measured_and_the_runner_is_not():
-    files = {path.relative_to(_age.ROOT).as_posix() for path in _age.measured("equilibria")}
-    assert {"benchmarks/evidence/equilibria.py", "validation/scenes.py"} <= files
-    assert "benchmarks/evidence/_files.py" not in files
-
-
-def test_words_and_places_of_code_age_nothing_and_code_does(tmp_path):
-    def pieces(number: int, text: str) -> tuple[str, ...]:
-        (tmp_path / f"{number}.py").write_text(text, encoding="utf-8")
-        return _age._pieces(tmp_path / f"{number}.py")
-
-    code = 'def f(x):\n    """Twice."""\n    return 2 * x  # "as is"\n\n\nLIMIT = 3\n'
-    reworded = (
-        'from a.b import c\n\n\ndef f(x):\n    """Two times\n\n    x.\n    """\n\n    # more\n    import d\n'
-        "\n    return (\n        2 * x\n    )\n\n\nLIMIT = 3\n"
-    )
-    assert pieces(1, code) == pieces(2, reworded) == ("def f(x):\n    return 2 * x", "LIMIT = 3")
-    assert len({pieces(3 + i, code.replace("2 * x", text)) for i, text in enumerate(("3 * x", "2 * x", '"# x"'))}) == 3
-    # What is carried from one file of an area into another one counts as before.
-    assert sorted(pieces(6, "LIMIT = 3\n") + pieces(7, code.split("LIMIT")[0])) == sorted(pieces(8, code))
+def test_every_report_has_been_made_and_has_a_module():
+    claims = [path.stem.removeprefix("test_") for path in FOLDER.rglob("test_*.py")]
+    assert not set(claims) & set(names()), "a report is a module of claims or of rows, not both"
+    assert sorted(REPORTS) == sorted([*claims, *names()])
 
 
 def test_verdicts_are_compared_and_not_digits():
@@ -105,37 +56,21 @@ def test_verdicts_are_compared_and_not_digits():
     ]
 
 
-def test_older_reports_are_told_with_their_reason_and_a_wrong_list_is_exit_code_1(capsys, monkeypatch):
-    name, other = sorted(REPORTS)[:2]
-    monkeypatch.setattr(_age, "out_of_date", lambda reports: [name])
-    monkeypatch.setattr(_age, "listed", lambda: {name: "2026-01-02: long"})
-    assert main(["--older"]) == 0 and f"{name}: 2026-01-02: long" in capsys.readouterr().out
-    monkeypatch.setattr(_age, "listed", lambda: {other: "2026-01-02: long"})
-    assert main(["--older"]) == 1
-    out = capsys.readouterr().out
-    assert f"{name}: NOT LISTED" in out and f"{other}: LISTED, BUT UP TO DATE" in out
+def test_changes_of_a_night_are_verdicts_and_values_by_more_than_2_percent():
+    def report(**values):
+        return {"one": {"rows": [attrs.asdict(near(name, value, 1.0, 0.05, "c")) for name, value in values.items()]}}
 
-
-def test_the_list_of_older_reports_is_kept_sorted_and_reports_leave_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(_age, "LISTED", tmp_path / "older.toml")
-    _age.LISTED.write_text("", encoding="utf-8")
-    _age.put_on_list(["two", "one"], 'the "core" changes')
-    assert list(_age.listed()) == ["one", "two"] and _age.listed()["one"].endswith(': the "core" changes')
-    _age.take_off_list(["one"])
-    assert list(_age.listed()) == ["two"]
+    lines = changes(report(a=1.0, b=1.0, c=1.0, d=1.0), report(a=1.01, b=1.03, c=1.06, e=1.0))
+    assert lines == ["one: no longer there: d", "one: b: 1 -> 1.03", "one: c: 1 -> 1.06, MISSES now", "one: new: e = 1"]
 
 
 def test_blocks_are_replaced_whole_and_unknown_ones_refused():
     row = near("x [m]", 1.001, 1.0, 0.01, "python")
     reports = {"one": {"title": "One", "rows": [attrs.asdict(row)], "date": "d", "commit": "c"}}
     text = "a\n<!-- evidence:one -->\nstale\n<!-- /evidence -->\nb\n<!-- evidence:summary -->\n<!-- /evidence -->\n"
-    new = _files.render(text, reports, {"one"})
-    assert (
-        "stale" not in new
-        and "| x [m] | 1.001 | 1 within 1 % | yes |  |" in new
-        and "| 1 of 1 | d | c, older than the code |" in new
-    )
-    assert _files.render(new, reports, {"one"}) == new and "older" not in _files.render(new, reports)
+    new = _files.render(text, reports)
+    assert "stale" not in new and "| x [m] | 1.001 | 1 within 1 % | yes |  |" in new and "| 1 of 1 | c, d |" in new
+    assert _files.render(new, reports) == new
     with pytest.raises(KeyError, match="two"):
         _files.render(text.replace("evidence:one", "evidence:two"), reports)
 
