@@ -164,9 +164,10 @@ def test_an_entry_under_another_name_is_made_anew(folder):
     assert make.calls == 1
 
 
-def test_a_folder_that_others_may_write_is_not_used(folder):
+@pytest.mark.parametrize("mode", [0o777, 0o757, 0o775])
+def test_a_folder_that_others_may_write_is_not_used(folder, mode):
     get(Maker())
-    folder.chmod(0o777)
+    folder.chmod(mode)
     folder.parent.chmod(0o755)
     array_cache._warn_refused.cache_clear()
     make = Maker()

@@ -24,8 +24,17 @@ SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 
 
 @door
-def opened(out=None, points: int = 1, seed: int = 0, patience: float = 1.0, plugins=(), name: str = "", progress=None):
-    return out, points, seed, patience, plugins, name, progress
+def opened(
+    out=None,
+    points: int = 1,
+    seed: int = 0,
+    patience: float = 1.0,
+    aim: float = 1.0,
+    plugins=(),
+    name: str = "",
+    progress=None,
+):
+    return out, points, seed, patience, aim, plugins, name, progress
 
 
 @pytest.mark.parametrize(
@@ -33,7 +42,7 @@ def opened(out=None, points: int = 1, seed: int = 0, patience: float = 1.0, plug
     [
         ("out", 3, "path"), ("out", b"x", "path"), ("out", "x\0y", "path"), ("points", 0, "from 1"), ("points", 2.0, "whole"),
         ("points", True, "whole"), ("points", 10**12, "1e+09"), ("seed", -1, "from 0"), ("patience", float("nan"), "from 0"),
-        ("patience", "3", "from 0"), ("patience", 10**400, "from 0"), ("plugins", [None], "path"), ("name", 3, "text"), ("progress", 3, "function"),
+        ("patience", "3", "from 0"), ("patience", 10**400, "from 0"), ("aim", 0, "above 0"), ("aim", float("inf"), "above 0"), ("plugins", [None], "path"), ("name", 3, "text"), ("progress", 3, "function"),
         ("progress", len, "function"), ("progress", int, "function"),
     ],
 )  # fmt: skip
@@ -48,7 +57,7 @@ def test_what_means_the_same_is_converted(tmp_path):
     out, points, *_, plugins, _, _ = opened(str(tmp_path), np.int64(7), plugins=str(tmp_path))
     assert out == tmp_path and (points, type(points)) == (7, int) and plugins == [tmp_path]
     assert opened(patience=float("inf"))[3] == float("inf")
-    assert opened() == (None, 1, 0, 1.0, (), "", None)
+    assert opened() == (None, 1, 0, 1.0, 1.0, (), "", None)
 
 
 def test_iterators_and_ranges_are_values_of_an_axis():
@@ -133,6 +142,19 @@ def test_damaged_rows_of_a_store_are_counted(tmp_path):
     with open_store(store) as there, pytest.warns(UserWarning, match="2 of 3 rows are damaged"):
         found = there.to_xarray()
     assert found.attrs["damaged_rows"] == 2 and found.status.values.tolist() == ["done", "waiting", "waiting"]
+
+
+def test_a_row_under_another_number_is_damaged(tmp_path):
+    """Its text and its digest are whole: they are another point's."""
+    store = tmp_path / "store"
+    rw.sweep(SCENE, {"load.axial": [400.0, 600.0, 800.0]}, store=store)
+    with closing(sqlite3.connect(store / "points.sqlite")) as connection, connection:
+        for before, after in ((0, 9), (2, 0), (9, 2)):
+            connection.execute("UPDATE points SET number = ? WHERE number = ?", (after, before))
+    from raceway.studies.sweep.store import open_store
+
+    with open_store(store) as there, pytest.warns(UserWarning, match="2 of 3 rows are damaged"):
+        assert there.to_xarray().status.values.tolist() == ["waiting", "done", "waiting"]
 
 
 def test_text_of_a_store_that_is_no_text_is_told(tmp_path):

@@ -13,6 +13,7 @@ from raceway.scene.continuous import with_number
 from raceway.scene.file import load_scene
 from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
+from raceway.studies.fit.disturbed import aliased, spectrum, tone, uneven
 from raceway.studies.fit.estimate import estimate, judged
 from raceway.studies.fit.free import Free, free_keys
 from raceway.studies.fit.linear import Linear, free_parts, lines_of
@@ -77,10 +78,17 @@ def test_a_straight_line_is_the_closed_form():
 
 
 def test_errors_that_are_stated_too_small_widen_the_intervals_and_are_told():
+    from scipy.stats import linregress, t
+
     x = np.linspace(0.0, 5.0, 9)
     far = Straight(x, 2.0 + 3.0 * x + 30.0 * np.random.default_rng(2).standard_normal(9))
     found = estimate(far, LINE, stated=True)
     assert found.widened == pytest.approx(found.scatter) and found.widened > 10.0
+    x = np.linspace(0.0, 5.0, 900)
+    y = 2.0 + 3.0 * x + 5.0 * np.random.default_rng(2).standard_normal(900)
+    line = linregress(x, y)
+    found = estimate(Straight(x, y), LINE, stated=True)
+    assert found.half == pytest.approx(t.ppf(0.975, 898) * np.array([line.intercept_stderr, line.stderr]), rel=1e-6)
 
 
 def test_two_numbers_that_only_add_up_are_told_as_a_combination():
@@ -282,6 +290,45 @@ def test_noise_that_is_not_white_is_named_and_its_own_scatter_makes_the_interval
     found = rw.fit(disturbed(bump=0.03), free="K,C,mass")
     assert any("not white" in text for text in found.warnings)
     assert abs(found["C"] - 800.0) < found.half_width("C") and found.half_width("C") > 0.003 * 800.0
+
+
+def test_power_that_is_not_even_is_found_where_it_is():
+    """Exponential power with four times the mean over a 16th of the lines, and none of the kind where it is even."""
+    power = np.random.default_rng(4).exponential(size=(1600, 1))
+    assert uneven(power) is None
+    power[700:800] *= 4.0
+    where, factor = uneven(power)
+    assert 700 <= where < 800 and factor == pytest.approx(4.0 / (1.0 + 3.0 / 16.0), rel=0.3)
+
+
+def test_a_tone_between_lines_is_found_at_its_frequency():
+    """20.3 lines: the transform of a cosine is that of its window, which falls with the distance."""
+    n, random = 2048, np.random.default_rng(5)
+    noise, t = random.standard_normal(n), np.arange(n)
+    lines = spectrum(np.cos(20.3 * 2.0 * np.pi * t / n + 1.0)[:, None])
+    white, omega = np.full((200, 1), 1.0 / n), 2.0 * np.pi * np.arange(1, 201) / n
+    small = spectrum(noise[:, None])[1:201]
+    assert tone(small, white, omega) is None
+    assert tone(lines[1:201] + small, white, omega) == pytest.approx(20.3 * 2.0 * np.pi / n, rel=2e-3)
+
+
+def test_what_is_folded_back_is_of_the_size_of_what_sampling_adds():
+    """Half sines of 2 to 4 samples, whose transform is known: w0 (1 + e^(-jwT)) / (w0^2 - w^2) with w0 = pi / T."""
+    random, n, ratios = np.random.default_rng(1), 4096, []
+    t, w = np.arange(n), 2.0 * np.pi * np.arange(n // 2 + 1) / n
+    for _ in range(16):
+        sampled, exact = np.zeros(n), np.zeros(n // 2 + 1, dtype=complex)
+        for begin, width, size in zip(
+            random.uniform(0, 0.9 * n, 4), random.uniform(2, 4, 4), random.uniform(1, 2, 4), strict=True
+        ):
+            phase, w0 = (t - begin) / width, np.pi / width
+            sampled += np.where((phase > 0.0) & (phase < 1.0), size * np.sin(np.pi * phase), 0.0)
+            exact += size * np.exp(-1j * w * begin) * w0 * (1.0 + np.exp(-1j * w * width)) / (w0**2 - w**2) / n
+        error = spectrum(sampled[:, None])[20:1000, 0] - exact[20:1000]
+        said, part = aliased(sampled[:, None], np.array([1e-12]))
+        assert 0.0 < part < 1.0
+        ratios.append(np.sqrt((np.abs(error) ** 2).mean() / (np.abs(said[20:1000]) ** 2).mean()))
+    assert 0.8 < np.exp(np.mean(np.log(ratios))) < 1.25
 
 
 def test_pulses_sampled_without_a_filter_widen_the_interval_by_what_is_folded_back():

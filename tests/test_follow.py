@@ -217,6 +217,11 @@ def test_the_article_s_bearing_through_its_folds(curve):
             assert label.row.multiplier == pytest.approx(1.0, abs=2e-6)
             assert 0.0 < label.angle < np.pi
     assert len(curve.unstable) == 3
+    left = {"": 0, "+1": 1, "-1": 1, "pair": 2}
+    assert all(
+        row.unstable >= left[row.leaves_by] and (row.unstable > 0) == (row.verdict == "unstable") for row in curve.rows
+    )
+    assert any(1.0 < row.multiplier < 1.1 and row.verdict == "unstable" for row in curve.rows)
     folds = [label.row.parameter for label in curve.labels if label.kind == FOLD]
     assert [row.parameter for row in curve.unstable[0]] == folds
 
@@ -352,6 +357,8 @@ def test_the_command_writes_and_tells(tmp_path):
     assert found.exit_code == 0, found.output
     assert "steady orbits over load.axial" in found.output
     content = json.loads((tmp_path / "out" / "follow.json").read_text())
+    for row in content["rows"]:  # circles: the force over the displacement is |Z|
+        assert row["amplitude"] == pytest.approx(50.0 / np.hypot(row["z_real"], row["z_imag"]), rel=1e-6)
     stiffness = [row["stiffness"] for row in content["rows"]]
     assert stiffness[0] > 1.1 * stiffness[-1]  # a lighter preload makes a softer bearing
     direct = rw.run({**content_scene(), "load": {"axial": 600.0}})

@@ -11,6 +11,7 @@ from raceway.errors import SceneError
 from raceway.pipeline.gradient.differences import derivative
 from raceway.pipeline.gradient.gradients import Gradients
 from raceway.pipeline.gradient.motion import SteadyOrbit
+from raceway.pipeline.gradient.quantities import derivatives, values
 from raceway.pipeline.gradient.statics import static_gradient
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.pipeline.settle import settle
@@ -121,13 +122,35 @@ def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
     orbit = SteadyOrbit.of(model, still)
     key = key_of(model.scene, path)
     found = orbit.gradient(static_gradient(model, still, key))
-    runs = by_runs(model, path, 2e-4 * key.value, lambda one, e: SteadyOrbit.of(one, e).line)
+
+    def line(one, e):
+        """Re Z, C, K, amplitude, Im Z."""
+        there = SteadyOrbit.of(one, e)
+        return np.append(there.line, there.line[1] * there.solved.problem.speed)
+
+    runs = by_runs(model, path, 2e-4 * key.value, line)
     # Orbits are solved to 1e-10 of their size, which a step of 2e-4 makes 5e-7 of |Z|; C is a small part of |Z|.
     omega = orbit.solved.problem.speed
     floor = 1e-6 * abs(orbit.line[0]) / key.value
     assert found.equivalent_stiffness == pytest.approx(runs[2], rel=1e-5, abs=floor)
     assert found.equivalent_damping * omega == pytest.approx(runs[1] * omega, rel=1e-5, abs=floor)
     assert found.amplitude == pytest.approx(runs[3], rel=1e-5, abs=1e-6 * orbit.line[3] / key.value)
+    assert found.dynamic_stiffness.real == pytest.approx(runs[0], rel=1e-5, abs=floor)
+    assert found.dynamic_stiffness.imag == pytest.approx(runs[4], rel=1e-5, abs=floor)
+
+
+def test_every_number_of_a_motion_has_its_derivative():
+    """By the speed, on which all of them depend; C is 3e-4 of |Z|, to which orbits are solved."""
+    model, still = built(ORBIT)
+    gradients = Gradients(model, still)
+    told = values(model, still, gradients.orbit)
+    found = derivatives(model, still, gradients.by_path("excitation.speed_rpm"))
+    runs = by_runs(
+        model, "excitation.speed_rpm", 1.8, lambda one, e: np.array([*values(one, e, SteadyOrbit.of(one, e)).values()])
+    )
+    assert set(found) == set(told)
+    for name, expected in zip(told, runs, strict=True):
+        assert found[name] == pytest.approx(expected, rel=1e-2 if name == "C" else 1e-5), name
 
 
 def test_steps_pass_no_knot_of_the_tables_of_compliances():

@@ -78,7 +78,11 @@ def test_every_hypothesis_is_that_of_a_run_under_it(kind):
 def test_what_is_stated_is_no_spread():
     """Said to be "none" is decided; with all said there is no table, and the reason stands in its place."""
     said = {**STATIC, "kinematics": {"spin_speed_rpm": 5000.0, "gyroscopic": "none"}}
-    assert set(_alone(_of(said)["model"])) == {True}
+    model = _of(said)["model"]
+    assert set(_alone(model)) == {True}
+    assert (
+        model["kyy"] == [0.0, _alone(model)[True]] and 0.0 < model["kyy"][1] < model["bound"]
+    )  # the scene's own choice is 0
     said["kinematics"]["ring_growth"] = False
     error = _of(said)
     assert error["model"] is None and "stated" in error["how"]["model"]

@@ -16,6 +16,7 @@ from raceway.commands.screen.result import run_screen
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.options import nearest
 from raceway.pipeline.facts import facts
+from raceway.pipeline.plausibility import inertia_warnings
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import _stride
 from raceway.planning.implausible import implausible
@@ -67,6 +68,15 @@ def test_balls_that_unload_during_a_turn_are_told():
     heavy = computed(excitation={**EXCITED, "unbalance": 3.2e-3})
     assert any("balls lose contact with the inner race during a turn" in text for text in heavy.warnings)
     assert computed(excitation={**EXCITED, "unbalance": 1e-5}).warnings == ()
+
+
+def test_a_bearing_that_unseats_during_a_turn_is_told():
+    """On free tilts a force of twenty times the axial load tilts the ring until balls run below 0 deg; loaded, at rest, none does."""
+    words = "the bearing unseats during a turn"
+    for force, said in ((2000.0, True), (100.0, False)):
+        excitation = {"kind": "bidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": force}
+        free = {"supports": {"tilt": "free"}, "integrator": {"kind": "quasi_static"}, "load": {"axial": 100.0}}
+        assert any(words in text for text in computed(excitation=excitation, **free).warnings) == said
 
 
 def test_a_moment_on_locked_tilts_has_no_effect_and_says_so():
@@ -156,6 +166,19 @@ def test_rows_that_run_at_a_low_angle_by_their_make_or_growth_are_no_unseated_on
     assert not static(load={"axial": 600.0, "radial": [2000.0, 0.0]})
     # Without loads a raceway wider by 12 um leaves 5 deg of 15.
     assert not static(kinematics={"radial_expansion": 12e-6}, load={"axial": 100.0})
+
+
+def test_the_body_that_lags_most_is_named_where_the_stated_error_is_less():
+    lags = {"inner_supported_error": 0.02, "outer_supported_error": 0.05, "ball_along_grooves_error": None}
+    (text,) = inertia_warnings({"inertia": lags}, 0.03)
+    assert text.startswith("the outer ring follows at once") and "= 0.05 of" in text
+    assert len(inertia_warnings({"inertia": lags}, None)) == 1
+    assert (
+        inertia_warnings({"inertia": lags}, 0.06)
+        == inertia_warnings({"inertia": {}}, None)
+        == inertia_warnings(None, None)
+        == []
+    )
 
 
 def test_a_contact_pressure_beyond_static_ratings_is_told():

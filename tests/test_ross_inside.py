@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import importlib
 import subprocess
 import sys
 import types
+from unittest import mock
 
 import numpy as np
 import pytest
 
 import raceway as rw
 from raceway.errors import RacewayError, SceneError
+from raceway.studies.ross.harmonic_load import harmonic_load
 from raceway.studies.ross.installed import ross
 from raceway.studies.ross.node_bearing import node_bearing
 from raceway.studies.ross.secant import secant
@@ -60,6 +63,14 @@ def test_a_turning_load_meets_the_stiffness_of_a_run(axial, force):
     wanted = rw.run(scene(axial, force)).equivalent_stiffness
     # Both are the 1x line of the same equilibria.
     np.testing.assert_allclose(z[1:, 1:], wanted * np.eye(2), atol=1e-9 * wanted)
+
+
+def test_a_load_turns_as_its_complex_amplitudes_do():
+    amplitudes = np.array([5.0j, 3.0, -3.0j, 0.2 + 0.1j, 0.4])
+    load, out = harmonic_load(SPEED, amplitudes), np.empty(5)
+    for t in (0.0, 3e-4, 1e-3):
+        load.kernel()(t, load.parameters(), out)
+        assert out == pytest.approx((amplitudes * np.exp(1j * SPEED * t)).real)
 
 
 @pytest.mark.parametrize("tilt", ["locked", "free", "node", 5e3])
@@ -126,6 +137,25 @@ def test_an_old_ross_is_refused(monkeypatch):
         ross("raceway.ross.RollingBearing")
     with pytest.raises(RacewayError, match=r"needs ROSS 3.0 or later"):
         ross("this", least=3)
+
+
+def test_an_unbalance_turns_with_the_shaft():
+    """A free mass on springs under a force from X towards Y: m_u w^2 / (k - m w^2) of it, Y a quarter turn later; ROSS is not asked."""
+    names = [f"raceway.studies.ross.{name}" for name in ("bearing", "unbalance")]
+    with mock.patch.dict(sys.modules, {"ross": types.SimpleNamespace(__version__="3.0", BearingElement=object)}):
+        for name in names:
+            sys.modules.pop(name, None)
+        balance = importlib.import_module(names[1])._Balance
+    k, m, w, none = 1e7, 2.0, 500.0, np.zeros((3, 3))
+    machine = types.SimpleNamespace(
+        K=lambda _: k * np.eye(3), M=lambda _: m * np.eye(3), C=lambda _: none, G=lambda: none, ndof=3, number_dof=3
+    )
+    held = types.SimpleNamespace(moving=[1, 2], dynamic_stiffness=lambda *_: none)
+    bearing = types.SimpleNamespace(node_bearing=held, frame=np.eye(3)[[2, 0, 1]], dofs=[0, 1, 2])
+    found = balance.at(machine, [bearing], w, (0, 1e-4, 0.3))
+    size = 1e-4 * w**2 / (k - m * w**2) * np.exp(0.3j)
+    np.testing.assert_allclose(found.response, size * np.array([1.0, -1.0j]), rtol=1e-12)
+    np.testing.assert_allclose(found.receptance, np.eye(2) / (k - m * w**2), rtol=1e-12)
 
 
 def test_the_example_is_short_and_says_what_is_missing(tmp_path):

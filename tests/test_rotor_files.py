@@ -28,6 +28,8 @@ FULL = np.array(
     ]
 )
 
+PARTS = {"stiffness": 1.0, "damping": 1e-6}
+
 
 def growing(at):
     return FULL * (1.0 + at[SPEED][..., None, None] / 1e5)
@@ -135,6 +137,25 @@ def test_csv_and_json_hold_every_number(held, tmp_path):
                 np.testing.assert_array_equal(columns[column], full[:, i, j])
     for name, one in content["coefficients"].items():
         np.testing.assert_array_equal(columns[f"{name} [{one['unit']}]"], one["values"])
+
+
+def test_rows_of_an_unsymmetric_matrix_are_forces_and_columns_displacements():
+    """Friction makes K unsymmetric: its row y, column tilt_z is the force along y of a tilt about z."""
+    full = FULL + 1e6 * np.triu(np.arange(25.0).reshape(5, 5), 1)
+    data = made({SPEED: SPEEDS}, scene() | {"supports": {"tilt": "locked"}})
+    both = {name: (data["stiffness"].dims, factor * np.tile(full, (len(SPEEDS), 1, 1))) for name, factor in PARTS.items()}
+    data = data.assign(both)
+    columns, content = (rw.export_coefficients(data, source="tangent", kind=kind).text for kind in ("csv", "json"))
+    columns, content = read_csv(columns), json.loads(content)
+    for letter, factor in zip("KC", PARTS.values(), strict=True):
+        matrix = np.array(content[letter]["values"])[0]
+        for unit, row, column, i, j in (("N", "y", "tilt_z", 1, 4), ("N m", "tilt_z", "y", 4, 1)):
+            assert matrix[i, j] == factor * full[i, j]
+            per = "rad" if column == "tilt_z" else "m"
+            (name,) = [
+                one for one in columns if one.startswith(f"{letter} {row} {column} [{unit}") and one.endswith(f"/{per}]")
+            ]
+            assert columns[name][0] == factor * full[i, j]
 
 
 def test_a_table_over_speed_and_frequency():

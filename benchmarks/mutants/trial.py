@@ -31,6 +31,7 @@ COPIED = (
     "CHANGELOG.md",
     "pyproject.toml",
     "Makefile",
+    "conftest.py",
 )
 _FAILED = 1
 

@@ -12,6 +12,7 @@ from raceway import SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
 from raceway.errors import ConvergenceError
 from raceway.pipeline.settle import settle
+from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.sets import NAMES
 from raceway.studies.limits.study import axial_limits
 from validation.command_line import EXAMPLES, invoke
@@ -60,6 +61,26 @@ def test_names_say_how_rows_face(word, signs):
     assert [place for _, place in rows] == pytest.approx([(k - middle) * DISTANCE for k in range(len(signs))])
 
 
+#: Rows of the names in makers' words: so many in tandem against so many, "B" back to back, "F" face to face, "T" all in tandem.
+MAKERS = {
+    "DB": (1, 1, "B"), "DF": (1, 1, "F"), "DT": (2, 0, "T"), "DBD": (2, 1, "B"), "TBT": (2, 1, "B"), "DFD": (2, 1, "F"), "TFT": (2, 1, "F"),
+    "DTD": (3, 0, "T"), "TT": (3, 0, "T"), "DBB": (2, 2, "B"), "QBC": (2, 2, "B"), "DTBT": (2, 2, "B"), "DFF": (2, 2, "F"), "QFC": (2, 2, "F"),
+    "DTFT": (2, 2, "F"), "QBT": (3, 1, "B"), "QFT": (3, 1, "F"), "QT": (4, 0, "T"), "PBC": (3, 2, "B"), "PFC": (3, 2, "F"), "PBT": (4, 1, "B"),
+    "PFT": (4, 1, "F"), "PT": (5, 0, "T"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("word", [name for name in NAMES if name != "single"])
+def test_every_name_is_the_makers(word):
+    """Back to back pressure lines meet the axis far apart: rows seated by a motion towards +x stand on the side of -x."""
+    along, against, how = MAKERS[word]
+    rows = scene(word, None).bearing.rows
+    ahead, behind = ([place for side, place in rows if side == sign] for sign in (1.0, -1.0))
+    assert (len(ahead), len(behind)) == (along, against)
+    if behind:
+        assert (max(ahead) < min(behind)) if how == "B" else (min(ahead) > max(behind))
+
+
 def test_rows_face_to_face_stand_the_other_way_round():
     back, face = (scene(word, None).bearing.rows for word in ("TBT", "TFT"))
     assert [side for side, _ in back] == [side for side, _ in face]
@@ -82,6 +103,20 @@ def test_rows_that_were_ground_share_their_offset(word, rows):
     offset = press(ring(), 20.0)
     expected = RowSet([ring() for _ in range(rows + 1)], [1.0] * rows + [-1.0], [0.0] * (rows + 1), [offset] * (rows + 1))
     assert found["rows_n"] == pytest.approx(expected.rows(expected.settle(np.zeros(3))), rel=SAME)
+
+
+def test_rows_that_were_ground_for_preloads_of_their_own():
+    """Offsets of 100 and 300 N: each row by itself under its own, put together."""
+    model, now = built("DB", 200.0, {"preload_of": "row", "row": [{"preload": 100.0}, {"preload": 300.0}]})
+    expected = RowSet([ring(), ring()], [1.0, -1.0], [0.0, 0.0], [press(ring(), 100.0), press(ring(), 300.0)])
+    rows = preload_table(model, now)["rows_n"]
+    assert rows == pytest.approx(expected.rows(expected.settle(np.zeros(3))), rel=SAME) and 100.0 < rows[0] < 300.0
+
+
+def test_inner_rings_of_a_set_tilt_about_its_middle():
+    """Huygens and Steiner: each ring's own moment of inertia, and its mass on the arm of its place."""
+    (mass, tilt, polar), two = (ring_inertia(scene(word, None)) for word in ("single", "DB"))
+    assert two == pytest.approx((2.0 * mass, 2.0 * (tilt + mass * (0.5 * DISTANCE) ** 2), 2.0 * polar), rel=1e-12)
 
 
 def test_twice_a_pair_is_twice_as_stiff():
@@ -179,9 +214,11 @@ def test_rows_on_a_spring_share_its_force(own):
 
 
 def test_a_spring_has_its_travel():
+    """It has a stop on either side: a load that parts the rows slides the ring one way, one that presses them together the other."""
     more = {"preload_kind": "spring", "spring_travel": 1e-6}
-    with pytest.raises(ConvergenceError, match=r"would slide .* beyond `bearing.spring_travel` = 1e-06 m.*more travel"):
-        built("DB", 300.0, more, load={"axial": 500.0})
+    for axial in (500.0, -200.0):
+        with pytest.raises(ConvergenceError, match=r"would slide .* beyond `bearing.spring_travel` = 1e-06 m.*more travel"):
+            built("DB", 300.0, more, load={"axial": axial})
     assert built("DB", 300.0, {**more, "spring_travel": 50e-6}, load={"axial": 500.0})[1].displacement[0] > 0.0
 
 

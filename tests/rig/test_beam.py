@@ -83,6 +83,18 @@ def test_gyroscopic_moments_of_an_overhung_disc():
     assert np.sum(flat.critical_speeds() < 1e6) == 1
 
 
+def test_rotary_and_polar_inertia_of_a_shaft_are_those_of_its_sections():
+    """A rigid tilt turns all sections alike: rho I L about a diameter, twice that about the axis."""
+    length = 0.4
+    line = beam(np.linspace(0.0, length, 5), D, E, NU, RHO, True)
+    tilt = np.empty(10)
+    tilt[::2], tilt[1::2] = line.nodes, 1.0
+    assert tilt @ line.rotary @ tilt == pytest.approx(RHO * SECOND_MOMENT * length, rel=1e-12)
+    assert tilt @ line.polar @ tilt == pytest.approx(2.0 * RHO * SECOND_MOMENT * length, rel=1e-12)
+    whirling = tilt @ (line.dynamic(3.0, 2.0) - line.stiffness) @ tilt
+    assert whirling == pytest.approx(-9.0 * (tilt @ (line.mass + line.rotary) @ tilt) + 6.0 * (tilt @ line.polar @ tilt))
+
+
 def test_a_stiff_hub_bends_less():
     span, hub = 0.175, 0.02
     places = np.array([0.0, 0.5 * (span - hub), 0.5 * span, 0.5 * (span + hub), span])
