@@ -1,4 +1,4 @@
-"""The consistent tangent: symmetric, equal to differences of the force, positive definite where the ring is held."""
+"""The consistent tangent: positive definite where the ring is held, of dampers, in closed form."""
 
 from __future__ import annotations
 
@@ -7,16 +7,9 @@ import pytest
 
 from raceway.core.ring.kernels.layout import DAMPING
 from validation.scenes import settled
-from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
+from validation.tangent import cases
 
 CASES = cases()
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_symmetric_and_consistent(name):
-    model, now = settled(CASES[name])
-    assert asymmetry(now.stiffness, model.system.arm) <= SYMMETRY
-    assert deviation(model, now.displacement, now.ball) <= DIFFERENCES
 
 
 def test_positive_definite_where_held():

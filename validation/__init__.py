@@ -2,7 +2,7 @@
 
 reference     the same physics by independent code: rings, contacts, elastic bodies, friction
 scenes, tables, several, random choice of scenes, models built from them
-equilibria, tangent, orders, expected_values, identified_stiffness, error_estimate, series_errors: numbers with their true values
+equilibria, tangent, ball_pass, gyroscopic, orders, expected_values, identified_stiffness, error_estimate, series_errors: numbers with their true values
 block, cubes, groove, below_groove, single, squeezed, hexahedron: small bodies and contacts
 system_libraries  tests whose system libraries are missing: skipped loudly, or failures
 command_line, browser, cluster, sessions, harm, article_study: commands, pages, workers, processes, damaged files

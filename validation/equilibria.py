@@ -98,6 +98,12 @@ def random_scenes(law: str, seed: int, count: int) -> Iterator[dict[str, Any]]:
     return (random_tables(rng, law) for _ in range(count))
 
 
+def part(scenes: Iterator[dict[str, Any]], share: float, seed: int) -> Iterator[dict[str, Any]]:
+    """About a share of the scenes, drawn: every third of a grid would miss values of its axes."""
+    rng = np.random.default_rng(seed)
+    return (tables for tables in scenes if rng.random() < share)
+
+
 def _scene(
     law: str, axial: float, radial: float, azimuth: float, tilt: Any, balls: int, angle: float, speed: float,
     conformity: float = 0.52, clearance: float | None = None, moment: float = 0.0,

@@ -57,7 +57,7 @@ _BALL = 9.525e-3
 
 
 def random_tables(rng: np.random.Generator, law: str = "hertz") -> dict[str, Any]:
-    """A random bearing under random loads, in the ranges that the report ``equilibria`` names."""
+    """A random bearing under random loads, in the ranges that the report ``rigid`` names."""
     count = int(rng.integers(3, 61))
     pitch = max(46e-3, 1.05 * _BALL / np.sin(np.pi / count))
     axial = 10.0 ** rng.uniform(0.0, 5.0)

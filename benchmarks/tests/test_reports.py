@@ -87,8 +87,8 @@ def test_rows_without_a_limit_are_counted_apart():
 
 
 def test_unknown_report_is_exit_code_2(capsys):
-    assert main(["expected_valeus"]) == 2
-    assert "expected_values" in capsys.readouterr().err
+    assert main(["precison"]) == 2
+    assert "precision" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", sorted(REPORTS))

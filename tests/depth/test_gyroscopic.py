@@ -5,7 +5,6 @@ from __future__ import annotations
 import attrs
 import numpy as np
 import pytest
-from scipy.optimize import root
 
 from raceway import SceneError, make_plan
 from raceway.core.ring.kernels import layout as ring
@@ -75,66 +74,6 @@ def test_springs_of_the_shaft_cost_newton_no_iterations(built):
     assert held.system.stiffness[3, 3] == 1e5 > 3.0 * held.system.evaluate(held.guess).stiffness[3, 3]
     spent, more = (model.system.settle(model.guess)[2] for model in (free, held))
     assert more <= spent + 2
-
-
-def harris_ball(model, e, inner_share, outer_share, start):
-    """Load and angle of both races from Harris' two balances of a ball, solved by MINPACK's hybrid method.
-
-    Notes
-    -----
-    Q_i sin a_i - Q_o sin a_o - M/D (l_i cos a_i - l_o cos a_o) = 0,
-    Q_i cos a_i - Q_o cos a_o + M/D (l_i sin a_i - l_o sin a_o) + F_c = 0 with
-    M = J w_R w_c sin(beta), tan(beta) = sin(a_o) / (cos(a_o) + D/d_m)
-    (Harris & Kotzalas, Advanced Concepts of Bearing Technology, chapters 2 and 3).
-    """
-    g, scene = model.geometry, model.scene
-    d, ratio = g.ball_diameter, g.ball_diameter / g.pitch_diameter
-    spin, cage = scene.spin_speed, g.cage_speed(scene.spin_speed)
-    mass = g.ball_mass(scene.bearing.balls.density)
-    centrifugal = 0.5 * mass * g.pitch_diameter * cage**2
-    lo, li = g.offset_outer, g.offset_inner
-
-    def state(p):
-        x = e - p
-        si, so = np.hypot(*x), np.hypot(*p)
-        ai, ao = np.arctan2(*x), np.arctan2(*p)
-        qi, qo = model.inner.factor * max(si - li, 0.0) ** 1.5, model.outer.factor * max(so - lo, 0.0) ** 1.5
-        beta = np.arctan2(np.sin(ao), np.cos(ao) + ratio)
-        rolling = (np.cos(ao) + np.tan(beta) * np.sin(ao)) / (1 + ratio * np.cos(ao))
-        rolling += (np.cos(ai) + np.tan(beta) * np.sin(ai)) / (1 - ratio * np.cos(ai))
-        own = spin / (rolling * ratio * np.cos(beta))
-        m = mass * d**2 / 10.0 * own * cage * np.sin(beta)
-        return qi, qo, ai, ao, m
-
-    def balance(scaled):
-        qi, qo, ai, ao, m = state(scaled * lo)
-        t = m / d
-        return [
-            qi * np.sin(ai) - qo * np.sin(ao) - t * (inner_share * np.cos(ai) - outer_share * np.cos(ao)),
-            qi * np.cos(ai) - qo * np.cos(ao) + t * (inner_share * np.sin(ai) - outer_share * np.sin(ao)) + centrifugal,
-        ]
-
-    found = root(balance, start / lo, method="hybr", options={"xtol": 1e-13})
-    assert np.abs(found.fun).max() < 1e-6
-    return state(found.x * lo)
-
-
-@pytest.mark.parametrize(("hypothesis", "shares"), [("outer_race", (0.0, 2.0)), ("shared", (1.0, 1.0))])
-def test_each_ball_obeys_harris_equations(built, hypothesis, shares):
-    model = fast(built, hypothesis)
-    system = model.system
-    q, ball, _ = system.settle(model.guess)
-    now = system.evaluate(q, ball=ball)
-    vectors, _ = system.centre_vectors(q)
-    z = system.ball_count
-    for k in range(z):
-        qi, qo, ai, ao, m = harris_ball(model, vectors[k], *shares, ball[k, :2] + 2e-7)
-        assert m / model.geometry.ball_diameter < qi, "outside the range where the shares are the hypothesis' own"
-        # 1e-7: the tolerance of the reference's root finder.
-        assert now.contact_force[[k, z + k]] == pytest.approx([qi, qo], rel=1e-7)
-        x = vectors[k] - now.ball[k, :2]
-        assert np.arctan2(*x) == pytest.approx(ai, abs=1e-8)
-        assert np.arctan2(*now.ball[k, :2]) == pytest.approx(ao, abs=1e-8)
 
 
 @pytest.mark.parametrize("hypothesis", ["outer_race", "shared"])

@@ -1,4 +1,4 @@
-"""Orbiting balls: ball-pass frequency and amplitude, rates of the moving groove centres, lines of the result."""
+"""Orbiting balls: inertia, rates of the moving groove centres, lines of the result."""
 
 from __future__ import annotations
 
@@ -7,82 +7,15 @@ import numpy as np
 import pytest
 
 from raceway.core.ring.kernels.layout import CAGE, place
-from raceway.core.signals.lines import phasors, sharpest
+from raceway.core.signals.lines import phasors
 from raceway.core.signatures import Constants
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 from raceway.scene.reading import scene_from_dict
+from validation.ball_pass import SPEED, passing_hz
+from validation.ball_pass import passing_scene as scene
 from validation.tables import b7206c
-
-SPEED = 9000.0
-
-
-def scene(turns=12, steps=120, **tables):
-    """A static radial load on orbiting balls; the excitation is there to tell the turns and is next to nothing."""
-    base = {
-        "load": {"axial": 300.0, "radial": [600.0, 0.0]},
-        "kinematics": {"orbiting": True},
-        "excitation": {"kind": "bidirectional", "speed_rpm": SPEED, "amplitude": "constant", "force": 1e-7},
-        "integrator": {"kind": "quasi_static", "turns": turns, "steps_per_turn": steps},
-    }
-    return b7206c(**base, **tables)
-
-
-def passing_hz(model) -> float:
-    """Z (w / 2) (1 - D cos(alpha) / d_m) / (2 pi), the textbook's."""
-    b = model.scene.bearing
-    cage = 0.5 * (1.0 - b.ball_diameter * np.cos(b.contact_angle) / b.pitch_diameter) * SPEED / 60.0
-    return b.ball_count * cage
-
-
-def static_line(built, tables, part) -> complex:
-    """First line [m] of the static displacement over one ball pitch, from 16 positions of the balls."""
-    z = tables["bearing"].get("ball_count", 12)
-    tables = {k: v for k, v in tables.items() if k not in ("title", "excitation", "integrator")}
-    tables["kinematics"] = {"spin_speed_rpm": SPEED}
-    values = []
-    for k in range(16):
-        tables["bearing"] = {**tables["bearing"], "first_ball_azimuth_deg": 360.0 / z * k / 16.0}
-        model = built(**tables)
-        values.append(model.system.settle(model.guess)[0][part])
-    return 2.0 * np.fft.fft(values)[1] / 16.0
-
-
-@pytest.mark.parametrize("tilt", ["locked", "free"])
-@pytest.mark.parametrize("balls", [12, 7, 4])
-def test_ball_pass_line(built, balls, tilt):
-    """Frequency to 0.1 %, amplitude to 1 %, along the load (y) and along the axis."""
-    tables = scene(bearing={"ball_count": balls}, supports={"tilt": tilt})
-    model = built(**{k: v for k, v in tables.items() if k != "title"})
-    record = simulate(model, settle(model)).whole
-    expected = passing_hz(model)
-    for part in (0, 1):
-        static = abs(static_line(built, tables, part))
-        found = sharpest(record.time, record.displacement[:, part], expected, 0.03)
-        line = abs(
-            phasors(record.time, record.displacement[:, part : part + 1], [expected, 2 * expected, 3 * expected])[0, 0]
-        )
-        assert line == pytest.approx(static, rel=0.01)
-        assert line > 5e-10
-        assert found == pytest.approx(expected, rel=1e-3)
-
-
-def test_amplitude_is_half_the_difference_over_half_a_ball_pitch(built):
-    """With 12 balls the variation is a sine: no need for its Fourier series."""
-    tables = scene()
-    model = built(**{k: v for k, v in tables.items() if k != "title"})
-    record = simulate(model, settle(model)).whole
-    still = {k: v for k, v in tables.items() if k not in ("title", "excitation", "integrator")}
-    still["kinematics"] = {"spin_speed_rpm": SPEED}
-    ends = []
-    for azimuth in (0.0, 15.0):
-        still["bearing"] = {"preset": "B7206C", "first_ball_azimuth_deg": azimuth}
-        one = built(**still)
-        ends.append(600.0 / one.system.settle(one.guess)[0][1])
-    difference = abs(600.0 / ends[0] - 600.0 / ends[1])
-    line = abs(phasors(record.time, record.displacement[:, 1:2], [passing_hz(model)])[0, 0])
-    assert line == pytest.approx(0.5 * difference, rel=0.01)
 
 
 def test_inertia_amplifies_the_ball_pass_line_as_a_linear_oscillator_would(built):

@@ -8,7 +8,6 @@ import pytest
 from raceway import SceneError
 from raceway.core.ring.system import System
 from raceway.scene.reading import scene_from_dict
-from raceway.studies.verify.study import verify
 
 DISTANCE = 16e-3
 
@@ -125,17 +124,6 @@ def test_force_is_the_gradient_of_one_potential(built, arrangement, tilt):
         np.testing.assert_allclose(slope * scale * scale[j], k[:, j] * scale * scale[j], atol=2e-6 * k[1, 1])
     scaled = k * scale[:, None] * scale
     assert np.abs(scaled - scaled.T).max() < 1e-9 * np.abs(scaled).max()
-
-
-@pytest.mark.parametrize("case", ["nsk-7206C-stiffness", "nsk-7206A-stiffness"])
-def test_makers_tables_as_pairs(case):
-    """The catalogue's stiffness of a mounted pair, from a scene that is that pair; and equal to twice one row."""
-    rows = verify(only=case).rows
-    pairs = [row for row in rows if "as pair" in row.quantity]
-    singles = [row for row in rows if "as pair" not in row.quantity]
-    assert len(pairs) == len(singles) > 0 and all(row.ok for row in pairs)
-    for one, two in zip(singles, pairs, strict=True):
-        assert two.computed == pytest.approx(one.computed, rel=1e-8)
 
 
 @pytest.mark.parametrize(
