@@ -8,6 +8,7 @@ import pytest
 import raceway as rw
 from raceway.commands.screen.result_answer import model_rows
 from raceway.studies.sweep.variables import values_of
+from validation.command_line import EXAMPLES
 
 STATIC = {"bearing": {"preset": "7014A"}, "load": {"axial": 400.0}, "kinematics": {"spin_speed_rpm": 5000.0}}
 MOVING = {
@@ -125,6 +126,21 @@ def test_the_screen_says_it_beside_k():
     assert model_rows(rw.run(slow).to_dict(), "kyy") == []
 
 
+def test_a_change_above_all_of_k_is_a_number_that_people_read():
+    rows = model_rows({"error": {"model": {"kyy": [0.0, 3.7], "hypotheses": [
+        {"key": "kinematics.ring_growth", "value": True, "kyy": 3.7},
+    ]}, "how": {"model": ""}}}, "kyy")  # fmt: skip
+    assert [row[2] for row in rows] == ["model: ring growth would give kyy +370 %: kinematics.ring_growth"]
+
+
+def test_the_screen_says_where_the_spread_is_not_estimated():
+    """A run-up has no steady motion to compare with: its K has no range, and that is not left to result.json."""
+    result = rw.run(EXAMPLES / "run_up.toml").to_dict()
+    (row,) = model_rows(result, "equivalent_stiffness", "kyy")
+    assert result["error"]["how"]["model"].startswith("not estimated: ") and result["error"]["how"]["model"] in row[2]
+    assert model_rows({"error": {"model": None, "how": {"model": "nothing turns"}}}, "kyy") == []
+
+
 def test_what_is_left_out_by_default_is_said_so():
     def why(tables):
         return {part.part: part.why for part in rw.make_plan(rw.Scene.from_dict(tables)).left_out}
@@ -144,4 +160,5 @@ def test_rows_pressed_together_by_less_than_the_centrifugal_force_slide():
     assert len(told) == 1 and told[0].startswith("row 1") and f"{ratio:.2g} times" in told[0]
     assert not any("Hirano" in w for w in rw.run({**fast, "load": {"axial": 400.0}}).warnings)
     pair = {**fast, "bearing": {"preset": "B7206C", **SPRUNG, "preload": 100.0}, "load": {"axial": 0.0}}
-    assert sum("Hirano" in w for w in rw.run(pair).warnings) == 2
+    (both,) = (w for w in rw.run(pair).warnings if "Hirano" in w)
+    assert "row 1 is" in both and "row 2 is" in both

@@ -107,6 +107,9 @@ def test_the_tangent_condenses_what_the_scene_leaves_free(tilt, spring, axial):
     np.testing.assert_allclose(found.stiffness, np.linalg.inv(compliance), rtol=1e-10)
     assert not found.damping.any()
     assert "left out: the coupling of axial and radial motions" in " ".join(found.notes)
+    inner = np.linalg.inv(np.linalg.inv(matrix[:, (kept := sorted({0, 1, 2, *held}))][:, :, kept])[:, :3, :3])
+    below = 1.0 - np.diagonal(found.stiffness / inner[:, 1:, 1:], axis1=1, axis2=2).min()
+    assert (f"up to {below:.1%} below" in " ".join(found.notes)) == (axial == "force" and below >= 1e-3)
 
 
 def test_directions_give_both_columns_and_the_cross_terms():

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+import raceway as rw
+from raceway.bodies.equilibrium import tilts_follow
 from raceway.commands.screen import Words, rows_table
 from raceway.commands.screen.notes import short
-from raceway.commands.screen.result_parts import cost_rows
-from raceway.pipeline.result import tilts_follow
+from raceway.commands.screen.result_parts import cost_rows, equilibrium_rows
 from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
@@ -95,6 +96,19 @@ def test_the_answer_stands_first(tmp_path):
     place = next(k for k, line in enumerate(text) if line.startswith("  equivalent stiffness K"))
     assert place <= 6 and f"{1e-6 * result['equivalent_stiffness']:.5g} N/µm" in text[place]
     assert [line.split("  ")[1].strip() for line in text[place:] if line.startswith("  ")][0] == "equivalent stiffness K"
+
+
+def test_what_is_nothing_has_no_sign_and_a_direction_is_no_state():
+    """A loose row carries 0 N; a ring that the balls push off its seat is not said to be seated."""
+    pair = {"preset": "B7206C", "arrangement": "DB", "preload": 100.0}
+    loose = rw.run({"bearing": pair, "load": {"axial": 1000.0}}).to_dict()
+    rows = {name: (value, remark) for name, value, remark in equilibrium_rows(loose)}
+    assert rows["axial force of rows"][0] == "1000, 0 N"
+    fast = rw.run(
+        {"bearing": {"preset": "B7206C"}, "load": {"axial": 100.0}, "kinematics": {"spin_speed_rpm": 3e4}}
+    ).to_dict()
+    value, remark = equilibrium_rows(fast)[1][1:]
+    assert value.startswith("-") and remark == "axial, positive seats the bearing"
 
 
 def test_notes_are_short_on_the_screen_and_whole_where_they_are_asked_for(tmp_path):

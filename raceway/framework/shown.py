@@ -120,6 +120,12 @@ def number_within(value: float, error: float, unit: str) -> str:
     return f"{round(value, places):.0f} {unit}" if places <= 0 and abs(value) < 1e5 else number(value, unit, digits)
 
 
+def percents(*changes: float) -> str:
+    """Both ends of relative changes in percent, or the one that there is."""
+    ends = (f"{100.0 * one:+.{'2g' if abs(one) < 0.995 else '0f'}}" for one in (min(changes), max(changes)))
+    return f"{' to '.join(dict.fromkeys(ends))} %"
+
+
 def within(name: str, value: float, error: float | None, scale: float, unit: str, remark: str) -> Fact:
     """A number with its error; what is smaller than its error is no number."""
     if error is None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words, within
+from raceway.framework.shown import Fact, in_micro, largest_facts, number, percents, tilt_words, within
 from raceway.pipeline.error.hypotheses import NEGLIGIBLE
 from raceway.pipeline.motion import largest_contacts, pressures
 from raceway.storage.tables import Tables
@@ -53,13 +53,7 @@ def _spread(result: Result) -> list[Fact]:
     ends = (result.model_spread[0] or {}).get("equivalent_stiffness")
     if not ends or max(map(abs, ends)) < NEGLIGIBLE:
         return []
-    return [
-        (
-            "model of K",
-            f"{100.0 * ends[0]:+.2g} to {100.0 * ends[1]:+.2g} %",
-            "hypotheses left at their defaults: .model_spread",
-        )
-    ]
+    return [("model of K", percents(*ends), "hypotheses left at their defaults: .model_spread")]
 
 
 def _ends(ends: list[float]) -> Fact:

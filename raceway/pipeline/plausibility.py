@@ -10,6 +10,7 @@ from raceway.bodies.model import Model
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
+from raceway.pipeline.motion import pressures
 from raceway.storage.tables import Tables
 
 #: Samples of the last turn that are looked at.
@@ -42,7 +43,7 @@ def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) ->
 def pressure_warnings(model: Model, force: np.ndarray) -> list[str]:
     """Where the largest contact pressure exceeds that of static load ratings; forces (2 Z,) [N]."""
     limit, rows = model.bearing.static_pressure, model.basis.row
-    peaks = [model.bearing.contact_ellipse(model, race, load)[0] for race, load in enumerate(force.reshape(2, -1))]
+    peaks = pressures(model, force).reshape(2, -1)
     race, ball = np.unravel_index(np.argmax(peaks), (2, len(rows)))
     if not peaks[race][ball] > limit:
         return []
@@ -97,7 +98,7 @@ def _turn(record: Record) -> int:
 
 
 def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
-    """A sentence for each thrust-loaded row whose balls cannot be expected to roll.
+    """A sentence on thrust-loaded rows whose balls cannot be expected to roll.
 
     Notes
     -----
@@ -115,12 +116,12 @@ def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
         balls = model.basis.row == row
         axial = float((load[balls] * np.abs(np.sin(angle[balls]))).sum()) if (load[balls] > 0.0).all() else np.nan
         if axial < _SLIDING * push[balls].sum():
-            found.append(
-                f"row {row + 1} is pressed together axially with {axial:.4g} N, {axial / push[balls].sum():.2g} times the "
-                f"centrifugal force of its balls: below {_ROLLING:g} times gross sliding was seen (Hirano 1965). Balls then roll slower than "
-                "their speeds here say. Preload more, or take lighter balls (balls.material)"
-            )
-    return found
+            ratio = f"{axial / push[balls].sum():.2g} times the centrifugal force of its balls"
+            found.append(f"row {row + 1} is pressed together axially with {axial:.4g} N, {ratio}")
+    told = (
+        f"below {_ROLLING:g} times gross sliding was seen (Hirano 1965). Balls then roll slower than their speeds here say"
+    )
+    return [f"{', '.join(found)}: {told}. Preload more, or take lighter balls (balls.material)"] if found else []
 
 
 def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from raceway.commands.screen.damping import dry_damping_note
 from raceway.commands.screen.text import Row, number, tilt_words
-from raceway.framework.shown import within
+from raceway.framework.shown import percents, within
 from raceway.storage.tables import ReadTables
 
 #: An orbit whose minor axis is a smaller share of the major one is a line: the rest is rounding.
@@ -58,10 +58,8 @@ def damping_rows(found: ReadTables) -> list[Row]:
     """C with its origin; of a band C, loss factor and phase at both ends."""
     band, origin = found["band"], found["damping_origin"]
     if band is None:
-        row = resolved(
-            "equivalent damping C", found["equivalent_damping"], found["equivalent_damping_error"], "N s/m", origin
-        )
-        return [row]
+        damping, error = found["equivalent_damping"], found["equivalent_damping_error"]
+        return [within("equivalent damping C", damping, error, 1.0, "N s/m", origin)]
     return [
         ("equivalent damping C", _range(band["equivalent_damping"], "N s/m"), origin),
         ("loss factor", _range(band["loss_factor"]), "w C / K at both ends; all else is that of the low end"),
@@ -75,21 +73,22 @@ def _range(ends: Sequence[float], unit: str = "") -> str:
 
 def model_rows(result: ReadTables, *quantities: str) -> list[Row]:
     """Change of the first quantity known by each hypothesis left at its default and by all of them; nothing below 0.1 %."""
-    spread = result["error"].get("model") or {}
-    name = next((one for one in quantities if spread.get(one) is not None), "")
+    spread, why = result["error"]["model"], result["error"]["how"]["model"]
+    if spread is None:
+        return (
+            [("", "", f"model: change by hypotheses left at their defaults {why}")]
+            if why.startswith("not estimated")
+            else []
+        )
+    name = next((one for one in quantities if spread[one] is not None), "")
     of = "" if name in ("", "equivalent_stiffness") else f"{name.replace('_', ' ')} "
     rows: list[Row] = []
     for key, what in (("kinematics.gyroscopic", "gyroscopic moments"), ("kinematics.ring_growth", "ring growth")):
-        changes = [one[name] for one in spread.get("hypotheses", ()) if name and one["key"] == key and one[name] is not None]
-        rows += _changes(f"{what} would give {of}", changes, f": {key}")
-    return [*rows, *(_changes(f"over all of them {of}", spread[name], ": error.model") if len(rows) > 1 else [])]
-
-
-def _changes(words: str, changes: Sequence[float], end: str) -> list[Row]:
-    if max(map(abs, changes), default=0.0) < LEAST_CHANGE:
-        return []
-    told = list(dict.fromkeys(f"{100.0 * change:+.2g}" for change in (min(changes), max(changes))))
-    return [("", "", f"model: {words}{' to '.join(told)} %{end}")]
+        changes = [one[name] for one in spread["hypotheses"] if name and one["key"] == key and one[name] is not None]
+        if max(map(abs, changes), default=0.0) >= LEAST_CHANGE:
+            rows.append(("", "", f"model: {what} would give {of}{percents(*changes)}: {key}"))
+    together = [("", "", f"model: over all of them {of}{percents(*spread[name])}: error.model")] if len(rows) > 1 else []
+    return rows + together
 
 
 def _static(result: ReadTables) -> list[Row]:
@@ -152,12 +151,3 @@ def _contact(ball: ReadTables, race: str) -> str:
     told = [f"{1e-6 * ball[key]:.0f} MPa {word}" for word, key in names.items() if ball.get(key) is not None]
     hertz = f"{1e-6 * ball[f'peak_pressure_{race}_pa']:.0f} MPa{' by Hertz' if told else ''}"
     return ", ".join([*told, hertz, f"{angle:.2f} deg"])
-
-
-def resolved(name: str, value: float, error: float | None, unit: str, remark: str) -> Row:
-    """A small part of Z beside its absolute error; what is smaller than its error is not shown as a number."""
-    if error is None:
-        return name, number(value, unit, 3), remark
-    if abs(value) < error:
-        return name, "not resolved", f"below its error of {number(error, unit, 2)}; {remark}"
-    return name, number(value, unit, 3), f"+- {number(error, unit, 2)}; {remark}"

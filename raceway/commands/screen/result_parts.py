@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from raceway.commands.screen.notes import short
-from raceway.commands.screen.result_answer import loaded_balls, resolved, tangent_rows
+from raceway.commands.screen.result_answer import loaded_balls, tangent_rows
 from raceway.commands.screen.text import Row, number, tilt_words
-from raceway.framework.shown import in_micro, read_in
+from raceway.framework.shown import in_micro, read_in, within
 from raceway.storage.tables import ReadTables
 
 #: Axial forces below this are rounding.
@@ -20,7 +20,7 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     moved, dynamic = found["displacement"], result["identification"] is not None
     rows = [
         ("Equilibrium under the constant loads", "", ""),
-        ("displacement x", number(1e6 * moved["x"], "µm"), "axial, seats the bearing"),
+        ("displacement x", number(1e6 * moved["x"], "µm"), "axial, positive seats the bearing"),
         ("displacement y, z", f"{in_micro(moved['y'])}, {in_micro(moved['z'])} µm", "radial"),
     ]
     if tilt != "locked":
@@ -57,7 +57,7 @@ def _mounted(found: ReadTables) -> list[Row]:
     """Preload and held axial force: running, mounted and before mounting."""
     rows, preload, held = [], found["preload"], found["held_axial"]
     if preload is not None:
-        forces = ", ".join(f"{force:.5g}" for force in preload["rows_n"])
+        forces = ", ".join(number(force) for force in preload["rows_n"])
         what = {"rigid": "the offset of the rows", "spring": "the force of the rows on the spring"}[preload["kind"]]
         first = dict.fromkeys(f"{preload[name]:.5g}" for name in ("before_mounting_n", "second_before_mounting_n"))
         before = f"before mounting {' and '.join(first)} N, mounted {preload['mounted_n']:.5g} N"
@@ -116,8 +116,8 @@ def stiffness_rows(result: ReadTables, explain: bool) -> list[Row]:
         ("Dynamic stiffness Z", "", definition if explain else definition.partition(", ")[0]),
         ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
         ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
-        resolved("Z imaginary", 1e-6 * z["imag"], None if across is None else 1e-6 * across, "N/µm", "w C"),
-        resolved("phase lag", *lag, "deg", "displacement behind force"),
+        within("Z imaginary", z["imag"], across, 1e-6, "N/µm", "w C"),
+        within("phase lag", *lag, 1.0, "deg", "displacement behind force"),
     ]
 
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 DIRECTION = "excitation.direction_deg"
 #: Backward over forward amplitude, or cross over direct receptance, above which one number does not stand for the bearing.
 MOST_ANISOTROPY = 0.01
+#: Share of kyy by which it differs from that of a run, from which on that is told.
+_SOFTER = 1e-3
 #: Of ``_across``: squares that leave 1e-16 are 1e-8.
 _ROUNDING = 1e-7
 
@@ -168,7 +170,9 @@ def tangent(selection: Selection) -> Found:
     if selection.value("supports.axial") == "force":
         radial = radial - matrix[..., 1:, :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
         kept = kept - follow[..., :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
-        notes.append("kyy ... kzz at constant axial force (supports.axial), kxx with the radial motions held")
+        softer = 1.0 - float((np.diagonal(radial, 0, -2, -1) / np.diagonal(matrix, 0, -2, -1)[..., 1:]).min())
+        runs = f"; x follows: up to {softer:.1%} below kyy and kzz of a run, which hold it" if softer >= _SOFTER else ""
+        notes.append(f"kyy ... kzz at constant axial force (supports.axial), kxx with the radial motions held{runs}")
     else:
         notes.append("kyy ... kzz and kxx with each other's motions held (supports.axial)")
     size = float(np.max(coupling / np.sqrt(np.abs(matrix[..., 0, 0] * matrix[..., 1, 1]))[..., None]))
