@@ -35,3 +35,19 @@ class Equilibrium:
     angle_outer: np.ndarray
     iterations: int
     warnings: tuple[str, ...]
+
+
+def tilts_follow(stiffness: np.ndarray, tilt: float | str) -> float | None:
+    """Static condensation of the tilts: kyy - k_yt (k_tt + k_shaft I)^-1 k_ty [N/m].
+
+    Parameters
+    ----------
+    stiffness : (5, 5) tangent stiffness of the equilibrium
+    tilt : the scene's ``supports.tilt``: "locked" (None is returned), "free", or the tilt stiffness of the shaft [N m/rad]
+    """
+    if tilt == "locked":
+        return None
+    tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
+    if not np.linalg.det(tilts):
+        return float(stiffness[1, 1])
+    return float(stiffness[1, 1] - stiffness[1, 3:] @ np.linalg.solve(tilts, stiffness[3:, 1]))

@@ -140,9 +140,9 @@ class Film:
         at = 40.0 if self.temperature_c is None else self.temperature_c
         if self.temperature_viscosity is not None:
             return self.temperature_viscosity
-        return (
-            self._line.thinning(at) if self.viscosity is None else mineral_thinning(1e6 * self.viscosity / self.density, at)
-        )
+        if self.viscosity is None:
+            return self._line.thinning(at)
+        return mineral_thinning(1e6 * self.viscosity / self.density, at)
 
     def inlet(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
         """Thermal loading of the contacts' inlets (n,), and the part of the isothermal film that their heat leaves (n,)."""
@@ -220,10 +220,8 @@ class Film:
             return []
         speed = 0.0 if pairs.entraining_speed is None else float(pairs.entraining_speed.max())
         beyond = f", beyond the {_LOADING:g} that the formula was checked to" if loading.max() > _LOADING else ""
-        leaves, remedy = (
-            "leaves",
-            "Measure the oil's contact.temperature_viscosity and contact.conductivity, or take a thinner oil",
-        )
+        leaves = "leaves"
+        remedy = "Measure the oil's contact.temperature_viscosity and contact.conductivity, or take a thinner oil"
         if self.inlet_heating == "none":
             leaves, remedy = "would leave", "Take it off by contact.inlet_heating = 'murch_wilson'"
         return [

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
+from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import held_table, preload_table
 from raceway.bodies.running import report_of
@@ -181,10 +181,7 @@ class Result(Shown):
         """``error.model`` of result.json: change of K and kyy by hypotheses left at their defaults, and how it was found."""
         from raceway.pipeline.error.hypotheses import model_spread
 
-        tilt = self.model.scene.supports.tilt
-        return model_spread(
-            self.model, self.equilibrium, self.identification, self.simulation, lambda one: tilts_follow(one, tilt)
-        )
+        return model_spread(self.model, self.equilibrium, self.identification, self.simulation)
 
     @property
     def ball_pass(self) -> Tables:
@@ -373,22 +370,6 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         "held_axial": held_table(model, equilibrium),
         "iterations": equilibrium.iterations,
     }
-
-
-def tilts_follow(stiffness: np.ndarray, tilt: float | str) -> float | None:
-    """Static condensation of the tilts: kyy - k_yt (k_tt + k_shaft I)^-1 k_ty [N/m].
-
-    Parameters
-    ----------
-    stiffness : (5, 5) tangent stiffness of the equilibrium
-    tilt : the scene's ``supports.tilt``: "locked" (None is returned), "free", or the tilt stiffness of the shaft [N m/rad]
-    """
-    if tilt == "locked":
-        return None
-    tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
-    if not np.linalg.det(tilts):
-        return float(stiffness[1, 1])
-    return float(stiffness[1, 1] - stiffness[1, 3:] @ np.linalg.solve(tilts, stiffness[3:, 1]))
 
 
 def without_nan(value: Any) -> Any:

@@ -47,14 +47,14 @@ def uses_record(scene: Scene) -> bool:
     return scene.excitation is not None and "record" in scene.identifier.method.needs
 
 
-def _default(scene: Scene, key: str) -> str:
-    """A key of the scene as the reason of what is left out ends with: nobody asked for it."""
-    return "" if scene.says(key) else ", by default"
+def _off(scene: Scene, key: str, value: str) -> str:
+    """A key as the reason of what is left out, and whether nobody asked for that."""
+    return f"{key} is {value}{'' if scene.says(key) else ', by default'}"
 
 
 def decide_tilts(scene: Scene, parts: Decisions) -> bool:
     """Whether the ring tilts."""
-    why_not = f"supports.tilt is locked{_default(scene, 'supports.tilt')}"
+    why_not = _off(scene, "supports.tilt", "locked")
     return parts.decide(scene.supports.tilt != "locked", "tilts", "supports.tilt lets the ring tilt", why_not)
 
 
@@ -72,34 +72,23 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
         parts.decide(scene.spin_changes, "change of centrifugal and gyroscopic terms with the speed", why, why_not)
     rates = scene.excitation is not None and (scene.integrator.method.inertial or not uses_record(scene))
     damped = scene.contact.dashpot > 0.0 or scene.time_constant > 0.0
-    why_not = (
-        f"contact.damping is 0{_default(scene, 'contact.damping')}"
-        if not damped
-        else "nothing moves, or no rates: a series of equilibria"
-    )
+    why_not = "nothing moves, or no rates: a series of equilibria" if damped else _off(scene, "contact.damping", "0")
     why = "contact.damping is set" if scene.contact.dashpot > 0.0 else f"c = tau k, tau = {scene.time_constant:.3g} s"
     parts.decide(damped and rates, "contact damping", why, why_not)
     rubbing = scene.contact.friction > 0.0
-    why_not = f"contact.friction is 0{_default(scene, 'contact.friction')}"
+    why_not = _off(scene, "contact.friction", "0")
     if rubbing and not uses_record(scene) and traits_of(scene).every_node:
-        rubbing, why_not = (
-            False,
-            "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness",
-        )
+        rubbing = False
+        why_not = "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness"
     friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
     wanted = scene.kinematics.gyroscopic != "none"
-    still = "nothing turns: no spin speed"
-    why_not = still if wanted else f"kinematics.gyroscopic is none{_default(scene, 'kinematics.gyroscopic')}"
-    moments = parts.decide(
-        wanted and scene.spin_speed > 0.0,
-        "gyroscopic moments of the balls",
-        "kinematics.gyroscopic names a hypothesis",
-        why_not,
-    )
-    grows, key = scene.kinematics.ring_growth, "kinematics.ring_growth"
-    why_not = still if grows else f"{key} is false{_default(scene, key)}"
-    parts.decide(grows and scene.spin_speed > 0.0, "centrifugal growth of the inner ring", f"{key} is true", why_not)
-    why_not = f"kinematics.orbiting is false{_default(scene, 'kinematics.orbiting')}"
+    still, part = "nothing turns: no spin speed", "gyroscopic moments of the balls"
+    why_not = still if wanted else _off(scene, "kinematics.gyroscopic", "none")
+    moments = parts.decide(wanted and scene.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not)
+    grows, part, key = scene.kinematics.ring_growth, "centrifugal growth of the inner ring", "kinematics.ring_growth"
+    why_not = still if grows else _off(scene, key, "false")
+    parts.decide(grows and scene.spin_speed > 0.0, part, f"{key} is true", why_not)
+    why_not = _off(scene, "kinematics.orbiting", "false")
     parts.decide(scene.kinematics.orbiting, "orbiting balls", "kinematics.orbiting at cage speed", why_not)
     rows = f"bearing.arrangement is {scene.bearing.arrangement if not scene.bearing.row else scene.bearing.signs}"
     parts.decide(len(scene.bearing.rows) > 1, "further rows of balls", rows, rows)

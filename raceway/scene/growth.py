@@ -14,7 +14,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.scene.inner_ring import groove_depth, radial_growth
 
 if TYPE_CHECKING:
-    from raceway.scene.bearing import Bearing, Material
+    from raceway.scene.bearing import Bearing
     from raceway.scene.scene import Scene
 
 
@@ -95,8 +95,8 @@ def inner_fit(scene: Scene, bearing: Bearing) -> float:
     Notes
     -----
     Thick-walled cylinders of one material: with bore d, raceway d_1 = d_m - D and hole d_s the raceway grows, on the radius, by
-    I/2 (d_1 / d) (d^2 - d_s^2) / (d_1^2 - d_s^2); ``pressed`` takes two.  The interference falls by as much as the ring's bore grows
-    beyond the shaft, by centrifugal growth and by temperature.
+    I/2 (d_1 / d) (d^2 - d_s^2) / (d_1^2 - d_s^2); ``_by_interference`` takes two.  The interference
+    falls by as much as the ring's bore grows beyond the shaft, by centrifugal growth and by temperature.
 
     References
     ----------
@@ -112,35 +112,23 @@ def speed_growth(scene: Scene) -> tuple[float, float, float]:
     return free, each * fit, each * (fit - running_interference(scene, b))
 
 
-def _by_interference(scene: Scene, bearing: Bearing, interference: float) -> float:
-    if interference <= 0.0 or bearing.bore is None:
-        return 0.0
-    rings, race = bearing.rings, bearing.pitch_diameter - bearing.ball_diameter
-    seat = scene.mounting.shaft_material or rings
-    return pressed(interference, bearing.bore, race, scene.mounting.shaft_bore, rings, seat)
-
-
-def pressed(interference: float, d: float, race: float, far: float | None, ring: Material, seat: Material) -> float:
-    """Radial growth of a raceway by the interference of its ring [m], negative of an outer one: Lamé's thick-walled cylinders, each
-    of its own material (Timoshenko & Goodier, section 28).
-
-    Parameters
-    ----------
-    interference, d, race, far : diameters [m] of seat, raceway, and the other side of shaft or housing (None: far away)
-    """
-    sign, around = (1.0 if race > d else -1.0), (1.0 if far is None else abs((far**2 + d**2) / (far**2 - d**2)))
-    softness = (abs((race**2 + d**2) / (race**2 - d**2)) + sign * ring.poisson) / ring.young
-    softness += (around - sign * seat.poisson) / seat.young
-    return interference * d * race / (softness * ring.young * (race**2 - d**2))
-
-
 def outer_fit(scene: Scene, bearing: Bearing) -> float:
     """Radial growth of the outer raceway by the interference in the housing [m], negative: as ``inner_fit``, from outside."""
-    interference, rings, warm = warm_interference(scene, bearing, "housing"), bearing.rings, scene.mounting
-    if interference <= 0.0 or bearing.outer_diameter is None:
+    return _by_interference(scene, bearing, warm_interference(scene, bearing, "housing"), "housing")
+
+
+def _by_interference(scene: Scene, bearing: Bearing, interference: float, seat: str = "shaft") -> float:
+    """Radial growth of a raceway by the interference of its ring [m]: Lamé's thick-walled cylinders, each of its own material
+    (Timoshenko & Goodier, section 28)."""
+    warm, rings, sign = scene.mounting, bearing.rings, 1.0 if seat == "shaft" else -1.0
+    d, far = (bearing.bore, warm.shaft_bore) if seat == "shaft" else (bearing.outer_diameter, warm.housing_diameter)
+    if interference <= 0.0 or d is None:
         return 0.0
-    race = bearing.pitch_diameter + bearing.ball_diameter
-    return pressed(interference, bearing.outer_diameter, race, warm.housing_diameter, rings, warm.housing_material or rings)
+    core, race = getattr(warm, f"{seat}_material") or rings, bearing.pitch_diameter - sign * bearing.ball_diameter
+    around = 1.0 if far is None else abs((far**2 + d**2) / (far**2 - d**2))
+    softness = (abs((race**2 + d**2) / (race**2 - d**2)) + sign * rings.poisson) / rings.young
+    softness += (around - sign * core.poisson) / core.young
+    return interference * d * race / (softness * rings.young * (race**2 - d**2))
 
 
 def warm_interference(scene: Scene, bearing: Bearing, seat: str = "shaft") -> float:

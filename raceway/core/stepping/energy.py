@@ -8,8 +8,6 @@ import numpy as np
 
 #: What is stored in the system, and what has left it.
 STORED, LOST = ("elastic", "kinetic", "contact"), ("friction", "damping")
-#: Parts of others that are told on their own.
-PARTS = ("hourglass",)
 
 
 def drift(energies: Mapping[str, np.ndarray]) -> float | None:

@@ -14,7 +14,7 @@ loads and speeds (n d_m 3e3 to 2e6 mm r/min) gave, rounded up.  They bound kyy, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from itertools import product
 from typing import Any
 
@@ -22,7 +22,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import growth_of
-from raceway.bodies.equilibrium import Equilibrium
+from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid.build import add_moments
@@ -42,6 +42,7 @@ from raceway.storage.tables import Tables
 
 #: Keys of ``[kinematics]`` that are hypotheses, with the values beside each default.
 HYPOTHESES: dict[str, tuple[Any, ...]] = {"gyroscopic": ("outer_race", "shared"), "ring_growth": (True,)}
+_QUANTITIES = ("equivalent_stiffness", "kyy", "kyy_tilts_follow")
 #: Relative change of a stiffness that is not worth a solution or a sentence.
 NEGLIGIBLE = 1e-3
 #: Times of a turn, an odd number, and residual of orbits that are compared: both cancel in their ratio.
@@ -52,53 +53,47 @@ _LIMIT = 12
 _SAME = 0.05
 _MOMENTS, _GROWTH = 3.0, 1.0
 
-Tangent = Callable[[np.ndarray], float | None]
 Secant = Callable[[Model, Equilibrium], float]
 
 
 def model_spread(
-    model: Model, equilibrium: Equilibrium, found: Identification | None, simulation: Simulation | None, follow: Tangent
+    model: Model, equilibrium: Equilibrium, found: Identification | None, simulation: Simulation | None
 ) -> tuple[Tables | None, str]:
-    """``error.model`` of result.json, and ``error.how.model``.
-
-    Parameters
-    ----------
-    follow : of a stiffness (5, 5) kyy with tilts that follow [N/m]; None where tilts are locked
-    """
+    """``error.model`` of result.json, and ``error.how.model``."""
     values, why = _alternatives(model)
     if not values:
         return None, why
-    bound = _bound(model, equilibrium, tuple(values))
+    bound = _bound(model, equilibrium, values)
     if bound < NEGLIGIBLE:
-        return _table(values, [], bound), f"not solved: a closed bound of the change of kyy is {bound:.1e}{why}"
+        return _table([], bound), f"not solved: a closed bound of the change of kyy is {bound:.1e}{why}"
     secant, how = _secant(model, equilibrium, found, simulation)
     scene, own = model.scene, {key: getattr(model.scene.kinematics, key) for key in values}
-    still = (equilibrium.stiffness[1, 1], follow(equilibrium.stiffness))
     rows: list[tuple[Tables, Tables]] = []
     for chosen in product(*([own[key], *values[key]] for key in values)):
-        changed = dict(zip(values, chosen, strict=True))
-        if changed == own:
+        changed = {key: value for key, value in zip(values, chosen, strict=True) if value != own[key]}
+        if not changed:
             continue
         other = attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, **changed))
-        change: Tables = dict.fromkeys(("equivalent_stiffness", "kyy", "kyy_tilts_follow"))
+        change: Tables = dict.fromkeys(_QUANTITIES)
         try:
             one, there = _under(model, other, equilibrium)
-            now = there.stiffness[1, 1], follow(there.stiffness)
-            change["kyy"], change["kyy_tilts_follow"] = (
-                None if a is None or b is None else float((b - a) / abs(a)) for a, b in zip(still, now, strict=True)
+            before, now = (
+                (each.stiffness[1, 1], tilts_follow(each.stiffness, scene.supports.tilt)) for each in (equilibrium, there)
             )
+            for name, a, b in zip(_QUANTITIES[1:], before, now, strict=True):
+                change[name] = None if a is None or b is None else float((b - a) / abs(a))
             moved = np.nan if secant is None else secant(one, there)
             change["equivalent_stiffness"] = moved if np.isfinite(moved) else None
         except (RacewayError, ArithmeticError, np.linalg.LinAlgError) as error:
             how += f"; not under {changed}: {str(error).splitlines()[0]}"
-        rows.append(({key: value for key, value in changed.items() if value != own[key]}, change))
-    return _table(values, rows, bound), f"equilibria under each hypothesis and under all; K: {how}{why}"
+        rows.append((changed, change))
+    return _table(rows, bound), f"equilibria under each hypothesis and under all; K: {how}{why}"
 
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
     """Upper estimate of the relative change of kyy by the hypotheses left at their defaults; None where there are none."""
     values, _ = _alternatives(model)
-    return _bound(model, equilibrium, tuple(values)) if values else None
+    return _bound(model, equilibrium, values) if values else None
 
 
 def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
@@ -126,7 +121,7 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
     return values, why if values else f"no other hypothesis can be run here{why}"
 
 
-def _bound(model: Model, equilibrium: Equilibrium, keys: tuple[str, ...]) -> float:
+def _bound(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> float:
     inner = equilibrium.contact_force[: model.system.ball_count]
     loaded, out = inner > 0.0, 0.0
     if not loaded.any():
@@ -227,17 +222,12 @@ def _secant(
     return secant, "of the steady orbit near the recorded one"
 
 
-def _table(values: dict[str, list[Any]], rows: list[tuple[Tables, Tables]], bound: float) -> Tables:
+def _table(rows: list[tuple[Tables, Tables]], bound: float) -> Tables:
     """``error.model``: ranges over all rows and 0, None where a row lacks the number; each hypothesis by itself; the bound."""
-    names = ("equivalent_stiffness", "kyy", "kyy_tilts_follow")
-    numbers = {name: [change[name] for _, change in rows] for name in names}
-    return {
-        **{name: None if not all_ or None in all_ else [min(0.0, *all_), max(0.0, *all_)] for name, all_ in numbers.items()},
-        "hypotheses": [
-            {"key": f"kinematics.{key}", "value": value, **change}
-            for changed, change in rows
-            if len(changed) == 1
-            for key, value in changed.items()
-        ],
-        "bound": bound,
-    }
+    found: Tables = {}
+    for name in _QUANTITIES:
+        numbers = [change[name] for _, change in rows]
+        found[name] = [min(0.0, *numbers), max(0.0, *numbers)] if numbers and None not in numbers else None
+    alone = [(key, value, change) for changed, change in rows for key, value in changed.items() if len(changed) == 1]
+    hypotheses = [{"key": f"kinematics.{key}", "value": value, **change} for key, value, change in alone]
+    return {**found, "hypotheses": hypotheses, "bound": bound}

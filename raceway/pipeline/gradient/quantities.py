@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
+from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
 from raceway.framework.shown import race_words, tilt_words
 from raceway.pipeline.gradient.gradients import Gradient
 from raceway.pipeline.gradient.motion import SteadyOrbit
+from raceway.pipeline.gradient.statics import StaticGradient
 from raceway.pipeline.motion import race_of
-from raceway.pipeline.result import tilts_follow
 from raceway.storage.tables import Tables
 
 #: Names with units, in the order of columns; what a scene does not have is left out.
@@ -36,12 +36,7 @@ def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) ->
         found |= {"K": stiffness, "amplitude": amplitude}
         if abs(damping) * orbit.solved.problem.speed > _RESOLVED * abs(real):
             found["C"] = damping
-    found |= {
-        "kxx": float(equilibrium.stiffness[0, 0]),
-        "kyy": float(equilibrium.stiffness[1, 1]),
-        "x": float(equilibrium.displacement[0]),
-        "largest_ball_load": float(equilibrium.contact_force.max()),
-    }
+    found |= _at_rest(equilibrium, equilibrium)
     if (follows := tilts_follow(equilibrium.stiffness, model.scene.supports.tilt)) is not None:
         found["kyy_tilts_follow"] = follows
     return {name: found[name] for name in UNITS if name in found}
@@ -74,16 +69,18 @@ def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> d
         one = gradient.motion
         found |= {"K": one.equivalent_stiffness, "C": one.equivalent_damping, "amplitude": one.amplitude}
     statics = gradient.statics
-    found |= {
-        "kxx": float(statics.stiffness[0, 0]),
-        "kyy": float(statics.stiffness[1, 1]),
-        "x": float(statics.displacement[0]),
-        "largest_ball_load": float(statics.contact_force[int(np.argmax(equilibrium.contact_force))]),
-    }
+    found |= _at_rest(equilibrium, statics)
     if (tilt := model.scene.supports.tilt) != "locked":
         by = float(statics.key.path == "supports.tilt")
         found["kyy_tilts_follow"] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
     return found
+
+
+def _at_rest(equilibrium: Equilibrium, of: Equilibrium | StaticGradient) -> dict[str, float]:
+    """The numbers that every scene has, of the equilibrium or of its slopes."""
+    largest = int(np.argmax(equilibrium.contact_force))
+    found = {"kxx": of.stiffness[0, 0], "kyy": of.stiffness[1, 1], "x": of.displacement[0]}
+    return {name: float(one) for name, one in {**found, "largest_ball_load": of.contact_force[largest]}.items()}
 
 
 def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | str, by: float) -> float:
