@@ -65,7 +65,10 @@ class Mistake:
 
 
 def _short(value: Any) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except Exception:  # of a foreign object
+        text = object.__repr__(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 

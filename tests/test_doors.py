@@ -236,3 +236,56 @@ def test_linearised_bearings_go_with_their_iteration():
         finally:
             gc.enable()
     assert most[0] == 1
+
+
+class Unlucky:
+    """What a user may hand in by mistake: nothing that one asks of it has an answer."""
+
+    def __repr__(self):
+        raise ValueError("closed")
+
+    def __iter__(self):
+        raise OSError("closed")
+
+    def __fspath__(self):
+        raise OSError("closed")
+
+
+class BytesPath:
+    def __fspath__(self):
+        return b"missing.toml"
+
+
+@pytest.mark.parametrize(
+    ("call", "rule"),
+    [
+        (lambda: rw.compare(SCENE, Unlucky()), "`vary`"),
+        (lambda: rw.run(SCENE, out=Unlucky()), "`out`"),
+        (lambda: rw.run(BytesPath()), "no such file"),
+        (lambda: rw.make_plan(Unlucky()), "a Scene"),
+        (lambda: rw.sweep(SCENE, dict), "`axes`"),
+        (lambda: rw.fit({"axial [N]": [10**400]}, SCENE, "load.axial"), "no number"),
+        (lambda: rw.sensitivities(SCENE, ["load.axial"])["load.radial"], "must be one of 'load.axial'"),
+        (lambda: rw.fit({"axial [N]": [400.0, 1000.0], "kxx [N/um]": [39.4, 67.4]}, SCENE, "bearing.contact_angle_deg")["K"], "must be one of"),
+    ],
+)  # fmt: skip
+def test_what_has_no_answer_is_told_all_the_same(call, rule):
+    with pytest.raises(rw.SceneError, match=rule):
+        call()
+
+
+@pytest.mark.parametrize("long", ["x" * 5000, "/".join(["y" * 300] * 3), "a." * 200 + "b"])
+def test_names_that_no_system_takes(long, tmp_path, monkeypatch):
+    """Beyond 255 letters a system does not say that nothing is there: it refuses the question."""
+    monkeypatch.chdir(tmp_path)
+    result = rw.run(SCENE)
+    for call in (
+        lambda: result.save(long),
+        lambda: rw.run(long),
+        lambda: rw.run(SCENE, out=long),
+        lambda: rw.law("hertz").picture(long),
+    ):
+        with pytest.raises(rw.RacewayError, match="too long|neither a file"):
+            call()
+    with pytest.warns(UserWarning, match="too long"):
+        rw.compare(SCENE, {"load.axial": [400.0, 800.0]}, kept=long)

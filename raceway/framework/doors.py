@@ -37,7 +37,7 @@ def door(function: F) -> F:
             if (value := bound.arguments.get(name, default)) is not default:
                 try:
                     bound.arguments[name] = read(value)
-                except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+                except Exception:  # whatever a foreign object makes of being asked
                     raise SceneError.at(name, value, f"must be {words}") from None
         return function(*bound.args, **bound.kwargs)
 
@@ -118,7 +118,7 @@ _READERS: dict[str, Reader] = {
         "aim amplitude frequency conformity": _number("a finite number above 0", lambda v: 0.0 < v < math.inf),
         "patience limit_s": _number("a number from 0, or inf", lambda v: v >= 0.0),
         "vary at reference tolerances": ("a mapping of keys to values, or texts KEY=VALUE", _table),
-        "axes": ("a mapping of keys to values, or a list of points", lambda v: v if hasattr(v, "keys") else list(v)),
+        "axes": ("a mapping of keys to values, or a list of points", lambda v: dict(v) if hasattr(v, "keys") else list(v)),
         "columns": (
             "a mapping of heads to names, text both",
             lambda v: {_TEXT[1](one): _TEXT[1](name) for one, name in v.items()},
@@ -126,7 +126,7 @@ _READERS: dict[str, Reader] = {
         "tables known_parts": _reader("a mapping, such as a dict", _is(Mapping)),
         "ratings": ("a mapping of angles to (C, C0)", lambda v: {float(angle): (c, c0) for angle, (c, c0) in v.items()}),
         "pairs": ("triples (angle, preload, stiffness)", lambda v: [(float(angle), load, k) for angle, load, k in v]),
-        "Scene": _reader("a Scene, as raceway.load_scene reads it", lambda v: hasattr(v, "bearing")),
+        "Scene": _reader("a Scene, as raceway.load_scene reads it", lambda v: type(v).__name__ == "Scene"),
         "row": _reader("a finished row of `judged`", lambda v: v["physics"] and float(v["error"]) >= 0.0),
         "progress": _reader("True, or a function of (what, done, total)", _tells),
         "run_out": ("two finite numbers", lambda v: (lambda a, b: (_FINITE[1](a), _FINITE[1](b)))(*v)),

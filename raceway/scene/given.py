@@ -138,10 +138,10 @@ def as_given(source: Any) -> Given:
     if isinstance(source, str) and _is_text(source):
         return Given(tidy(parse_toml(source, "scene")))
     if isinstance(source, str | os.PathLike):
-        path = Path(source)
-        if isinstance(source, str) and not path.suffix and not path.exists():
+        path = Path(os.fsdecode(source))
+        if isinstance(source, str) and not path.suffix and not os.path.exists(path):
             raise SceneError.at("scene", source, "is neither a file nor the TOML text of a scene")
-        if path.is_dir():
+        if os.path.isdir(path):
             inside = sorted(str(p) for p in path.glob("*.toml"))
             hint = f"; scenes in it: {', '.join(inside[:5])}" if inside else " without a scene (*.toml) in it"
             raise SceneError.at(str(path), None, f"is a folder{hint}")
@@ -202,7 +202,7 @@ def tidy(value: Any, depth: int = 0) -> Any:
     if isinstance(value, list | tuple | range):
         return [tidy(inner, depth + 1) for inner in value]
     if isinstance(value, os.PathLike):
-        return os.fspath(value)
+        return os.fsdecode(value)
     if hasattr(value, "magnitude") and hasattr(value, "to_base_units"):
         return _quantity(value)
     if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
@@ -241,7 +241,4 @@ def _is_text(source: str) -> bool:
     """Whether a string is the text of a scene: it names no file, and has what TOML has."""
     if not any(sign in source for sign in _SIGNS_OF_TOML):
         return not source.strip()
-    try:
-        return not Path(source).exists()
-    except (OSError, ValueError):  # longer than a name can be, or with a zero in it
-        return True
+    return not os.path.exists(source)  # nor is what is longer than a name can be

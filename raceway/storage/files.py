@@ -23,7 +23,7 @@ def scratch_file(path: Path, remedy: str) -> Iterator[Path]:
     RacewayError
         A folder or disk that cannot be written.
     """
-    if path.is_dir():
+    if os.path.isdir(path):  # no question of pathlib's, which ends in an OSError where a name is too long
         raise RacewayError(f"`{path}` cannot be written: it is a folder. {remedy}")
     scratch = path.with_name(f".{path.name}.{os.getpid()}")
     try:
@@ -53,7 +53,7 @@ def write_whole(content: bytes, path: Path) -> Path:
 def writable(folder: Path) -> Path:
     """Refuse a folder that cannot be written before anything is computed; make nothing yet."""
     place = folder
-    while not place.exists() and place != place.parent:
+    while not os.path.exists(place) and place != place.parent:
         place = place.parent
     if not place.is_dir():
         raise RacewayError(
@@ -61,7 +61,7 @@ def writable(folder: Path) -> Path:
         )
     if not os.access(place, os.W_OK | os.X_OK):
         raise RacewayError(f"`{folder}` cannot be written: no permission in `{place}`. Choose another folder with --out.")
-    if not folder.exists():
+    if not os.path.exists(folder):
         # A folder that cannot be made is refused now; an empty one is taken away again.
         try:
             folder.mkdir(parents=True)

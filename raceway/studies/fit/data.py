@@ -61,7 +61,7 @@ def _from_arrays(given: Mapping[str, Any]) -> NumberTable:
     for head, values in given.items():
         try:
             found[head] = np.atleast_1d(np.asarray(values, dtype=float))
-        except (TypeError, ValueError):
+        except (OverflowError, TypeError, ValueError):
             raise SceneError.at("data", None, f"column '{head}' holds something that is no number") from None
         if found[head].ndim != 1 or not np.isfinite(found[head]).all():
             raise SceneError.at("data", None, f"column '{head}' must hold one finite number a measurement")

@@ -82,7 +82,7 @@ class Fitted(Shown):
 
     def __getitem__(self, name: str) -> float:
         """A free number, in the unit of its key, or a derived one, in SI."""
-        return self._found()[name][0]
+        return self._found()[member("name", name, self._found())][0]
 
     def half_width(self, name: str) -> float:
         """Half-width of its interval at 95 %; infinite where the data do not determine it."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Collection, Iterable
 from functools import cache
 from pathlib import Path
@@ -29,7 +30,7 @@ class RowStore:
         self.rows: dict[str, Tables] = {}
         #: Why rows are no longer written; the study goes on without.
         self.fault: RacewayError | None = None
-        if path is not None and path.is_file():
+        if path is not None and os.path.isfile(path):
             self._read(path)
 
     def _read(self, path: Path) -> None:

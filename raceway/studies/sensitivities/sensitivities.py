@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from raceway.core.jit import working_processor_time
+from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown, number
 from raceway.pipeline.gradient.gradients import Gradient, Gradients
 from raceway.pipeline.gradient.quantities import UNITS, definitions, derivatives, described, values
@@ -80,7 +81,8 @@ class Sensitivities(Shown):
     warnings: tuple[str, ...] = ()
 
     def __getitem__(self, path: str) -> Sensitivity:
-        return next(row for row in self.rows if row.key.path == path)
+        rows = {row.key.path: row for row in self.rows}
+        return rows[member("path", path, rows)]
 
     def _shown(self) -> tuple[str, list[Fact]]:
         first = next(iter(self.values))
