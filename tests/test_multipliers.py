@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.periodic.floquet import Floquet
+from raceway.core.periodic.floquet import Floquet, fate_of
 
 
 @pytest.mark.parametrize(
@@ -20,3 +20,11 @@ def test_what_grows_is_called_unstable(largest, verdict):
         found = Floquet(multipliers.astype(complex), multipliers.astype(complex))
         assert found.verdict == verdict
         assert bool(found.leaves_by) == (verdict == "unstable")
+
+
+def test_what_dies_within_a_span_has_the_multiplier_zero(recwarn):
+    """Dashpots of 1e5 N s/m leave nothing: it was not a number, with a warning of numpy's, and all of them "neutral"."""
+    over = np.diag([0.0, 0.5, -0.9])
+    assert fate_of(over, np.pi / 6.0).multipliers == pytest.approx([0.9**12, 0.5**12, 0.0])
+    assert fate_of(0.0 * over, np.pi / 6.0).verdict == "stable"
+    assert not recwarn.list

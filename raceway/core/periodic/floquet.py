@@ -98,8 +98,7 @@ def transfer(solved: Solved, highest: float = 0.0) -> np.ndarray:
 def fate_of(over: np.ndarray, span: float) -> Floquet:
     """Multipliers of a transfer over a span [rad]."""
     over_span = np.linalg.eigvals(over).astype(complex)
-    with np.errstate(divide="ignore"):
-        over_turn = np.exp(2.0 * np.pi / span * np.log(over_span))
+    over_turn = over_span ** (2.0 * np.pi / span)
     order = np.argsort(-np.abs(over_turn))
     return Floquet(over_turn[order], over_span[order])
 
