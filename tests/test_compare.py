@@ -284,18 +284,49 @@ def test_the_words_rank_the_effects_and_tell_the_course_where_an_axis_changes_it
     assert "falls in 4 of 4 settings (-2.0 %)" in text and "rises in 4 of 4 settings (+1.0 % to +20.0 %)" in text
 
 
+def _made(axes, k_of) -> Comparison:
+    """Of any axes; K [N/m] of a point."""
+    axes, rows, found = parse_axes(axes), [], _synthetic(lambda point: 0.0).rows[0].result["identification"]
+    for point in points(axes):
+        k = k_of(point)
+        told = {**found, "equivalent_stiffness": k, "dynamic_stiffness": {"real": k, "imag": 0.0, "abs": k}}
+        rows.append(Row(point, {"identification": told, "error": {"total": 1e-6}}))
+    return Comparison("made up", axes, tuple(rows))
+
+
 def test_the_first_sentence_says_what_the_table_says_where_speed_is_varied_with_another_axis():
     """A penalty that is a quarter stiffer at every speed is an axis that moves K, though not what speed does to it."""
-    axes = parse_axes(["excitation.speed_rpm=10000:14000:3", "contact.kind=hertz,penalty"])
-    made = _synthetic(lambda point: 0.0)
-    rows = []
-    for point in points(axes):
-        k = 1e8 * 0.8 ** (point["excitation.speed_rpm"] / 14000.0) * (1.25 if point["contact.kind"] == "penalty" else 1.0)
-        found = {**made.rows[0].result["identification"], "equivalent_stiffness": k}
-        found["dynamic_stiffness"] = {"real": k, "imag": 0.0, "abs": k}
-        rows.append(Row(point, {"identification": found, "error": {"total": 1e-6}}))
-    first = Comparison("made up", axes, tuple(rows)).short_words[0]
+    axes = ["excitation.speed_rpm=10000:14000:3", "contact.kind=hertz,penalty"]
+    first = _made(
+        axes,
+        lambda point: (
+            1e8 * 0.8 ** (point["excitation.speed_rpm"] / 14000.0) * (1.25 if point["contact.kind"] == "penalty" else 1.0)
+        ),
+    ).short_words[0]
     assert "contact.kind from hertz to penalty changes it by +25.0 %" in first and "none of the other axes" not in first
+
+
+@pytest.mark.parametrize(
+    ("axes", "k_of", "said"),
+    [
+        (["load.axial=1000,400,2000,1000.5"], lambda p: 6e4 * p["load.axial"], "changes it by +0.05 % (+0.03 N/µm; to 400 by -60.0 %)"),
+        (["contact.kind=hertz,film,penalty"], lambda p: 8e7 if p["contact.kind"] == "film" else 6e7, "by +0.00 % (+0.00 N/µm; to film by +33.3 %)"),
+        (
+            ["contact.kind=hertz,film,penalty", "supports.tilt=locked,free"],
+            lambda p: 6e7 + (p["contact.kind"] == "film") * (2e7 if p["supports.tilt"] == "free" else -2e7),
+            "to film by -33.3 % to +33.3 %)",
+        ),
+        (["load.axial=1000,400,2000", "supports.tilt=locked,free"], lambda p: 6e4 * p["load.axial"] * (0.9 if p["supports.tilt"] == "free" else 1.0),
+         "by +100.0 % (+57.00 N/µm; to 400 by -60.0 %); supports.tilt from locked to free changes it by -10.0 %"),
+    ],
+)  # fmt: skip
+def test_what_lies_between_the_ends_of_an_axis_is_told_where_it_is_beyond_them(axes, k_of, said):
+    """The first sentence gave the range of the ends as that of all runs, and passed over an axis whose ends are alike."""
+    made = _made(axes, k_of)
+    k = [1e-6 * k_of(row.point) for row in made.rows]
+    assert made.words[0].startswith(f"K(w) lies between {min(k):.2f} and {max(k):.2f} N/µm. On average")
+    assert said in made.words[0] and "of the variation" not in made.words[0]
+    assert not any("hardly depends on " + axes[0].partition("=")[0] in words for words in made.words)
 
 
 def test_no_line_crosses_a_point_that_failed():

@@ -252,7 +252,9 @@ def test_a_single_frequency_does_not_tell_stiffness_from_mass():
 
 def test_a_model_that_misses_the_record_is_told():
     found = rw.fit(record(5e7, 800.0, 2.0, 1), free="K,C", mass=0.0)
-    assert any("leaves" in text and "free mass" in text for text in found.warnings)
+    assert any("leaves" in text and "free mass or cut the record" in text for text in found.warnings)
+    alone = rw.fit(record(5e7, 800.0, 2.0, 1), free="mass").warnings
+    assert "K and C are not free: taken as 0" in alone and any("free K and C or cut the record" in text for text in alone)
 
 
 def test_a_mass_that_is_neither_free_nor_stated_is_freed_and_named():
@@ -354,7 +356,9 @@ def test_grooves_that_are_off_by_what_the_catalogue_allows_lie_within_the_interv
         "bearing": {**LOADED["bearing"], "conformity_inner": 0.522 * 1.0005, "conformity_outer": 0.522 * 1.0005},
     }
     moved = rw.fit(data, off, ANGLE)
-    assert list(moved.estimate.parts) == ["noise"]  # numbers of one's own have no scatter
+    assert list(moved.estimate.parts) == ["noise"]  # numbers of one's own have no scatter, and that is said
+    assert any("groove conformities are taken as exact" in text for text in moved.warnings)
+    assert not any("groove" in text for text in found.warnings)
     assert parts["groove conformities"] == pytest.approx(4.0 * 1.96 * abs(moved[ANGLE] - found[ANGLE]), rel=0.05)
 
 

@@ -16,7 +16,7 @@ COMMAND = "python -m benchmarks.meaning compare"
 COUNT, _DIGIT = 20, 0.06
 _AXES: dict[str, tuple[Any, ...]] = {
     "excitation.speed_rpm": (8000, 14000, 20000), "contact.kind": ("hertz", "penalty"), "supports.tilt": ("locked", "free"),
-    "load.axial": (400, 900, 1500), "kinematics.ball_inertia": (False, True), "excitation.kind": ("unidirectional", "bidirectional"),
+    "load.axial": (900, 400, 1500), "kinematics.ball_inertia": (False, True), "excitation.kind": ("unidirectional", "bidirectional"),
     "kinematics.gyroscopic": ("none", "outer_race"), "bearing.ball_count": (10, 12),
 }  # fmt: skip
 _FORCE = {"kind": "bidirectional", "speed_rpm": 12000, "amplitude": "constant", "force": 50.0}
@@ -62,11 +62,15 @@ def contradiction(sentence: str, table: list[tuple[Any, float | None]], names: l
 
     Notes
     -----
-    The mean change of an axis is that of the logarithm between its first and last value over the table's corners; an axis that the
-    sentence passes over must change nothing by half a per cent, and those that it names stand in the order of their sizes.
+    The range is that of the whole table.  The mean change of an axis is that of the logarithm between its first and last value over the
+    table's corners; an axis that the sentence passes over must change nothing by half a per cent, and those that it names stand in the
+    order of their sizes.
     """
     if any(number is None or number <= 0.0 for _, number in table):
         return ""  # the sentence may hold some axes then: the words say which
+    bounds = [1e-6 * pick(number for _, number in table if number is not None) for pick in (min, max)]
+    if "lies between {:.2f} and {:.2f} ".format(*bounds) not in sentence:
+        return f"{sentence[:60]} for {bounds[0]:.2f} to {bounds[1]:.2f}"
     changes = {}
     for name in names:
         ends = _AXES[name][0], _AXES[name][-1]
@@ -84,5 +88,7 @@ def contradiction(sentence: str, table: list[tuple[Any, float | None]], names: l
     for name in names:
         if name not in said and abs(changes[name]) > 0.5:
             return f"{name} is passed over, {changes[name]:.2f} %"
+    if "; to " in sentence:
+        return ""  # an axis may stand for what it does between its ends
     sizes = [abs(math.log1p(changes[name] / 100.0)) for name in sorted(said, key=sentence.index)]
     return "" if sizes == sorted(sizes, reverse=True) else "not in the order of size"

@@ -94,11 +94,7 @@ def labelled(result: Result) -> Any:
         spread = result.model_spread[0]
         if spread is not None and spread["equivalent_stiffness"] is not None:
             coordinates["end"] = ["low", "high"]
-            words = "relative change of K by hypotheses left at their defaults"
-            variables["equivalent_stiffness_model"] = (
-                ("end",),
-                spread["equivalent_stiffness"],
-                labels("equivalent_stiffness_model", "1", words),
-            )
+            about = labels("equivalent_stiffness_model", "1", "relative change of K by hypotheses left at their defaults")
+            variables["equivalent_stiffness_model"] = (("end",), spread["equivalent_stiffness"], about)
     attributes = {"title": result.title, "warnings": "\n".join(result.warnings)}
     return labelled_dataset(variables, coordinates, attributes)

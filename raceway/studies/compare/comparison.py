@@ -131,9 +131,10 @@ class Comparison(Shown, Findings):
         RacewayError
             matplotlib is missing, or a folder that cannot be written.
         """
-        from raceway.studies.compare.picture import ComparisonPicture
+        from raceway.plugins.reports.pictures import save_figure
+        from raceway.studies.compare.picture import draw
 
-        return ComparisonPicture().write(self.to_dict(), folder)
+        return [save_figure(draw(self.to_dict()), folder / "comparison.png", 100)]
 
 
 def _number_of(row: Row) -> tuple[str, str]:

@@ -158,28 +158,34 @@ def _why_no_effects(comparison: Findings) -> str:
 def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     factorial, about = comparison.factorials[quantity], comparison.quantities[quantity]
     label, unit = about.label, about.unit
-    low, high = about.scale * factorial.corners.min(), about.scale * factorial.corners.max()
+    values = [about.scale * (row.value(quantity) or 0.0) for row in comparison.rows if row.doubt is None]
+    beyond = {key: span for key in factorial.keys if (span := _between(comparison, quantity, comparison.axis(key)))}
+    main = [e for e in factorial.effects if len(e.term) == 1]
     parts, hidden, weak, inert = [], [], [], []
     largest = factorial.effects[0]
-    for effect in (e for e in factorial.effects if len(e.term) == 1):
+    for effect in sorted(main, key=lambda e: -max(map(abs, (e.log_change, *beyond.get(e.term[0], ("", []))[1])))):
         key = effect.term[0]
-        small = abs(effect.log_change) + factorial.error < HARDLY
-        if small and max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < HARDLY:
-            inert.append(f"{key} ({percent(effect.log_change)})")
-        elif not small and not effect.resolved:
-            hidden.append(f"{key} ({percent(effect.log_change)}{_where_resolved(comparison, factorial, key)})")
-        elif abs(effect.log_change) < HARDLY:
-            weak.append(f"{key} ({percent(effect.log_change)})")
-        else:
-            share = f"{100.0 * effect.share:.3g} % of the variation"
-            if effect is not largest and largest.share > 0.9:
-                share = f"{100.0 * effect.share / (1.0 - largest.share):.2g} % of the rest"
+        if key in beyond or (effect.resolved and abs(effect.log_change) >= HARDLY):
+            if key in beyond:
+                share = f"; to {beyond[key][0]} by {_span(beyond[key][1])}"
+            elif beyond:  # shares are those of the ends
+                share = ""
+            elif effect is not largest and largest.share > 0.9:
+                share = f"; {100.0 * effect.share / (1.0 - largest.share):.2g} % of the rest"
+            else:
+                share = f"; {100.0 * effect.share:.3g} % of the variation"
             mixed = ", a mean of rises and falls" if _mixed(factorial, key) else ""
-            change = f"{percent(effect.log_change)} ({about.scale * (effect.difference or 0.0):+.2f} {unit}; {share}{mixed})"
+            change = f"{percent(effect.log_change)} ({about.scale * (effect.difference or 0.0):+.2f} {unit}{share}{mixed})"
             parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
+        elif abs(effect.log_change) + factorial.error >= HARDLY and not effect.resolved:
+            hidden.append(f"{key} ({percent(effect.log_change)}{_where_resolved(comparison, factorial, key)})")
+        elif max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < HARDLY:
+            inert.append(f"{key} ({percent(effect.log_change)})")
+        else:
+            weak.append(f"{key} ({percent(effect.log_change)})")
     none = "no axis is seen to move it" if hidden else "no axis moves it"
     order = "On average" if len(parts) < 2 else "On average, the strongest first:"
-    words = [f"{label} lies between {low:.2f} and {high:.2f} {unit}. {order} {'; '.join(parts) or none}."]
+    words = [f"{label} lies between {min(values):.2f} and {max(values):.2f} {unit}. {order} {'; '.join(parts) or none}."]
     if hidden:
         words.append(
             f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_listed(hidden)}."
@@ -191,6 +197,24 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     if inert:
         words.append(f"{label} hardly depends on {_listed(inert)}: no effect of it, alone or with others, reaches 0.5 %.")
     return words
+
+
+def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list[float]] | None:
+    """The value amid an axis that is farthest beyond what its ends span, with ln of its changes from the first; None without one."""
+    lines: dict[str, dict[str, float]] = {}
+    for row in comparison.rows:
+        if row.doubt is None and (value := row.value(quantity) or 0.0) > 0.0:
+            others = repr([number for key, number in row.point.items() if key != axis.key])
+            lines.setdefault(others, {})[repr(row.point[axis.key])] = math.log(value)
+    first, *amid, last = map(repr, axis.values)
+    farthest, least = None, HARDLY + comparison.factorials[quantity].error
+    for value, name in zip(axis.values[1:-1], amid, strict=True):
+        changes = [
+            (one[name] - one[first], one[last] - one[first]) for one in lines.values() if {first, name, last} <= one.keys()
+        ]
+        if (far := max((max(to - max(end, 0.0), min(end, 0.0) - to) for to, end in changes), default=0.0)) > least:
+            farthest, least = (shown(value), [to for to, _ in changes]), far
+    return farthest
 
 
 def _mixed(factorial: Factorial, key: str) -> bool:

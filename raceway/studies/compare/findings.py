@@ -20,7 +20,7 @@ class Quantity:
     """What is explained: label, its place in result.json, unit on the screen with the factor to it, SI unit and words."""
 
     label: str
-    path: tuple[str | int, ...]
+    path: tuple[Any, ...]
     unit: str
     scale: float
     si: str
@@ -67,13 +67,8 @@ class Row:
         """One of ``quantities`` in SI; None where the run has none."""
         value: Any = self.result
         for step in (MOVING | STATIC)[quantity].path:
-            value = (
-                value[step]
-                if isinstance(value, list) and isinstance(step, int)
-                else value.get(step)
-                if isinstance(value, dict)
-                else None
-            )
+            if value is not None:
+                value = value[step] if isinstance(value, list) else value.get(step)
         return value
 
     @property

@@ -5,13 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from itertools import product
-from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
-import attrs
-
-from raceway.framework.options import between, option
-from raceway.plugins.reports.pictures import given_axes, new_figure, save_figure
+from raceway.plugins.reports.pictures import given_axes, new_figure
 from raceway.storage.tables import Tables
 from raceway.studies.compare.findings import MOVING, STATIC, Quantity, Row
 from raceway.studies.many.axes import is_number
@@ -28,36 +24,11 @@ _MARKERS = ("o", "s", "^", "D", "v", "P")
 _MOST_COLUMNS = 4
 
 
-@attrs.frozen
-class ComparisonPicture:
+def draw(result: Tables) -> Figure:
     """K(w) above |Z|, of static scenes kxx, kyy and x, over the axis of numbers with most values; without one, a dot for each run.
 
     Columns are the values of the axis that interacts with it most; colour, line and marker those of the next ones.
     """
-
-    name: ClassVar[str] = "comparison"
-
-    dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
-
-    def write(self, result: Tables, folder: Path) -> list[Path]:
-        """Draw comparison.png.
-
-        Parameters
-        ----------
-        result : the tables of ``raceway compare``: title, axes, rows, effects, trends
-        folder : path, made when it is missing
-
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or the folder cannot be written.
-        """
-        figure = draw(result)
-        return [save_figure(figure, Path(folder) / "comparison.png", self.dots_per_inch)]
-
-
-def draw(result: Tables) -> Figure:
-    """The figure of a comparison."""
     axes = {axis["key"]: axis["values"] for axis in result["axes"]}
     varied = [key for key, values in axes.items() if len(values) > 1]
     numeric = [key for key in varied if all(is_number(v) for v in axes[key])]
@@ -75,14 +46,8 @@ def draw(result: Tables) -> Figure:
     for place, value in enumerate(columns):
         rows = [row for row in result["rows"] if column is None or _text(row["point"][column]) == value]
         for (quantity, about), panel in zip(quantities.items(), panels[:, place], strict=True):
-            _curves(
-                panel,
-                rows,
-                quantity,
-                along,
-                styles,
-                _limits(rows if one_scale else result["rows"], quantities if one_scale else [quantity]),
-            )
+            limits = _limits(rows, quantities) if one_scale else _limits(result["rows"], [quantity])
+            _curves(panel, rows, quantity, along, styles, limits)
             panel.set_ylabel(f"{about.label}  [{about.unit}]" if place == 0 else "")
         panels[0, place].set_title(f"{column} = {value}" if column else "", fontsize=12)
         panels[-1, place].set_xlabel(along)
@@ -104,14 +69,8 @@ def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
         return panel
     styles = {key: [_text(value) for value in known[key]] for key in varied if key != along}
     quantities = quantities_of(result)
-    _curves(
-        panel,
-        result["rows"],
-        quantity,
-        along,
-        styles,
-        _limits(result["rows"], quantities if quantity in MOVING else [quantity]),
-    )
+    limits = _limits(result["rows"], quantities if quantity in MOVING else [quantity])
+    _curves(panel, result["rows"], quantity, along, styles, limits)
     panel.set_xlabel(along)
     panel.set_ylabel(f"{quantities[quantity].label}  [{quantities[quantity].unit}]")
     if handles := _handles(styles, any(map(in_doubt, result["rows"]))):

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.framework.doors import member
-from raceway.framework.shown import Fact, Shown, number, number_within
+from raceway.framework.shown import Fact, Shown, number, number_within, read_in
 from raceway.pipeline.result import without_nan, write_json
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
@@ -191,14 +191,9 @@ def fact(name: str, value: float, half: float, unit: str) -> Fact:
 
 
 def in_units(value: float, half: float, unit: str) -> tuple[float, float, str]:
-    """Stiffness in N/µm and displacement in µm."""
-    if unit in ("N/m", "m"):  # keys of a scene have lengths of millimetres, found to micrometres
-        return (
-            1e-6 * value if unit == "N/m" else 1e6 * value,
-            (1e-6 if unit == "N/m" else 1e6) * half,
-            {"N/m": "N/µm", "m": "µm"}[unit],
-        )
-    return value, half, unit
+    """A number and its half-width in the unit that people read."""
+    shown, word = read_in(value, unit)
+    return shown, read_in(half, unit)[0], word
 
 
 def told(one: Combination, units: dict[str, str]) -> str:

@@ -42,7 +42,12 @@ def of_table(data: Observed, scene: Scene, names: list[str]) -> Fitted:
     found = estimate(problem, free, data.stated)
     fitted = problem.fitted(found.values)
     causes, left_out = problem.uncertain()
-    notes = (*problem.notes(), *left_out)
+    exact = "groove conformities are taken as exact: [tolerances] of the scene says by how much they may be off"
+    notes = (
+        *problem.notes(),
+        *left_out,
+        *([] if "conformit" in " ".join([*causes, *names, *left_out, *data.keys]) else [exact]),
+    )
     for cause, columns in causes.items():
         found = found.with_shifts(cause, columns)
     series = tuple(_series(data, problem, found, fitted, causes))
@@ -124,13 +129,13 @@ def of_record(signals: Signals, names: list[str], mass: float | None) -> Fitted:
     if mass is None and not any("mass" in name for name in names):
         notes.append("mass was neither free nor given: it is free, too. --mass gives it; --mass 0 where nothing moves along")
     if absent := [word for word in ("K", "C") if word not in words]:
-        notes.append(f"{' and '.join(absent)} is not free: taken as 0")
+        notes.append(f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} not free: taken as 0")
     notes += model.remarks
     there = model.excited
     left = float(np.linalg.norm(model.rest[there]) / np.linalg.norm(lines.force[there]))
     if left > _LEFT:
-        more = [f"free {word}" for word in [*absent, *(["mass"] if mass is not None else [])]]
-        remedy = " or ".join([*more, "cut the record to frequencies below the next resonance"])
+        missing = " and ".join([*absent, *(["mass"] if mass is not None else [])])
+        remedy = f"{f'free {missing} or ' if missing else ''}cut the record to frequencies below the next resonance"
         notes.append(f"the model leaves {100.0 * left:.2g} % of the force (root mean square): {remedy}")
     for one, value, half in zip(found.free, found.values, found.half, strict=True):
         if one.name in ("K", "mass", "kyy", "kzz") and value + half < 0.0:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from pathlib import Path
 
 import attrs
 
 from raceway.core.periodic.branch import Point
 from raceway.framework.doors import door
+from raceway.pipeline.result import write_json
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.follow.instead import Instead
@@ -123,7 +123,7 @@ class Followed:
         table.writeheader()
         table.writerows(rows)
         files = [
-            write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), folder / "follow.json"),
+            write_json(content, folder / "follow.json"),
             write_whole(text.getvalue().encode(), folder / "follow.csv"),
         ]
         if picture:

@@ -39,8 +39,5 @@ def labelled(found: Precision) -> Dataset:
         for name, (unit, words) in about.items()
     }
     names = np.array([text["setting"].lstrip("* ") for text in found.table()], dtype=object)
-    more = {
-        "family": ("setting", np.array([row["family"] for row in rows], dtype=object)),
-        "status": ("setting", np.array([row["status"] for row in rows], dtype=object)),
-    }
+    more = {name: ("setting", np.array([row[name] for row in rows], dtype=object)) for name in ("family", "status")}
     return labelled_dataset({**variables, **more}, {"setting": names}, {"title": found.title})

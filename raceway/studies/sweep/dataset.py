@@ -6,6 +6,7 @@ import csv
 import io
 import json
 from collections.abc import Iterator, Mapping
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 from warnings import warn
@@ -209,20 +210,9 @@ def write_csv(store: Rows, path: Path) -> Path:
 
 
 def _lines(store: Rows) -> Iterator[list[object]]:
-    keys = store.design.keys
-    places: dict[str, list[tuple[str, ...]]] = {
-        "displacement": [(name,) for name in DOF],
-        "stiffness": [(a, b) for a in DOF for b in DOF],
-        "damping": [(a, b) for a in DOF for b in DOF],
-    }
-    yield [
-        *keys,
-        "status",
-        "reason",
-        "warnings",
-        *NUMBERS,
-        *(f"{name}_{'_'.join(p)}" for name in ARRAYS for p in places[name]),
-    ]
+    places = {name: list(product(DOF, repeat=len(dims))) for name, (dims, _, _) in ARRAYS.items()}
+    heads = [f"{name}_{'_'.join(place)}" for name in ARRAYS for place in places[name]]
+    yield [*store.design.keys, "status", "reason", "warnings", *NUMBERS, *heads]
     for row in store.rows():
         values = row["values"]
         arrays = [np.ravel(values[name]).tolist() if name in values else [""] * len(places[name]) for name in ARRAYS]

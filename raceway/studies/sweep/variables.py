@@ -67,16 +67,9 @@ def values_of(result: Result) -> Tables:
         values |= {
             "z_real": z.real,
             "z_imag": z.imag,
-            "equivalent_stiffness": found.equivalent_stiffness,
-            "equivalent_damping": found.equivalent_damping,
-            "force_amplitude": found.force_amplitude,
             "frequency": found.frequency_hz,
             "mass": found.mass_used,
-            "forward_amplitude": found.forward_amplitude,
-            "backward_amplitude": found.backward_amplitude,
-            "orbit_major": found.orbit_major,
-            "orbit_minor": found.orbit_minor,
-            "residual": found.residual,
+            **{name: getattr(found, name) for name in NUMBERS if hasattr(found, name)},
         }
     values |= {"kyy_tilts_follow": result.kyy_tilts_follow, **_loads(result)}
     values |= {f"error_{name}": size for name, size in result.error.items() if name not in ("how", "unresolved")}

@@ -20,7 +20,7 @@ from raceway.plugins.system_libraries import refuse_pictures
 from raceway.scene.given import as_scene
 from raceway.storage.files import writable
 from raceway.studies.view.mesh_picture import draw as draw_mesh
-from raceway.studies.view.study import Wanted, draw
+from raceway.studies.view.study import draw
 from raceway.studies.view.view import View
 
 
@@ -75,6 +75,6 @@ def view(
         mesh = None
         if traits_of(read).every_node:
             mesh = draw_mesh(mesh_scene(read), f"{read.title}\nthe mesh", place / "mesh.png")
-        content = draw(result, place, Wanted(page, mesh), told)
+        content = draw(result, place, page, mesh, told)
         pictures = {Path(name).name: Path(name).read_bytes() for name in content["files"]}
         return View(content if folder is not None else {**content, "files": []}, pictures)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from textwrap import wrap
 
-import attrs
 import numpy as np
 
 from raceway.framework.shown import race_words
@@ -23,26 +22,16 @@ from raceway.studies.view.page import view_page
 from raceway.studies.view.scene import overview
 from raceway.studies.view.states import at_peak, at_rest
 
-
-@attrs.frozen
-class Wanted:
-    """Drawings besides the PNG files.
-
-    Attributes
-    ----------
-    page : the HTML page;  mesh : a picture of it that stands there already
-    """
-
-    page: bool = False
-    mesh: Path | None = None
-
-
 #: File -> its path, what is seen on it, what is told below it.
 Pictures = dict[str, tuple[Path, str, str]]
 
 
-def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) -> Tables:
-    """Write the pictures of a result; ``files`` and what is shown on them.
+def draw(result: Result, folder: Path, page: bool, mesh: Path | None, on_progress: OnProgress) -> Tables:
+    """Write the pictures of a result, on request its HTML page; ``files`` and what is shown on them.
+
+    Parameters
+    ----------
+    mesh : a picture of it that stands there already
 
     Raises
     ------
@@ -57,8 +46,8 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
         shown, angle = at_peak(result)
         when = f"when a ball carries most, {angle:.0f} deg into the turn"
     pictures = _still(result, bearing, rest, (shown, when), folder, on_progress)
-    if wanted.mesh is not None:
-        pictures[wanted.mesh.name] = wanted.mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away"
+    if mesh is not None:
+        pictures[mesh.name] = mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away"
     fields: list[Path] = []
     if result.model.traits.every_node:
         on_progress("drawing stress.png", len(pictures), 0)
@@ -74,7 +63,7 @@ def draw(result: Result, folder: Path, wanted: Wanted, on_progress: OnProgress) 
                     pictures[path.name] = path, "stress below the contacts, close up", told
                 else:
                     fields.append(path)
-    if wanted.page:
+    if page:
         text = {
             "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown),
             "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, shown)}."],
