@@ -79,6 +79,11 @@ def test_a_fault_touches_what_imports_its_file_and_nothing_else():
     assert not {"raceway/core/schemes/compiled.py", "raceway/core/hexahedron/one_point.py"} & found
 
 
+def test_the_copy_has_what_configures_pytest():
+    """Without the root's conftest.py tests lack fixtures, and those of what is not installed fail on every fault."""
+    assert {"pyproject.toml", *(path.name for path in ROOT.glob("*.py"))} <= set(trial.COPIED)
+
+
 def test_a_caught_fault_is_told_from_one_that_survives(monkeypatch, tmp_path):
     """In sources of one function whose test sees its sign and not its size."""
     for name in trial.COPIED:
