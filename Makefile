@@ -4,15 +4,12 @@ BIN    := $(VENV)/bin
 SCENE  ?= examples/b7206.toml
 INSTALL = $(BIN)/python -m pip install -q -c constraints.txt
 
-# A second of one core with kernels compiled.
-CHEAP := orders
-
 # What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display), the tests of pages (a browser)
 # and of the .inp files (CalculiX).  Without them these tests are skipped; with CI=true or RACEWAY_TEST_ALL=1 they fail.
 APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
-.PHONY: help demo test test-all lint docs evidence reports-cheap mutants constraints apt-line clean
+.PHONY: help demo test test-all lint docs evidence mutants constraints apt-line clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1 :\2/p' Makefile | while IFS=: read -r name words; do printf '%-20s%s\n' "$$name" "$$words"; done
@@ -39,9 +36,6 @@ docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials run
 
 evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
 	$(BIN)/python -m benchmarks.night
-
-reports-cheap: $(VENV)/.all ## the reports of a few seconds, computed again: does each row hold as it did?
-	$(BIN)/python -m benchmarks.evidence --check $(CHEAP)
 
 mutants: $(VENV)/.all ## deliberate faults of one line, and whether the tests catch them: half an hour
 	$(BIN)/python -m benchmarks.mutants

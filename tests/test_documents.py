@@ -29,7 +29,6 @@ NOT_RUN = {
     "make lint": "continuous integration does it",
     "make docs": _ENVIRONMENT,
     "make evidence": "hours; makes the reports of this checkout",
-    "make reports-cheap": "continuous integration does it",
     ".ci/other_pythons": _ENVIRONMENT,
     "python3 -m venv .venv": _ENVIRONMENT,
     ".venv/bin/pip install .": _ENVIRONMENT,

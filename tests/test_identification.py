@@ -1,4 +1,4 @@
-"""Known K, m, C recovered from synthetic signals, and identified stiffness against independent periodic motion."""
+"""Known K, m, C recovered from synthetic signals; against independent periodic motion: evidence/test_integrators.py."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from raceway.core.signals.identification import fit_lines, fourier_line, identif
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
-from validation.identified_stiffness import INTEGRATORS, LIMIT, reference
 from validation.scenes import model_of, rotating
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi
@@ -127,18 +126,6 @@ def test_series_of_equilibria_is_one_turn(identifier, kind):
     found = result.identification
     assert len(result.simulation.record.time) == 360
     assert found.window < 1e-12 and found.mass_used == 0.0 and found.spread is None
-
-
-@pytest.mark.parametrize(
-    ("tilt", "axial", "speed", "inertia"),
-    [pytest.param("locked", 400.0, 15000.0, False, marks=pytest.mark.slow), ("free", 1000.0, 10980.0, False)],
-)
-def test_transients_equal_independent_periodic_motion(tilt, axial, speed, inertia):
-    """12 turns with next to no damping; the report `identified_stiffness` holds all sixteen cases."""
-    wanted, _ = reference(axial, tilt, speed, inertia)
-    for integrator in INTEGRATORS:
-        found = run(scene_from_dict(rotating(axial, tilt, speed, inertia, integrator))).identification
-        assert found.equivalent_stiffness == pytest.approx(wanted, rel=LIMIT)
 
 
 def test_tangent_identifier_is_the_small_force_limit():

@@ -1,4 +1,4 @@
-"""Order, agreement, restart and failure of the time integrators."""
+"""Agreement, restart and failure of the time integrators; their order: evidence/test_integrators.py."""
 
 from __future__ import annotations
 
@@ -20,26 +20,6 @@ from validation import orders
 from validation.scenes import model_of, rotating
 
 INTEGRATORS = orders.INTEGRATORS
-
-
-@pytest.mark.parametrize("integrator", INTEGRATORS)
-@pytest.mark.parametrize("ratio", [0.0, 0.2])
-def test_order_on_a_linear_oscillator(integrator, ratio):
-    assert orders.order(*orders.linear_errors(integrator, ratio)) == pytest.approx(2.0, abs=orders.MARGIN)
-
-
-@pytest.mark.parametrize("inertia", [False, True])
-@pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_order_on_damped_hertz_contacts(integrator, inertia):
-    found = orders.contact_errors(integrator, "locked", inertia, 500.0, None, 360)
-    assert orders.order(*found) == pytest.approx(2.0, abs=orders.MARGIN)
-
-
-def test_order_on_hertz_contacts_against_independent_code():
-    wanted = orders.independent("locked", 60)
-    for integrator in INTEGRATORS:
-        found = orders.contact_errors(integrator, "locked", False, 0.0, wanted, 360)
-        assert orders.order(*found) == pytest.approx(2.0, abs=orders.MARGIN)
 
 
 def test_generalized_alpha_without_dissipation_and_newmark_agree():

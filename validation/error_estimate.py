@@ -19,7 +19,8 @@ from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from validation.scenes import model_of, rotating
 
-#: An estimate is right within this factor, or when it and the error are below this size.
+#: An estimate is right within this factor, or when it and the error are below this size.  The factor is less than the 4 by which
+#: twice as many steps change an error of second order: nobody who chooses steps by the estimate is a halving off.
 FACTOR, SMALL = 3.0, 1e-6
 _SAMPLES = (129, 257)
 _FINE_STEPS = 2880
@@ -126,3 +127,14 @@ def judge(one: Case) -> tuple[float, float, float]:
 
 def right(estimate: float, true: float) -> bool:
     return (estimate < SMALL and true < SMALL) or true / FACTOR <= estimate <= FACTOR * true
+
+
+def worst(pairs: list[tuple[float, float]]) -> float:
+    """Estimated over true error that is furthest from 1, of those that are not both below ``SMALL``; NaN where one is not known."""
+    estimate, true = np.array([pair for pair in pairs if not max(pair) < SMALL]).T
+    return float((estimate / true)[np.argmax(np.abs(np.log(estimate / true)))])
+
+
+def named(name: str) -> Case:
+    """A case by its name."""
+    return next(one for one in CASES if one.name == name)

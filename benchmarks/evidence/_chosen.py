@@ -8,8 +8,8 @@ from typing import Any
 CHOSEN = {
     "five": (
         (
-            "identified_stiffness",
-            "tilt locked, 400 N, 10980 r/min, with centrifugal force, newmark: K [N/um]",
+            "integrators",
+            "K of a B7206C, 400 N, 15000 r/min, tilt locked, newmark",
             "K of a B7206C against a periodic solve by independent code [N/µm]",
         ),
         (
@@ -17,7 +17,11 @@ CHOSEN = {
             "NSK 7206C, axial stiffness of a pair at 4 preloads: largest relative error",
             "largest relative difference from the maker's table of axial stiffness, 7206C pairs",
         ),
-        ("error_estimate", "8 steps a turn", "relative error of Z in coarse time steps: as stated, and as it is"),
+        (
+            "integrators",
+            "stated over true error of Z, 8 steps a turn",
+            "error of Z stated in coarse time steps, over the true one",
+        ),
         ("precision", "solve time for K within 0.01 % [ms]", "time to solve for K within 0.01 % [ms]"),
         ("stability", "rows that are not as expected", "expectations of stiff and extreme cases that are not met"),
     ),
