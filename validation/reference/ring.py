@@ -78,7 +78,8 @@ class Ring:
             load, pull, tangent = self._series(e)
         else:
             load, pull, tangent = self._inertial(e)
-        return np.einsum("zai,za->i", self.J, pull), np.einsum("zai,zab,zbj->ij", self.J, tangent, self.J), load
+        across = self.J.reshape(-1, 5)
+        return across.T @ pull.ravel(), across.T @ (tangent @ self.J).reshape(-1, 5), load
 
     @property
     def gyroscopic(self) -> np.ndarray:
@@ -95,15 +96,15 @@ class Ring:
         Each race takes the share of the approach rate that its stiffness leaves it: c (s_i^2 + s_o^2) along the line.
         """
         e = self.centres(q)
-        s = np.linalg.norm(e, axis=1)
-        n = e / s[:, None]
+        s = np.hypot(*e.T)
+        along = np.einsum("za,zai->zi", e / s[:, None], self.J)
         soft = np.array([self.ki, self.ko]) ** (-2 / 3)
         share = soft / soft.sum()
         c = self.damping * (share**2).sum() * (s > self.distance)
-        return np.einsum("zai,z,za,zb,zbj->ij", self.J, c, n, n, self.J)
+        return (along.T * c) @ along
 
     def _series(self, e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        s = np.linalg.norm(e, axis=1)
+        s = np.hypot(*e.T)
         n = e / s[:, None]
         delta = np.maximum(s - self.distance, 0.0)
         load = self.series * delta**1.5

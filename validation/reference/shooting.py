@@ -42,6 +42,7 @@ def trajectory(
     unit = np.concatenate([np.full(n, 1e-6), np.full(n, 1e-3)])
     unit[:n][chosen > 2] /= ring.arm
     unit[n:][chosen > 2] /= ring.arm
+    part, gyroscopic = np.ix_(chosen, chosen), ring.gyroscopic
 
     def rate(t: float, state: np.ndarray) -> np.ndarray:
         q = q0.copy()
@@ -49,13 +50,12 @@ def trajectory(
         v = np.zeros(5)
         v[chosen] = state[n : 2 * n] * unit[n:]
         inner, tangent, _ = ring(q)
-        dashpot = ring.gyroscopic + (ring.damping_matrix(q) if ring.damping else 0.0)
+        dashpot = gyroscopic + (ring.damping_matrix(q) if ring.damping else 0.0)
         rest = load + force(t) - inner - dashpot @ v
         out = np.empty_like(state)
         out[:n] = v[chosen] / unit[:n]
         out[n : 2 * n] = inverse @ rest[chosen] / unit[n:]
         if variational:
-            part = np.ix_(chosen, chosen)
             flow = np.zeros((2 * n, 2 * n))
             flow[:n, n:] = np.diag(unit[n:] / unit[:n])
             flow[n:, :n] = -(inverse @ tangent[part]) * unit[:n] / unit[n:, None]
