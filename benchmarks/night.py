@@ -17,8 +17,8 @@ from typing import Any
 
 from benchmarks.evidence import _files, names
 
-#: Module reports of the release tier: the article's mesh and study, signals and kills.
-RELEASE = {"article", "article_mesh", "article_motion", "damage", "random_scenes", "signals"}
+#: Module reports of the release tier.
+RELEASE = {"article", "article_mesh", "article_motion"}
 #: A value that changed by more is worth a line.
 _WORTH = 0.02
 
@@ -62,9 +62,7 @@ def make(tree: Path, release: bool) -> int:
 
 def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.night", description=__doc__.splitlines()[0])  # type: ignore[union-attr]
-    parser.add_argument(
-        "--release", action="store_true", help="the reports of hours, too: the article's mesh and study, signals, kills"
-    )
+    parser.add_argument("--release", action="store_true", help="the article's mesh and study, too: hours")
     asked = parser.parse_args(words)
     made_at = _files.commit()
     if made_at is None:

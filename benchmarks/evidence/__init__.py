@@ -7,6 +7,8 @@ Each public module of this package is one report: a string ``TITLE`` and a funct
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
 from importlib import import_module
 from math import isfinite
 from pkgutil import iter_modules
@@ -51,6 +53,19 @@ def near(quantity: str, value: float, expected: float, relative: float, command:
 def below(quantity: str, value: float, bound: float, command: str, note: str = "") -> Row:
     """A row for a value that must not exceed ``bound``."""
     return Row(quantity, float(value), f"at most {bound:g}", value <= bound, command, note)
+
+
+def show(asked: list[str], there: list[str], rows_of: Callable[[str], list[Row]]) -> int:
+    """Print the rows of what is asked for, or of all that is there, a line each; 1 where one does not hold, 2 for another name."""
+    if unknown := set(asked) - set(there):
+        print(f"nothing is called {', '.join(sorted(unknown))}; there are {', '.join(there)}", file=sys.stderr)
+        return 2
+    good = True
+    for name in asked or there:
+        for row in rows_of(name):
+            good &= row.ok
+            print(f"{'yes' if row.ok else 'NO':4}{name}: {row.quantity}: {row.value} ({row.limit}) {row.note}", flush=True)
+    return 0 if good else 1
 
 
 def names() -> list[str]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from math import pi
 
+from benchmarks.checks._random_scenes import Tables
 from benchmarks.evidence import Row, below, near
-from benchmarks.evidence._random_scenes import Tables
 from raceway import run
 from raceway.errors import SceneError
 from raceway.scene.reading import scene_from_dict

@@ -11,10 +11,10 @@ import attrs
 import numpy as np
 import pytest
 
-from benchmarks.evidence import _fuzz, fuzz
-from benchmarks.evidence._fuzz import Watch, check, ran
-from benchmarks.evidence._fuzz_scenes import fill, wild
-from benchmarks.evidence._random_scenes import Chance
+from benchmarks.checks import _fuzz, fuzz
+from benchmarks.checks._fuzz import Watch, check, ran
+from benchmarks.checks._fuzz_scenes import fill, wild
+from benchmarks.checks._random_scenes import Chance
 from raceway import load_scene
 from raceway.errors import ConvergenceError
 from validation.command_line import MINIMAL

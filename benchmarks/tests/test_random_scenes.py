@@ -6,14 +6,14 @@ from collections import Counter
 
 import pytest
 
-from benchmarks.evidence._random_scenes import FAILED, FINISHED, REFUSED, try_scenes
+from benchmarks.checks._random_scenes import FAILED, FINISHED, REFUSED, try_scenes
 
 COUNT = 100
 
 
 @pytest.mark.slow
 def test_every_scene_ends_in_a_result_or_a_message():
-    """The same scenes in every run; ``python -m benchmarks.evidence random_scenes`` tries 10 000."""
+    """The same scenes in every run; ``python -m benchmarks.checks random_scenes`` tries 10 000."""
     found: Counter[str] = Counter()
 
     def note(outcome: str) -> None:

@@ -8,7 +8,7 @@ import attrs
 import pytest
 
 from benchmarks.claims import FOLDER, Claim
-from benchmarks.evidence import Row, _files, below, names, near
+from benchmarks.evidence import Row, _files, below, names, near, show
 from benchmarks.evidence.__main__ import main, other_verdicts
 from benchmarks.night import changes
 
@@ -78,6 +78,13 @@ def test_blocks_are_replaced_whole_and_unknown_ones_refused():
 def test_rows_judge():
     assert near("k", 1.004, 1.0, 0.005, "c").ok and not near("k", 1.006, 1.0, 0.005, "c").ok
     assert below("e", 1e-10, 1e-9, "c").ok and not below("e", float("nan"), 1e-9, "c").ok
+
+
+def test_rows_on_the_screen_end_with_a_verdict(capsys):
+    rows = {"good": [below("e", 1.0, 2.0, "c")], "bad": [below("e", 3.0, 2.0, "c")]}
+    assert [show(asked, ["good", "bad"], rows.__getitem__) for asked in (["good"], [], ["other"])] == [0, 1, 2]
+    told = capsys.readouterr()
+    assert "NO  bad: e: 3.0 (at most 2)" in told.out and "nothing is called other; there are good, bad" in told.err
 
 
 def test_rows_without_a_limit_are_counted_apart():

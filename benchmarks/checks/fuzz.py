@@ -13,11 +13,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from benchmarks.checks._fuzz import ASLEEP_S, CHECK_S, RUN_S
 from benchmarks.evidence import Row
-from benchmarks.evidence._fuzz import ASLEEP_S, CHECK_S, RUN_S
 
 TITLE = "Fuzz: random scenes through check, plan and run"
-COMMAND = "python -m benchmarks.evidence fuzz"
+COMMAND = "python -m benchmarks.checks fuzz"
 #: Scenes, runs and processes of a whole report; the environment may ask for fewer scenes, and the report says how many there were.
 SCENES = int(os.environ.get("RACEWAY_FUZZ_SCENES", "10000"))
 RUNS, PROCESSES = 3 * SCENES // 20, 2
@@ -52,7 +52,7 @@ def tries(scenes: int = SCENES, runs: int = RUNS) -> list[dict[str, Any]]:
 
 
 def _worker(first: int, last: int, quota: int, out: Path) -> subprocess.Popen[bytes]:
-    words = [sys.executable, "-m", "benchmarks.evidence._fuzz", str(first), str(last), str(quota), str(out)]
+    words = [sys.executable, "-m", "benchmarks.checks._fuzz", str(first), str(last), str(quota), str(out)]
     return subprocess.Popen(words, cwd=_ROOT, stdin=subprocess.DEVNULL)
 
 

@@ -20,7 +20,7 @@ from validation.cluster import POINTS, START_S, Cluster, installed, prepared
 from validation.cluster import rows as rows_of
 
 TITLE = "Sweeps on a dask scheduler: killed, unfit and silent partners"
-COMMAND = "python -m benchmarks.evidence dask"
+COMMAND = "python -m benchmarks.checks dask"
 TEST = "python -m pytest tests/test_dask.py"
 _KILLS, _SEED, _PATIENCE_S = 20, 20, 2.0
 

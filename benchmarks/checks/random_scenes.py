@@ -6,11 +6,11 @@ import os
 import time
 from collections import Counter
 
+from benchmarks.checks._random_scenes import FAILED, FINISHED, PLANNED, REFUSED, try_scenes
 from benchmarks.evidence import Row
-from benchmarks.evidence._random_scenes import FAILED, FINISHED, PLANNED, REFUSED, try_scenes
 
 TITLE = "Random scenes"
-COMMAND = "python -m benchmarks.evidence random_scenes"
+COMMAND = "python -m benchmarks.checks random_scenes"
 #: Scenes of a whole run; the environment may ask for fewer, and the report says how many there were.
 COUNT = int(os.environ.get("RACEWAY_RANDOM_SCENES", "10000"))
 WANTED = 10_000

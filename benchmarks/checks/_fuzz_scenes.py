@@ -7,7 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from benchmarks.evidence._random_scenes import GARBAGE, Chance, Tables, plausible
+from benchmarks.checks._random_scenes import GARBAGE, Chance, Tables, plausible
 from raceway.framework.registry import default_registry
 from raceway.scene.tables import PLUGIN_TABLES
 

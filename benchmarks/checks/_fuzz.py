@@ -1,4 +1,4 @@
-"""Tries scenes in a process of its own, which the operating system ends where one hangs: ``python -m benchmarks.evidence._fuzz``.
+"""Tries scenes in a process of its own, which the operating system ends where one hangs: ``python -m benchmarks.checks._fuzz``.
 
 A line of JSON is written before each scene and after it; a line without its second one names the scene that ended the process.
 """
@@ -19,8 +19,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from benchmarks.evidence._fuzz_scenes import fill, wild
-from benchmarks.evidence._random_scenes import Chance, refuse_nan
+from benchmarks.checks._fuzz_scenes import fill, wild
+from benchmarks.checks._random_scenes import Chance, refuse_nan
 from raceway import load_scene, scene_from_dict
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.run import run
