@@ -61,7 +61,9 @@ def make(tree: Path, release: bool) -> int:
 
 
 def main(words: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.night", description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.night", description="Make evidence of the commit that is checked out, as one commit."
+    )
     parser.add_argument("--release", action="store_true", help="the article's mesh and study, too: hours")
     asked = parser.parse_args(words)
     made_at = _files.commit()
