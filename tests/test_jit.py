@@ -13,12 +13,14 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
+from numba.core.caching import IndexDataCacheFile
 
 import raceway
 from raceway.core.jit import clock, jit
 from raceway.core.signatures import LAW
 from raceway.errors import PluginError
 from raceway.storage.cache_folder import current_folder, make, refusal
+from raceway.storage.kernel_files import opened
 from validation.command_line import python
 
 #: The smallest kernels, three in a file, each used once; what was compiled and read, what was warned of, numba's own settings.
@@ -232,6 +234,25 @@ def test_numbas_settings_are_left_alone():
 
     assert twice(2.0) == 4.0
     assert before == numba.config.CACHE_DIR
+
+
+def scaled(factor):
+    @jit(numba.float64(numba.float64))
+    def product(x):
+        return factor * x
+
+    return product
+
+
+def test_variants_of_a_closure_that_compile_at_once_do_not_mix(tmp_path, monkeypatch):
+    """Each saw an index without the other, as two processes may."""
+    monkeypatch.setattr(raceway.core.jit, "kernel_folder", lambda: opened(tmp_path))
+    with monkeypatch.context() as both:
+        both.setattr(IndexDataCacheFile, "_load_index", lambda self: {})
+        assert [scaled(factor)(1.0) for factor in (2.0, 3.0)] == [2.0, 3.0]
+    loaded = clock["loaded"]
+    assert [scaled(factor)(1.0) for factor in (2.0, 3.0)] == [2.0, 3.0]
+    assert clock["loaded"] == loaded + 2
 
 
 def test_division_by_zero_is_not_an_exception():

@@ -11,6 +11,7 @@ as they were found.
 from __future__ import annotations
 
 import gc
+import hashlib
 import sys
 import time
 import warnings
@@ -23,7 +24,7 @@ from typing import Any
 
 import numba
 import numpy as np
-from numba.core.caching import NullCache
+from numba.core.caching import IndexDataCacheFile, NullCache
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
@@ -199,8 +200,7 @@ class Kernel(_Dispatcher):
             files: FilesOfKernel | None = None
             try:
                 with _numba_cache_in(folder.path):
-                    self.enable_caching()
-                    files = FilesOfKernel(self.py_func, Path(self.stats.cache_path))
+                    files = self._open_cache()
                     files.discard_damaged()
                     super().compile(self.signature)
                 if not self.stats.cache_hits:
@@ -224,6 +224,19 @@ class Kernel(_Dispatcher):
         self._cache = NullCache()
         clock["unkept"] += 1
         super().compile(self.signature)
+
+    def _open_cache(self) -> FilesOfKernel:
+        """Let numba read and write files of this kernel's own.
+
+        numba numbers the data files of all variants of a closure in one index: of two processes that compile two variants at
+        once each would take the same number, and the index of one would name the machine code of the other.
+        """
+        self.enable_caching()
+        cache_: Any = self._cache
+        key = cache_._index_key(self.signature, self.targetctx.codegen())
+        base = f"{cache_._impl.filename_base}.{hashlib.blake2b(repr(key).encode(), digest_size=8).hexdigest()}"
+        cache_._cache_file = IndexDataCacheFile(cache_.cache_path, base, cache_._impl.locator.get_source_stamp())
+        return FilesOfKernel(base, Path(cache_.cache_path))
 
     def _reason(self, why: Exception) -> str:
         """The telling line of numba's report: not the name of the compiler pass, not the empty ones."""

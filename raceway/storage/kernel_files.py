@@ -11,7 +11,6 @@ import hashlib
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from uuid import uuid4
@@ -65,14 +64,15 @@ def _linked(folder: Path) -> Path:
 
 @attrs.frozen
 class FilesOfKernel:
-    """The cache files of one function, which numba names after its module, itself and its line.
+    """The cache files of one kernel.
 
     Attributes
     ----------
+    base : how their names begin
     place : folder of numba's for the function's source file
     """
 
-    function: Callable[..., object]
+    base: str
     place: Path
 
     def discard_damaged(self) -> None:
@@ -98,11 +98,7 @@ class FilesOfKernel:
                 _remove(path)
 
     def _files(self) -> list[Path]:
-        code = self.function.__code__
-        name = self.function.__qualname__.replace("<", "").replace(">", "")
-        begin = f"{Path(code.co_filename).stem}.{name}-{code.co_firstlineno}."
-        with os.scandir(self.place) as found:
-            return [Path(f.path) for f in found if f.name.startswith(begin) and f.name.endswith((".nbi", ".nbc"))]
+        return [path for path in (self.place / f"{self.base}{end}" for end in (".nbi", ".1.nbc")) if path.exists()]
 
     def _sound(self, path: Path) -> bool:
         try:
