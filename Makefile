@@ -9,7 +9,7 @@ INSTALL = $(BIN)/python -m pip install -q -c constraints.txt
 APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
-.PHONY: help demo test test-all lint docs evidence mutants constraints apt-line clean
+.PHONY: help demo test test-all lint docs ross evidence mutants constraints apt-line clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1 :\2/p' Makefile | while IFS=: read -r name words; do printf '%-20s%s\n' "$$name" "$$words"; done
@@ -18,10 +18,10 @@ demo: $(VENV)/.base ## the main job on a fresh clone: needs python3 (3.11 or lat
 	$(BIN)/raceway run $(SCENE)
 
 test: $(VENV)/.all ## everything installed, the quick tests: some minutes
-	$(BIN)/python -m pytest -n 2 -q -m "not slow and not night and not release"
+	$(BIN)/python -m pytest -n 2 -q -m "not slow and not night and not release and not ross"
 
 test-all: $(VENV)/.all ## the long proofs too
-	$(BIN)/python -m pytest -n 2 -q -m "not release"
+	$(BIN)/python -m pytest -n 2 -q -m "not release and not ross"
 
 lint: $(VENV)/.all ## ruff, import-linter, mypy
 	$(BIN)/ruff check .
@@ -33,6 +33,9 @@ docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials run
 	rm -rf docs/api/generated docs/_build
 	$(VENV)-docs/bin/sphinx-build -W --keep-going -E -q -b html docs docs/_build/html
 	@echo "open docs/_build/html/index.html"
+
+ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
+	$(VENV)-docs/bin/python -m pytest -q -m ross tests/test_ross_inside.py tests/rig/test_against_ross.py
 
 evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
 	$(BIN)/python -m benchmarks.night
@@ -59,7 +62,7 @@ $(VENV)/.all: $(VENV)/.python pyproject.toml constraints.txt
 $(VENV)-docs/.installed: $(VENV)/.python pyproject.toml constraints.txt
 	@echo "installing Sphinx and ROSS into $(VENV)-docs: some minutes"
 	$(PYTHON) -m venv $(VENV)-docs
-	$(VENV)-docs/bin/python -m pip install -q -c constraints.txt -e '.[sweep,view,ross,docs]'
+	$(VENV)-docs/bin/python -m pip install -q -c constraints.txt -e '.[sweep,view,ross,docs]' pytest
 	touch $@
 
 constraints: $(VENV)/.python ## constraints.txt, kept where pyproject.toml allows; UPGRADE=--upgrade takes the newest versions

@@ -28,6 +28,7 @@ NOT_RUN = {
     "make test-all": "runs this test",
     "make lint": "continuous integration does it",
     "make docs": _ENVIRONMENT,
+    "make ross": _ENVIRONMENT,
     "make evidence": "hours; makes the reports of this checkout",
     ".ci/other_pythons": _ENVIRONMENT,
     "python3 -m venv .venv": _ENVIRONMENT,

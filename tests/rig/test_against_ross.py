@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from raceway.errors import RacewayError
-from raceway.studies.ross.installed import ross
 from validation.rotor_in_ross import compared
+
+pytestmark = pytest.mark.ross
 
 
 @pytest.fixture(scope="module")
 def found():
-    try:
-        ross("the comparison")
-    except RacewayError as why:
-        pytest.skip(str(why))
     return compared()
 
 
