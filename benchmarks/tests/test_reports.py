@@ -10,6 +10,7 @@ import pytest
 from benchmarks.claims import FOLDER, Claim
 from benchmarks.evidence import Row, _files, below, names, near, show
 from benchmarks.evidence.__main__ import main, other_verdicts
+from benchmarks.evidence._chosen import CHOSEN, chosen
 from benchmarks.night import changes
 
 REPORTS = _files.read()
@@ -105,3 +106,12 @@ def test_json_has_no_nan(name):
         raise AssertionError(f"{name}.json holds {word}")
 
     json.loads((_files.FOLDER / f"{name}.json").read_text(encoding="utf-8"), parse_constant=refuse)
+
+
+def test_readme_shows_nothing_that_rests_on_ourselves():
+    reports = _files.read()
+    _, quantity, _ = CHOSEN["readme"][0]
+    (row,) = [row for row in reports["published"]["rows"] if row["quantity"] == quantity]
+    row["basis"] = "own other method"
+    with pytest.raises(KeyError, match="README shows closed form, published, other program"):
+        chosen("readme", reports, "")
