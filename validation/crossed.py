@@ -1,16 +1,15 @@
-"""Random scenes of the report ``several_motions``, each run by two integrators."""
+"""Random scenes, each for two integrators, and how far apart their answers are."""
 
 from __future__ import annotations
 
 import copy
+from contextlib import suppress
 from typing import Any
 
-import attrs
 import numpy as np
 
 from raceway import scene_from_dict
 from raceway.errors import RacewayError
-from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 
 Tables = dict[str, Any]
@@ -20,24 +19,6 @@ _TRANSIENTS = _METHODS[:3]
 _STARTS = ("orbit", "ramp", "static")
 #: One scene in four has friction.
 _FRICTION = (*9 * (0.0,), 0.03, 0.1, 0.3)
-
-
-@attrs.frozen
-class Pair:
-    """Two runs of one scene.
-
-    Attributes
-    ----------
-    apart : distance of their Z over the sum of their stated errors, both absolute; None where a run failed or states none
-    told : whether one of them tells that several steady motions exist
-    """
-
-    number: int
-    friction: float
-    words: str
-    apart: float | None
-    told: bool
-    why: str = ""
 
 
 def crossed(number: int) -> tuple[Tables, Tables]:
@@ -86,36 +67,19 @@ def crossed(number: int) -> tuple[Tables, Tables]:
     return pair[0], pair[1]
 
 
-def compared(number: int) -> Pair:
-    """Both runs of one scene, and how far apart their answers are."""
-    tables = crossed(number)
-    friction = tables[0]["contact"]["friction"]
-    words = " against ".join(_words(one) for one in tables) + (f", friction {friction:g}" if friction else "")
-    results: list[Result | None] = []
-    why = ""
-    for one in tables:
-        try:
-            results.append(run(scene_from_dict(one)))
-        except RacewayError as error:
-            results.append(None)
-            why = why or f"{_words(one)}: {error}"
-    first, second = results
-    if first is None or second is None:
-        return Pair(number, friction, words, None, False, why)
-    totals = [found.error["total"] for found in (first, second)]
-    told = _told(first, second)
-    if None in totals:
-        return Pair(number, friction, words, None, told, "no error is stated")
-    z = [found.identification.dynamic_stiffness for found in (first, second)]
-    apart = abs(z[0] - z[1]) / sum(total * abs(value) for total, value in zip(totals, z, strict=True))
-    return Pair(number, friction, words, apart, told)
+def compared(number: int) -> tuple[float, float, bool] | None:
+    """Friction, distance of both Z over the sum of their stated errors, and whether several steady motions are told.
 
-
-def _words(tables: Tables) -> str:
-    own = tables["integrator"]
-    return " ".join(str(own[key]) for key in ("kind", "start", "turns", "steps_per_turn") if key in own)
-
-
-def _told(*results: Result) -> bool:
-    """Whether the words for several steady motions are said; that friction remembers its start, or an orbit is unstable, is none."""
-    return any("steady motions that are not unstable exist" in text for result in results for text in result.warnings)
+    None where a run fails or states no error.  That friction remembers its start, or that an orbit is unstable, tells of no others.
+    """
+    pair = crossed(number)
+    with suppress(RacewayError):
+        first, second = (run(scene_from_dict(tables)) for tables in pair)
+        totals = first.error["total"], second.error["total"]
+        if None in totals:
+            return None
+        z, other = (one.identification.dynamic_stiffness for one in (first, second))
+        distance = abs(z - other) / (totals[0] * abs(z) + totals[1] * abs(other))
+        told = any("steady motions that are not unstable exist" in text for text in (*first.warnings, *second.warnings))
+        return pair[0]["contact"]["friction"], distance, told
+    return None
