@@ -1,4 +1,7 @@
-"""`raceway stability`: expectations, guards against hangs and crashes, the numbers of a few cases, the command."""
+"""`raceway stability`: expectations, guards against hangs and crashes, the numbers of a few cases, the command.
+
+All quick cases are run by tests/evidence/test_stability.py at night; here those of seconds, and deliberate faults.
+"""
 
 from __future__ import annotations
 
@@ -10,21 +13,19 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.bodies.model import build_model
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
 from raceway.studies.stability import elastic, own_force, scenes
 from raceway.studies.stability import study as study_module
-from raceway.studies.stability.case import AS_EXPECTED, FAILED, AtLeast, AtMost, Case, Near, judged, refused
-from raceway.studies.stability.catalogue import SCENES, catalogue
+from raceway.studies.stability.case import AS_EXPECTED, FAILED, Case, Rows
+from raceway.studies.stability.catalogue import catalogue
+from raceway.studies.stability.extremes import SCENES
 from raceway.studies.stability.own_force import axial_displacement
 from raceway.studies.stability.stored import axial_force
-from raceway.studies.stability.study import stability
-from raceway.studies.stability.systems import BASE, pair_laws, scene_at, transient, with_law
-from raceway.studies.stability.workers import measure, rows_of
+from raceway.studies.stability.study import measured, rows_of, stability
+from raceway.studies.stability.systems import BASE, laws_with, model_at, transient, with_law
 from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
@@ -33,63 +34,76 @@ CASES = catalogue(REGISTRY)
 
 
 def case(function, **arguments):
-    return Case(function, f"tests.stability_cases:{function}", arguments)
+    return Case(function, f"tests.stability_cases:{function}", arguments, arguments)
 
 
-def rows_named(name, **wanted):
-    """Rows of the catalogue's cases with a name and some arguments."""
-    found = [c for c in CASES if c.name == name and all(c.arguments.get(k) == v for k, v in wanted.items())]
+def rows_named(name, cases=CASES, registry=REGISTRY, **wanted):
+    """Rows of the catalogue's cases with a name and a setting."""
+    found = [one for one in cases if one.name == name and wanted.items() <= one.setting.items()]
     assert found, (name, wanted)
-    return [row for one in found for row in rows_of(one, REGISTRY)]
+    return [row for one in found for row in rows_of(one, registry)]
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+def verdicts(rows):
+    return {row.quantity.split(" [")[0].split(",")[0]: row.verdict for row in rows}
+
+
+def test_the_catalogue_has():
+    words = (
         "penalty", "around the limit, linear", "around the limit, small motions", "safe limit", "undamped steps", "impact",
         "loose", "lift-off", "radial load 50 x", "axial load 1 N", "100 kN", "speed 1 r/min", "200 000 r/min", "3 balls",
         "60 balls", "conformity 0.501", "conformity 0.60", "clearance", "interference", "0.4999", "rubber", "ceramic balls",
         "friction 0.3", "friction 1.0", "rotor of 1 g", "rotor of 10 t", "slender elements", "deep initial penetration",
         "two balls on the line", "chatter",
-    ],
-)  # fmt: skip
-def test_the_catalogue_has(words):
-    assert any(words in one.name for one in CASES)
-
-
-def test_every_law_and_transient_integrator_takes_part():
-    laws = {one.arguments["shown"].get("law") for one in CASES if "shown" in one.arguments}
-    assert set(pair_laws(REGISTRY)) | {"unilateral"} <= laws
-    for name in ("steps around the limit, linear", "orbit at the safe limit", "undamped steps", "impact"):
-        assert {one.arguments["integrator"] for one in CASES if one.name == name} == set(transient(REGISTRY))
-    assert not {"periodic", "quasi_static"} & set(transient(REGISTRY))
+    )  # fmt: skip
+    assert not [word for word in words if not any(word in one.name for one in CASES)]
     assert len({name for name, *_ in SCENES}) == len(SCENES)
 
 
-def test_expectations_judge():
-    def verdict(expectation, predicted, value):
-        return judged("c", {}, "q", expectation, predicted, lambda: (value, None)).verdict
+def test_every_law_and_transient_integrator_takes_part_and_a_third_partys_in_the_quick_set_too():
+    assert {*laws_with(REGISTRY, "resultant"), "unilateral"} <= {one.setting.get("law") for one in CASES}
+    for name in ("steps around the limit, linear", "orbit at the safe limit", "undamped steps", "impact"):
+        assert {one.setting["integrator"] for one in CASES if one.name == name and one.quick} == set(transient(REGISTRY))
+    assert not {"periodic", "quasi_static"} & set(transient(REGISTRY))
+    foreign = [one for one in catalogue(registry_with([CUBIC])) if one.setting.get("law") == "cubic"]
+    quick = {one.name for one in foreign if one.quick}
+    assert {"impact", "chatter", "undamped steps", "orbit at the safe limit", "base", "axial load 100 kN"} <= quick
+    assert len(quick) < len({one.name for one in foreign})
 
-    assert verdict(Near(0.01, ""), 2.0, 2.019) == AS_EXPECTED and verdict(Near(0.01, ""), 2.0, 2.021) == FAILED
-    assert verdict(AtMost(1.0, ""), None, 1.0) == AS_EXPECTED and verdict(AtMost(1.0, ""), None, 1.1) == FAILED
-    assert verdict(AtLeast(1.0, ""), None, 1.0) == AS_EXPECTED and verdict(AtLeast(1.0, ""), None, 0.9) == FAILED
-    assert verdict(AtMost(1.0, ""), None, math.nan) == FAILED and verdict(AtLeast(1.0, ""), None, math.inf) == FAILED
+
+@pytest.mark.parametrize(
+    ("limit", "good", "bad"),
+    [
+        ({"near": 2.0, "within": 0.01}, (2.019, 1.981), (2.021, 1.979)),
+        ({"near": -2.0, "within": 0.01}, (-2.019,), (-2.021, 2.0)),
+        ({"at_most": 1.0}, (1.0,), (1.1, math.nan, (0.5, math.nan))),
+        ({"at_least": 1.0}, (1.0, (1.0, 0.3)), (0.9, math.inf)),
+    ],
+)
+def test_expectations_judge(limit, good, bad):
+    rows = Rows("c")
+    assert {rows.check("q", value, "", **limit).verdict for value in good} == {AS_EXPECTED}
+    assert {rows.check("q", value, "", **limit).verdict for value in bad} == {FAILED}
 
 
 def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
     def refuse():
         raise ConvergenceError("nothing loads the bearing")
 
-    row = judged("c", {}, "q", AtMost(1.0, ""), None, refuse)
+    rows = Rows("c")
+    row = rows.check("q", refuse, "", at_most=1.0)
     assert row.verdict == FAILED and "unexpectedly: nothing loads" in row.note and row.observed is None
-    assert refused("c", {}, "nothing loads", "", refuse).verdict == AS_EXPECTED
-    assert refused("c", {}, "another message", "", refuse).verdict == FAILED
-    assert refused("c", {}, "nothing loads", "", lambda: 1.0).note == "it was computed instead"
+    assert rows.refused("nothing loads", "", refuse).verdict == AS_EXPECTED
+    assert rows.refused("another message", "", refuse).verdict == FAILED
+    assert rows.refused("nothing loads", "", lambda: 1.0).note == "it was computed instead"
+    assert (
+        rows.warned("edge", "", ["beyond the edge"]).verdict == AS_EXPECTED and rows.warned("edge", "", []).verdict == FAILED
+    )
 
 
-def extreme_case(judge, **changes):
-    arguments = {"tables": BASE, "changes": {"integrator.turns": 1, **changes}, "shown": {}, "judge": judge}
-    return Case("c", "scenes:extreme", arguments)
+def extreme_rows(judge, **changes):
+    arguments = {"tables": BASE, "changes": {"integrator.turns": 1, **changes}, "judge": judge}
+    return rows_of(Case("c", "scenes:extreme", {}, arguments), REGISTRY)
 
 
 def test_a_comparison_that_is_refused_fails_its_case(monkeypatch):
@@ -98,25 +112,25 @@ def test_a_comparison_that_is_refused_fails_its_case(monkeypatch):
 
     monkeypatch.setattr(scenes, "run", refuse)
     for judge, kind in (("orbit", "periodic"), ("slow", "quasi_static"), ("any", "periodic")):
-        *_, row = scenes.extreme(extreme_case(judge), REGISTRY)
+        *_, row = extreme_rows(judge)
         assert row.verdict == FAILED and "unexpectedly: no motion was found" in row.note
         assert row.setting["integrator"] == kind
 
 
 def test_a_motion_whose_energy_nobody_balances_fails():
     # While a force grows, energy is not balanced.
-    _, *moved = scenes.extreme(extreme_case("finer", **{"integrator.start": "ramp"}), REGISTRY)
+    _, *moved = extreme_rows("finer", **{"integrator.start": "ramp"})
     balanced = [row for row in moved if "energy" in row.quantity]
     assert balanced and all(row.verdict == FAILED and "not a number" in row.note for row in balanced)
     # A user's scene that `periodic` cannot take is held against its energy instead, and says so.
-    _, *moved = scenes.extreme(extreme_case("any", **{"contact.friction": 0.1}), REGISTRY)
+    _, *moved = extreme_rows("any", **{"contact.friction": 0.1})
     assert moved and all(row.verdict == AS_EXPECTED and "no steady motion to compare" in row.note for row in moved)
 
 
 def test_a_motion_that_keeps_its_energy_and_has_another_stiffness_fails(monkeypatch):
     """A truth of another load is 3 % away; the balance of energy does not see that."""
     monkeypatch.setitem(scenes._JUDGES, "finer", {**scenes._JUDGES["finer"], "load.axial": 1100.0})
-    _, *moved = scenes.extreme(extreme_case("finer", **{"integrator.start": "static"}), REGISTRY)
+    _, *moved = extreme_rows("finer", **{"integrator.start": "static"})
     assert {row.verdict for row in moved if "energy" in row.quantity} == {AS_EXPECTED}
     assert {row.verdict for row in moved if "|Z|" in row.quantity} == {FAILED}
     assert all("states an error of" in row.note for row in moved if row.verdict == FAILED)
@@ -126,8 +140,7 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
     """At 100 kN a compliance that varies with the contact angle pushes balls along the groove with 3 % of the load."""
     found = {}
     for load in (1e5, 1.001e5):
-        scene = scene_at(BASE, {"bodies.kind": "condensed", "load.axial": load, "excitation": None}, REGISTRY)
-        model = build_model(scene, make_plan(scene))
+        model = model_at(BASE, {"bodies.kind": "condensed", "load.axial": load, "excitation": None}, REGISTRY)
         found[load] = settle(model)
         # A difference over a thousandth of the penetration errs by the square of that.
         assert axial_force(model, found[load]) == pytest.approx(load, rel=1e-5)
@@ -141,10 +154,10 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
 @pytest.mark.slow
 def test_elastic_bodies_of_another_stiffness_fail(monkeypatch):
     """Deliberate fault: rings 10 % stiffer than those of the condensed bodies that they are held against."""
-    wanted = {"shown": {"law": "hertz", "bodies": "elastic, resultants"}}
+    wanted = {"law": "hertz", "bodies": "elastic, resultants"}
     assert {row.verdict for row in rows_named("elastic bodies: axial load 1 N", **wanted)} == {AS_EXPECTED}
-    monkeypatch.setattr(elastic, "_COARSE", {**elastic._COARSE, "bearing.rings": {"young": 233.2e9}})
-    found = {row.quantity.split(" [")[0]: row.verdict for row in rows_named("elastic bodies: axial load 1 N", **wanted)}
+    monkeypatch.setattr(elastic, "COARSE", {**elastic.COARSE, "bearing.rings": {"young": 233.2e9}})
+    found = verdicts(rows_named("elastic bodies: axial load 1 N", **wanted))
     # The seat carries the load all the same.
     assert found == {"axial displacement": FAILED, "radial stiffness": FAILED, "axial force on the outer seat": AS_EXPECTED}
 
@@ -154,27 +167,24 @@ def test_elastic_bodies_that_forget_the_energy_of_their_contacts_fail(monkeypatc
     name = "elastic bodies: rubber balls in ceramic rings"
     assert {row.verdict for row in rows_named(name)} == {AS_EXPECTED}
     monkeypatch.setattr("raceway.core.elastic.contacts.contact.Contact.energy", lambda self: 0.0)
-    found = {row.quantity.split(" [")[0]: row.verdict for row in rows_named(name)}
+    found = verdicts(rows_named(name))
     assert found == {"axial force on the outer seat": AS_EXPECTED, "change of the stored energy over the axial way": FAILED}
 
 
 def test_friction_is_judged_where_it_acts():
     """Equilibria know none: with it they are what they are without it, which no row of theirs could fail."""
     assert any(one.measure == "elastic:rubbing" and one.arguments["changes"]["contact.friction"] == 1.0 for one in CASES)
-    assert not any(
-        "friction" in one.name for one in CASES if one.measure in ("elastic:points_at_rest", "elastic:calibrated_at_rest")
-    )
+    still = ("elastic:points_at_rest", "elastic:calibrated_at_rest")
+    assert not any("friction" in one.name for one in CASES if one.measure in still)
 
 
 def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
     (row,) = rows_of(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
-    cases = [case("hang"), case("die"), case("answer", value=1.05), case("answer", value=2.0)]
-    done, _ = measure(cases, 2, REGISTRY, patience=6.0)
-    found = {(one.name, one.arguments.get("value")): rows for one, rows in zip(cases, done, strict=True)}
-    notes = {key: rows[0].note for key, rows in found.items()}
-    assert "it hangs" in notes["hang", None] and "exit code 7" in notes["die", None]
-    assert found["answer", 1.05][0].verdict == AS_EXPECTED and found["answer", 2.0][0].verdict == FAILED
+    cases = [case("hang"), case("die"), case("answer", value="near"), case("answer", value="far")]
+    hung, died, *answered = measured(cases, 2, REGISTRY, patience=6.0)[0]
+    assert "it hangs" in hung.note and "exit code 7" in died.note and hung.verdict == died.verdict == FAILED
+    assert [row.verdict for row in answered] == [AS_EXPECTED, FAILED]
 
 
 @pytest.mark.parametrize("name", ["steps around the limit, linear", "steps around the limit, small motions of the bearing"])
@@ -196,8 +206,9 @@ def test_the_safe_limit_holds_on_large_orbits():
 
 @pytest.mark.parametrize("integrator", ["central_difference", "newmark"])
 def test_energy_of_symplectic_steps_has_no_trend(integrator):
-    found = [one for one in CASES if one.name == "undamped steps" and one.arguments["integrator"] == integrator]
-    for one in found:
+    cases = [one for one in CASES if one.name == "undamped steps" and one.quick and one.setting["integrator"] == integrator]
+    assert len(cases) == 2 * len(laws_with(REGISTRY, "resultant"))
+    for one in cases:
         (row,) = rows_of(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
         # The catalogue holds a million steps to the same bounds.
         assert row.verdict == AS_EXPECTED, row
@@ -212,8 +223,14 @@ def test_newmark_chatters_and_generalized_alpha_or_finer_steps_do_not():
     assert cured and all(row.observed < 1e-6 for row in cured)
 
 
-@pytest.mark.parametrize("name", ["no load", "two balls on the line of the load"])
-def test_hard_scenes_end_as_expected(name):
+@pytest.mark.parametrize(
+    "name",
+    [
+        "no load", "two balls on the line of the load", "elements without a volume", "rubber on ceramic, elements",
+        "slender elements, tension",
+    ],
+)  # fmt: skip
+def test_hard_cases_end_as_expected(name):
     assert all(row.verdict == AS_EXPECTED for row in rows_named(name))
 
 
@@ -237,16 +254,14 @@ FOREIGN = (
 @pytest.mark.parametrize("name", FOREIGN)
 def test_expectations_of_any_law_follow_from_its_own_force(name, law):
     registry = registry_with([CUBIC, DAMPED])
-    cases = [one for one in catalogue(registry) if one.name == name and one.arguments["shown"].get("law") == law]
-    rows = [row for one in cases for row in rows_of(one, registry)]
-    assert rows and not [row for row in rows if row.verdict != AS_EXPECTED]
+    rows = rows_named(name, catalogue(registry), registry, law=law)
+    assert not [row for row in rows if row.verdict != AS_EXPECTED]
 
 
 def small_motions(**contact):
-    registry = registry_with([DAMPED])
     changes = {"contact.kind": "hunt_crossley", **{f"contact.{key}": value for key, value in contact.items()}}
-    arguments = {"tables": BASE, "integrator": "central_difference", "changes": changes, "shown": {}}
-    return rows_of(Case("c", "limits:small_motions", arguments), registry)
+    arguments = {"tables": BASE, "integrator": "central_difference", "changes": changes}
+    return rows_of(Case("c", "limits:small_motions", {}, arguments), registry_with([DAMPED]))
 
 
 def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
@@ -261,8 +276,7 @@ def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
 
 
 def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_force(monkeypatch):
-    scene = scene_at(BASE, {**with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY)
-    model = build_model(scene, make_plan(scene))
+    model = model_at(BASE, {**with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY)
     own, found = axial_displacement(model), settle(model).displacement[0]
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
@@ -273,9 +287,7 @@ def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_forc
 
 def test_the_axial_displacement_by_a_laws_own_force():
     """Of the cubic law in closed form: delta = (Q / 2e17)^(1/3) at both races."""
-    registry = registry_with([CUBIC])
-    scene = scene_at(BASE, {"contact.kind": "cubic", "kinematics.ball_inertia": False}, registry)
-    model = build_model(scene, make_plan(scene))
+    model = model_at(BASE, {"contact.kind": "cubic", "kinematics.ball_inertia": False}, registry_with([CUBIC]))
     axial, radial = np.add(model.geometry.rest, (axial_displacement(model), 0.0))
     approach = np.hypot(axial, radial) - model.geometry.centre_distance
     load = 2e17 * (0.5 * approach) ** 3
@@ -284,24 +296,18 @@ def test_the_axial_displacement_by_a_laws_own_force():
 
 @pytest.mark.parametrize(("law", "expected"), [("hertz", FAILED), ("cubic", AS_EXPECTED)])
 def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, expected, monkeypatch):
-    registry = registry_with([CUBIC])
-    build = scenes.build_model
+    build = scenes.model_at
 
-    def refuse(scene, plan):
-        if scene.bodies.name == "condensed":
+    def refuse(tables, changes, registry):
+        if changes["bodies.kind"] == "condensed":
             raise SceneError.at("contact.kind", law, "is stiffer than elastic bodies allow")
-        return build(scene, plan)
+        return build(tables, changes, registry)
 
-    monkeypatch.setattr(scenes, "build_model", refuse)
+    monkeypatch.setattr(scenes, "model_at", refuse)
     changes = {"contact.kind": law, "load.axial": 1e5, "bodies.kind": "condensed"}
-    arguments = {"tables": BASE, "changes": changes, "shown": {}, "judge": "", "may_be_too_stiff": True}
-    (row,) = scenes.extreme(Case("c", "scenes:extreme", arguments), registry)
+    arguments = {"tables": BASE, "changes": changes, "may_be_too_stiff": True}
+    (row,) = rows_of(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))
     assert row.verdict == expected
-
-
-def test_elements_without_a_volume_are_refused_and_soft_on_hard_is_exact():
-    for name in ("elements without a volume", "rubber on ceramic, elements", "slender elements, tension"):
-        assert all(row.verdict == AS_EXPECTED for row in rows_named(name))
 
 
 def test_the_command_writes_its_report_and_reuses_finished_cases(tmp_path):
@@ -318,16 +324,23 @@ def test_the_command_writes_its_report_and_reuses_finished_cases(tmp_path):
 
 
 def test_a_scene_of_the_user_is_put_through_the_cases_that_suit_any(tmp_path):
-    found = invoke("stability", ARTICLE, "--only", "small motions", "--processes", 0, "--out", tmp_path, "--all")
-    assert found.exit_code == 0 and "B7206C" in found.stdout
+    found = invoke("stability", ARTICLE, "--only", "small motions", "--processes", 0, "--out", tmp_path)
+    assert found.exit_code == 0 and "B7206C" in found.stdout and "step/limit" in found.stdout
     names = {one.name for one in catalogue(REGISTRY, {"bearing": {"preset": "B7206C"}})}
     assert "undamped steps" in names and "no load" not in names
 
 
-def test_a_case_that_fails_is_exit_code_1_and_is_named(tmp_path, monkeypatch):
-    monkeypatch.setattr(study_module, "catalogue", lambda *_: (case("answer", value=3.0),))
-    found = invoke("stability", "--processes", 0, "--out", tmp_path)
-    assert found.exit_code == 1 and "failed: answer, one, equal within 0.1, 1, 3" in found.stdout
+def test_quick_cases_are_the_default_and_the_screen_says_what_is_left_out(tmp_path, monkeypatch):
+    cases = (case("answer", value="near"), attrs.evolve(case("answer", value="far"), name="long", quick=False))
+    monkeypatch.setattr(study_module, "catalogue", lambda *_: cases)
+    words = ("stability", "--processes", 0, "--out", tmp_path)
+    quick = invoke(*words)
+    assert quick.exit_code == 0 and "left out: 1 cases" in quick.stdout
+    assert invoke(*words, "--only", "answer").exit_code == 0
+    # A case that fails is exit code 1, and is named.
+    found = invoke(*words, "--all")
+    assert found.exit_code == 1 and "failed: long, value far, one, equal within 0.1, 1, 2" in found.stdout
+    assert "left out" not in found.stdout
     page = (tmp_path / "stability.md").read_text()
     assert page.index("## Failed") < page.index("## answer")
 

@@ -22,10 +22,9 @@ from raceway.commands.frame import (
     show_progress,
 )
 from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
-from raceway.errors import SceneError
+from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
-from raceway.studies.stability.command import verdict
 
 
 class PrecisionOptions(NamedTuple):
@@ -104,3 +103,17 @@ def precision(given: PrecisionOptions) -> int:
         lambda: precision_screen(content["title"], found.table(), content["words"], files, given.explain),
     )
     return 0
+
+
+def verdict(content: dict, converged: bool, given: bool) -> ConvergenceError | SceneError | None:
+    """What makes a finished study worthless, after it has been shown."""
+    rows = content["rows"]
+    known = [row for row in rows if row["error"] is not None]
+    if given and known and all(row["at_bound"] for row in known):
+        message = "is not more accurate than the rows: make it finer, or leave it out and let the study find one"
+        return SceneError.at("--reference", None, message)
+    if not converged:
+        reasons = [row["reason"] for row in rows if row["reason"]]
+        why = f"; the first reason: {reasons[0]}" if reasons else ": all errors are above 1 %"
+        return ConvergenceError(f"no setting converged{why}")
+    return None

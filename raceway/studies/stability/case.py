@@ -1,9 +1,9 @@
-"""A case of the catalogue of stiff and extreme cases, and what is expected of it."""
+"""Cases, and the rows that they write: a number beside its limit, or a message that must come."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import attrs
 
@@ -12,6 +12,8 @@ from raceway.storage.tables import Tables
 
 AS_EXPECTED, FAILED = "as expected", "failed"
 _LONGEST = 200
+#: A value, or a value and the drift of the energy.
+Measured = float | tuple[float, float | None]
 
 
 @attrs.frozen
@@ -20,16 +22,17 @@ class Case:
 
     Attributes
     ----------
-    name : what a row is called by
-    measure : ``module:function``, a module of ``raceway.studies`` or a whole path, called as ``function(case, registry)``; returns rows
-    arguments : what the function needs, plain values
-    weight : seconds that it takes, roughly: the longest are begun first
+    name : what its rows are called by
+    measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, registry, **arguments)``
+    setting : law, integrator, what else was varied;  arguments : plain values
+    quick : whether it belongs to what is run unless all is asked for
     """
 
     name: str
     measure: str
+    setting: Tables = attrs.field(factory=dict)
     arguments: Tables = attrs.field(factory=dict)
-    weight: float = 1.0
+    quick: bool = True
 
 
 @attrs.frozen
@@ -59,107 +62,78 @@ class Row:
 
 
 @attrs.frozen
-class Near:
-    """The observed value equals the predicted one."""
+class Rows:
+    """What a case writes: its name, the setting of all its rows, the rows so far."""
 
-    relative: float
-    reason: str
+    case: str
+    setting: Tables = attrs.field(factory=dict)
+    written: list[Row] = attrs.field(factory=list)
 
-    def words(self, predicted: float | None) -> str:
-        return f"equal within {self.relative:.2g}"
+    def check(
+        self,
+        quantity: str,
+        value: Measured | Callable[[], Measured],
+        why: str,
+        *,
+        near: float | None = None,
+        within: float = 0.0,
+        at_most: float | None = None,
+        at_least: float | None = None,
+        at: Tables | None = None,
+        note: str = "",
+    ) -> Row:
+        """A number against ``near``, relatively ``within``, or a bound; an error of a function, or no number, fails.
 
-    def holds(self, predicted: float | None, observed: float) -> bool:
-        return predicted is not None and abs(observed - predicted) <= self.relative * abs(predicted)
+        Parameters
+        ----------
+        why : the reason of the limit;  at : setting of this row alone
+        """
+        least, most = at_least, at_most
+        if near is not None:
+            words, least, most = f"equal within {within:.2g}", near - within * abs(near), near + within * abs(near)
+        else:
+            words = f"at least {at_least:.3g}" if at_most is None else f"at most {at_most:.3g}"
+        observed = drift = None
+        try:
+            given = value() if callable(value) else value
+            observed, drift = given if isinstance(given, tuple) else (given, None)
+            if not all(math.isfinite(each) for each in (observed, drift or 0.0)):
+                note, observed, drift = f"not a number: {observed}, energy {drift}", None, None
+        except RacewayError as error:
+            note = f"refused, unexpectedly: {short(error)}"
+        good = observed is not None and (least is None or observed >= least) and (most is None or observed <= most)
+        return self._write(at, quantity, words, near, observed, drift, good, why, note)
 
+    def refused(self, words: str, why: str, work: Callable[[], object], at: Tables | None = None) -> Row:
+        """What must be refused, with a message that holds ``words``."""
+        good, note = False, "it was computed instead"
+        try:
+            work()
+        except RacewayError as error:
+            good, note = words in str(error), short(error)
+        return self._write(at, "message", f"refused: '{words}'", None, None, None, good, why, note)
 
-@attrs.frozen
-class AtMost:
-    """The observed value stays below a bound."""
+    def warned(self, words: str, why: str, warnings: Iterable[str]) -> Row:
+        """A warning that holds ``words``."""
+        found = next((text for text in warnings if words in text), None)
+        note = found or "no such warning"
+        return self._write(None, "warning", f"warned: '{words}'", None, None, None, found is not None, why, note)
 
-    bound: float
-    reason: str
+    def lost(self, why: str, at: Tables | None = None) -> Row:
+        """A case, or a part of it, that ended without an answer."""
+        return self._write(at, "answer", "an answer or a refusal", None, None, None, False, "", why)
 
-    def words(self, predicted: float | None) -> str:
-        return f"at most {self.bound:.3g}"
-
-    def holds(self, predicted: float | None, observed: float) -> bool:
-        return observed <= self.bound
-
-
-@attrs.frozen
-class AtLeast:
-    """The observed value passes a bound."""
-
-    bound: float
-    reason: str
-
-    def words(self, predicted: float | None) -> str:
-        return f"at least {self.bound:.3g}"
-
-    def holds(self, predicted: float | None, observed: float) -> bool:
-        return observed >= self.bound
-
-
-Expectation = Near | AtMost | AtLeast
-#: What a measurement returns: observed value, energy drift.
-Measured = tuple[float, float | None]
-
-
-def judged(
-    case: str,
-    setting: Tables,
-    quantity: str,
-    expectation: Expectation,
-    predicted: float | None,
-    measure: Callable[[], Measured],
-    note: str = "",
-) -> Row:
-    """A row of what a measurement gives; one that ends in an error, or in no number, has failed."""
-    head = (case, setting, quantity, expectation.words(predicted), predicted)
-    try:
-        observed, drift = measure()
-    except RacewayError as error:
-        return unexpected(case, setting, quantity, expectation, error, predicted)
-    if not math.isfinite(observed) or (drift is not None and not math.isfinite(drift)):
-        return Row(*head, None, None, FAILED, expectation.reason, f"not a number: {observed}, energy {drift}")
-    good = expectation.holds(predicted, observed)
-    return Row(*head, float(observed), drift, AS_EXPECTED if good else FAILED, expectation.reason, note)
-
-
-def unexpected(
-    case: str,
-    setting: Tables,
-    quantity: str,
-    expectation: Expectation,
-    why: RacewayError,
-    predicted: float | None = None,
-) -> Row:
-    """The row of a refusal that nobody expects."""
-    head = (case, setting, quantity, expectation.words(predicted), predicted)
-    return Row(*head, None, None, FAILED, expectation.reason, f"refused, unexpectedly: {short(why)}")
-
-
-def refused(case: str, setting: Tables, words: str, reason: str, measure: Callable[[], object]) -> Row:
-    """A row of what must be refused, with a message that holds ``words``."""
-    head = (case, setting, "message", f"refused: '{words}'", None, None, None)
-    try:
-        measure()
-    except RacewayError as error:
-        good = words in str(error)
-        return Row(*head, AS_EXPECTED if good else FAILED, reason, short(error))
-    return Row(*head, FAILED, reason, "it was computed instead")
-
-
-def lost(case: Case, why: str) -> Row:
-    """The row of a case that ended without an answer."""
-    return Row(case.name, _plain(case.arguments), "answer", "an answer or a refusal", None, None, None, FAILED, "", why)
+    def _write(
+        self, at: Tables | None, quantity: str, words: str, near: float | None, value: float | None, drift: float | None,
+        good: bool, why: str, note: str,
+    ) -> Row:  # fmt: skip
+        setting, number = {**self.setting, **(at or {})}, None if value is None else float(value)
+        verdict = AS_EXPECTED if good else FAILED
+        self.written.append(Row(self.case, setting, quantity, words, near, number, drift, verdict, why, note))
+        return self.written[-1]
 
 
 def short(error: BaseException) -> str:
     """The first line of a message, not too long for a table."""
     text = (str(error).splitlines() or [type(error).__name__])[0]
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
-
-
-def _plain(arguments: Tables) -> Tables:
-    return {key: value for key, value in arguments.items() if isinstance(value, str | int | float)}

@@ -3,114 +3,99 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
 from raceway.core.linear.statics import solve_static
-from raceway.errors import MeshError
 from raceway.framework.registry import Registry
-from raceway.studies.stability.case import AtLeast, AtMost, Case, Measured, Near, Row, judged, refused
+from raceway.studies.stability.case import Rows
 
 _YOUNG, _POISSON, _DENSITY = 212e9, 0.29, 7810.0
 _STEPS = 400
+#: What bounds the tip of a nearly incompressible cantilever, by kind of elements; others bend.
+_LOCKS = {
+    "full": "full integration locks: why it is not the default",
+    "one_point": "its hourglass control is a share of lambda + 2 mu, which grows without limit: it locks, too",
+}
+_BENDS = "E is the same, so that the deflection hardly depends on Poisson's ratio"
 
 
-def slender_steps(case: Case, registry: Registry) -> list[Row]:
+def slender_steps(rows: Rows, registry: Registry, aspect: float) -> None:
     """Explicit steps of a free block of slender elements, around the limit of its fastest mode."""
-    aspect = case.arguments["aspect"]
     points, cells = _block((3, 3, 3), (3e-3 * aspect, 3e-3, 3e-3))
-    rows = []
     for kind in KINDS:
         op = HexOperator(points, cells, _YOUNG, _POISSON, _DENSITY, kind)
-        limit = _limit(op)
-        setting = {"elements": kind, "aspect": aspect}
-        safe = AtMost(1.0 + 1e-9, "no mode of the mesh is faster than its fastest element")
-        share = partial(_share, op, limit)
-        rows.append(judged(case.name, setting, "predicted safe step over the mesh's limit", safe, None, share))
-        for factor in (0.98, 1.02):
-            bound = (
-                AtMost(20.0, "1 / sqrt(1 - 0.98^2) = 5, and modes add up") if factor < 1.0 else AtLeast(1e3, "1.49 a step")
-            )
-            rows.append(
-                judged(
-                    case.name, {**setting, "step/limit": factor}, f"largest over first displacement, {_STEPS} steps", bound,
-                    None, partial(_growth, op, factor * limit),
-                )
-            )  # fmt: skip
-    return rows
+        mass = np.repeat(op.lumped_mass(), 3)
+        fastest = np.linalg.eigvalsh(op.stiffness().toarray() / np.sqrt(mass[:, None] * mass))[-1]
+        limit, setting = 2.0 / np.sqrt(fastest), {"elements": kind, "aspect": aspect}
+        share, why = op.stable_step() / limit, "no mode of the mesh is faster than its fastest element"
+        rows.check("predicted safe step over the mesh's limit", share, why, at_most=1.0 + 1e-9, at=setting)
+        words = f"largest over first displacement, {_STEPS} steps"
+        why = "1 / sqrt(1 - 0.98^2) = 5, and modes add up"
+        rows.check(words, _growth(op, 0.98 * limit), why, at_most=20.0, at={**setting, "step/limit": 0.98})
+        rows.check(words, _growth(op, 1.02 * limit), "1.49 a step", at_least=1e3, at={**setting, "step/limit": 1.02})
 
 
-def _limit(op: HexOperator) -> float:
-    """2 / (fastest angular frequency of the mesh) [s], from all its eigenvalues."""
-    mass = np.repeat(op.lumped_mass(), 3)
-    scaled = op.stiffness().toarray() / np.sqrt(mass[:, None] * mass)
-    return float(2.0 / np.sqrt(np.linalg.eigvalsh(scaled)[-1]))
-
-
-def _share(op: HexOperator, limit: float) -> Measured:
-    return op.stable_step() / limit, None
-
-
-def _growth(op: HexOperator, dt: float) -> Measured:
+def _growth(op: HexOperator, dt: float) -> float:
     rng = np.random.default_rng(3)
     u = rng.standard_normal(op.points.shape) * 1e-12
     mass = op.lumped_mass()
     u -= np.average(u, axis=0, weights=mass)
     v, first = np.zeros_like(u), float(np.abs(u).max())
     op.advance(u, v, np.zeros_like(u), 1.0 / mass, dt, _STEPS)
-    return float(np.abs(u).max() / first), None
+    return float(np.abs(u).max() / first)
 
 
-def slender_bar(case: Case, registry: Registry) -> list[Row]:
+def slender_bar(rows: Rows, registry: Registry, aspect: float, poisson: float, young: float) -> None:
     """A bar of slender elements under tension: its lengthening F l / E A, exact for any element."""
-    aspect, poisson, young = (case.arguments[name] for name in ("aspect", "poisson", "young"))
     length, side, force = 4e-3 * aspect, 3e-3, 1.0
     points, cells = _block((4, 3, 3), (length, side, side))
-    rows = []
+    why = "constant strain is exact in every element; the matrix's condition costs up to ten digits"
     for kind in KINDS:
-        op = HexOperator(points, cells, young, poisson, _DENSITY, kind)
-
-        def lengthening(o: HexOperator = op) -> Measured:
-            # The end faces' nodes take the shares of a uniform traction.
-            end = points[:, 0] > length * (1.0 - 1e-12)
-            load = np.zeros_like(points)
-            load[end, 0] = force * _shares(points[end, 1:], side)
-            held = np.zeros(points.shape, dtype=bool)
-            held[points[:, 0] == 0.0, 0] = True
-            held[points[:, 1] == 0.0, 1] = held[points[:, 2] == 0.0, 2] = True
-            found = solve_static(o.stiffness(), points, load, held, tolerance=1e-7).displacement
-            return float(found[end, 0].mean()), None
-
-        close = Near(1e-5, "constant strain is exact in every element; the matrix's condition costs up to ten digits")
+        matrix = HexOperator(points, cells, young, poisson, _DENSITY, kind).stiffness()
         setting = {"elements": kind, "aspect": aspect, "poisson": poisson, "young": young}
-        predicted = force * length / (young * side**2)
-        rows.append(judged(case.name, setting, "lengthening [m]", close, predicted, lengthening))
-    return rows
+        value, near = partial(_lengthening, matrix, points, force), force * length / (young * side**2)
+        rows.check("lengthening [m]", value, why, near=near, within=1e-5, at=setting)
 
 
-def locking(case: Case, registry: Registry) -> list[Row]:
-    """A nearly incompressible cantilever: elements that bend, and elements that are known to lock."""
-    rows = []
-    beam = _tip("mean_dilatation", 0.3)
+def soft_on_hard(rows: Rows, registry: Registry) -> None:
+    """Rubber bonded on ceramic, pressed flat between plates that slide: uniform stress, strains in series."""
+    hard, soft, side, force = 310e9, 2e6, 1e-3, 1.0
+    points, cells = _block((8, 3, 3), (8 * side, 3 * side, 3 * side))
+    half = points[cells].mean(axis=1)[:, 0] > 4 * side
+    near = force * 4 * side / (9 * side**2) * (1.0 / hard + 1.0 / soft)
     for kind in KINDS:
+        parts = ((half, soft), (~half, hard))
+        matrix: Any = sum(HexOperator(points, cells[part], young, 0.0, 1e3, kind).stiffness() for part, young in parts)
+        value = partial(_lengthening, matrix.tocsr(), points, force)
+        why, setting = (
+            "uniform stress is exact; the stiffnesses differ by 1.6e5",
+            {"elements": kind, "ratio of moduli": hard / soft},
+        )
+        rows.check("shortening [m]", value, why, near=near, within=1e-6, at=setting)
+
+
+def _lengthening(matrix: Any, points: np.ndarray, force: float) -> float:
+    """Of an eighth of a bar under a uniform traction at its end [m], held on its planes of symmetry; shortening under pressure."""
+    length, side, _ = points.max(axis=0)
+    end = points[:, 0] > length * (1.0 - 1e-12)
+    edge = (np.isclose(points[end, 1:], 0.0, atol=1e-9 * side) | np.isclose(points[end, 1:], side)).sum(axis=1)
+    load, share = np.zeros_like(points), 0.5**edge  # of a node in the traction on a uniform grid
+    load[end, 0] = force * share / share.sum()
+    found = solve_static(matrix, points, load, points == 0.0, tolerance=1e-7).displacement
+    return float(found[end, 0].mean())
+
+
+def locking(rows: Rows, registry: Registry) -> None:
+    """A nearly incompressible cantilever: elements that bend, and elements that are known to lock."""
+    beam, words = _tip("mean_dilatation", 0.3), "tip deflection over that at Poisson's ratio 0.3, E the same"
+    for kind in KINDS:
+        bound = {"at_most": 0.75} if kind in _LOCKS else {"at_least": 0.8}
         setting = {"elements": kind, "poisson": 0.4999}
-        if kind == "full":
-            bound: AtMost | AtLeast = AtMost(0.75, "full integration locks: why it is not the default")
-        elif kind == "one_point":
-            bound = AtMost(
-                0.75, "its hourglass control is a share of lambda + 2 mu, which grows without limit: it locks, too"
-            )
-        else:
-            bound = AtLeast(0.8, "E is the same, so that the deflection hardly depends on Poisson's ratio")
-        quantity = "tip deflection over that at Poisson's ratio 0.3, E the same"
-        rows.append(judged(case.name, setting, quantity, bound, None, partial(_bends, kind, beam)))
-    return rows
-
-
-def _bends(kind: str, beam: float) -> Measured:
-    return _tip(kind, 0.4999) / beam, None
+        rows.check(words, _tip(kind, 0.4999) / beam, _LOCKS.get(kind, _BENDS), at=setting, **bound)  # type: ignore[arg-type]
 
 
 def _tip(kind: str, poisson: float) -> float:
@@ -123,66 +108,17 @@ def _tip(kind: str, poisson: float) -> float:
     return float(solve_static(op.stiffness(), points, load, held, tolerance=1e-6).displacement[end, 2].mean())
 
 
-def soft_on_hard(case: Case, registry: Registry) -> list[Row]:
-    """Rubber bonded on ceramic, pressed flat between plates that slide: uniform stress, strains in series."""
-    hard, soft, side, force = 310e9, 2e6, 1e-3, 1.0
-    points, cells = _block((8, 3, 3), (8 * side, 3 * side, 3 * side))
-    half = points[cells].mean(axis=1)[:, 0] > 4 * side
-    rows = []
-    for kind in KINDS:
-
-        def shortening(k: str = kind) -> Measured:
-            matrix = sum(
-                HexOperator(points, cells[part], young, 0.0, 1000.0, k).stiffness()
-                for part, young in ((half, soft), (~half, hard))
-            )
-            end = points[:, 0] > 8 * side * (1.0 - 1e-12)
-            load = np.zeros_like(points)
-            load[end, 0] = -force * _shares(points[end, 1:], 3 * side)
-            held = np.zeros(points.shape, dtype=bool)
-            held[points[:, 0] == 0.0, 0] = True
-            held[points[:, 1] == 0.0, 1] = held[points[:, 2] == 0.0, 2] = True
-            found = solve_static(matrix.tocsr(), points, load, held, tolerance=1e-7).displacement
-            return float(-found[end, 0].mean()), None
-
-        predicted = force * 4 * side / (9 * side**2) * (1.0 / hard + 1.0 / soft)
-        close = Near(1e-6, "uniform stress is exact; the stiffnesses differ by 1.6e5")
-        rows.append(
-            judged(
-                case.name, {"elements": kind, "ratio of moduli": hard / soft}, "shortening [m]", close, predicted, shortening
-            )
-        )
-    return rows
-
-
-def bad_elements(case: Case, registry: Registry) -> list[Row]:
+def bad_elements(rows: Rows, registry: Registry) -> None:
     """An element turned inside out, and one without a volume."""
     points, cells = _block((1, 1, 1), (1.0, 1.0, 1.0))
-    rows = []
     for name, moved in (("inside out", -2.0), ("flat", -1.0)):
-        bad = points.copy()
-        bad[points[:, 0] == 1.0, 0] += moved
-
-        def build(p: np.ndarray = bad) -> float:
-            return HexOperator(p, cells, _YOUNG, _POISSON, _DENSITY).stable_step()
-
-        rows.append(
-            refused(
-                case.name,
-                {"element": name},
-                "inverted or degenerate",
-                f"{MeshError.__name__}: such an element has no mass",
-                build,
-            )
-        )
-    return rows
+        bad = points + np.where(points[:, :1] == 1.0, [moved, 0.0, 0.0], 0.0)
+        build = partial(_step, bad, cells)
+        rows.refused("inverted or degenerate", "MeshError: such an element has no mass", build, {"element": name})
 
 
-def _shares(places: np.ndarray, side: float) -> np.ndarray:
-    """Shares of nodes (n, 2) of a uniform grid in a uniform traction on a square."""
-    edge = (np.isclose(places, 0.0, atol=1e-9 * side) | np.isclose(places, side)).sum(axis=1)
-    share = 0.5**edge
-    return np.asarray(share / share.sum())
+def _step(points: np.ndarray, cells: np.ndarray) -> float:
+    return HexOperator(points, cells, _YOUNG, _POISSON, _DENSITY).stable_step()
 
 
 def _block(counts: tuple[int, int, int], sides: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:

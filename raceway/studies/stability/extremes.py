@@ -1,4 +1,4 @@
-"""Extreme scenes, penalties, refusals and warnings of the catalogue: data."""
+"""Extreme scenes, penalties, surface points, elastic bodies, refusals and warnings of the catalogue: data."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ _B7206C = {
 }  # fmt: skip
 RUBBER, CERAMIC = {"young": 1e7, "poisson": 0.49, "density": 1100.0}, {"young": 310e9, "poisson": 0.26, "density": 3200.0}
 NEARLY_INCOMPRESSIBLE: Changes = {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}
+_RUBBER_BALLS: Changes = {"bearing.rings": CERAMIC, "bearing.balls": RUBBER, "load.axial": 10.0}
 STATIC: Changes = {"kinematics.ball_inertia": False}
 #: The whole force from the first step on: while a force grows, energy is not balanced.
 SUDDEN: Changes = {"integrator.start": "static"}
@@ -62,7 +63,7 @@ SCENES: tuple[tuple[str, Changes, bool, str], ...] = (
     ("interference 5 um", {"kinematics.radial_expansion": 5e-6, **force(100.0)}, False, "orbit"),
     ("interference 20 um", {"kinematics.radial_expansion": 20e-6, **force(100.0)}, False, "orbit"),
     ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, True, "orbit"),
-    ("rubber balls in ceramic rings", {"bearing.rings": CERAMIC, "bearing.balls": RUBBER, "load.axial": 10.0, **force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
+    ("rubber balls in ceramic rings", {**_RUBBER_BALLS, **force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
     ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}, True, "orbit"),
     ("friction 0.3", {"contact.friction": 0.3, **force(100.0)}, True, "finer"),
     ("friction 1.0", {"contact.friction": 1.0, **force(100.0)}, True, "finer"),
@@ -81,7 +82,72 @@ CONDENSED = (
     "lift-off: rotating 3000 N at 1000 N axial", "Poisson's ratio 0.4999", "rubber balls in ceramic rings",
     "ceramic balls in steel rings", "friction 0.3", "tilt free",
 )  # fmt: skip
+#: Those that are run unless all is asked for.
+QUICK = (
+    "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "clearance 20 um", "tilt free",
+    "lift-off: rotating 3000 N at 1000 N axial",
+)  # fmt: skip
 PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
+
+POINTS: Changes = {
+    "bodies.kind": "condensed", "contact.discretisation": "nodal", "mesh": {"kind": "structured", "nodes_per_semi_axis": 2}, **STATIC,
+}  # fmt: skip
+#: Scenes at rest whose contacts lie inside the grooves.
+STILL: tuple[tuple[str, Changes], ...] = (
+    ("base", {}),
+    ("axial load 1 N", {"load.axial": 1.0}),
+    ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0]}),
+    ("3 balls", {"bearing.ball_count": 3}),
+    ("conformity 0.60", {"bearing.conformity_inner": 0.6, "bearing.conformity_outer": 0.6}),
+    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
+)
+#: Scenes at rest that a user must be told something about.
+WARNED: tuple[tuple[str, Changes, str, str], ...] = (
+    ("axial load 100 kN", {"load.axial": 1e5}, "groove's edge", "contacts are cut off by the shoulder"),
+    (
+        "conformity 0.501", {"bearing.conformity_inner": 0.501, "bearing.conformity_outer": 0.501},
+        "groove's edge", "the ellipse is longer than the groove",
+    ),
+    ("rubber balls in ceramic rings", _RUBBER_BALLS, "groove's edge", "the balls fill the grooves"),
+    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, "elements lock", "contacts are nearly twice too stiff"),
+)  # fmt: skip
+
+#: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
+TINY: Tables = {
+    "title": "three balls on few elements",
+    "bearing": {"preset": "B7206C", "ball_count": 3},
+    "bodies": {"kind": "elastic", "formulation": "one_point"},
+    "mesh": {
+        "kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 12, "growth": 3.0,
+        "patch": 0.5, "ball_load": 300.0,
+    },
+    "load": {"axial": 250.0},
+    "rotor": {"mass": 0.5},
+    "contact": {"kind": "hertz", "discretisation": "nodal"},
+}  # fmt: skip
+ELASTIC_POINTS: tuple[tuple[str, Changes], ...] = (
+    ("base", {}),
+    ("axial load 1 N", {"load.axial": 1.0}),
+    ("axial load 100 kN", {"load.axial": 1e5}),
+    ("rubber balls in ceramic rings", _RUBBER_BALLS),
+    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE),
+)
+#: 2688 elements for the base scene's twelve balls.
+COARSE: Changes = {
+    "bodies": {"kind": "elastic", "formulation": "incompatible"},
+    "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 24}, **STATIC,
+}  # fmt: skip
+RESULTANTS: tuple[tuple[str, Changes], ...] = (
+    ("base", {}),
+    ("axial load 1 N", {"load.axial": 1.0}),
+    ("3 balls", {"bearing.ball_count": 3, "load.axial": 250.0}),
+    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
+)
+#: 15 000 r/min, a force that acts at once.
+EXCITED: Changes = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, **force(60.0)}
 
 #: name, changes, words of the message, why there is no answer.
 REFUSALS: tuple[tuple[str, Changes, str, str], ...] = (

@@ -5,39 +5,24 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import ClassVar
-
-import attrs
 
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
 
-@attrs.frozen
-class StabilityReport:
-    """stability.json and stability.md."""
+def write(result: Tables, folder: Path) -> list[Path]:
+    """stability.json and stability.md of the tables of ``raceway stability --json``; the folder is made when it is missing.
 
-    name: ClassVar[str] = "stability"
-
-    def write(self, result: Tables, folder: Path) -> list[Path]:
-        """Write the files.
-
-        Parameters
-        ----------
-        result : the tables of ``raceway stability --json``
-        folder : path, made when it is missing
-
-        Raises
-        ------
-        RacewayError
-            The folder cannot be written.
-        """
-        folder = Path(folder)
-        text = json.dumps(result, indent=1, allow_nan=False) + "\n"
-        return [
-            write_whole(text.encode(), folder / "stability.json"),
-            write_whole(page(result).encode(), folder / "stability.md"),
-        ]
+    Raises
+    ------
+    RacewayError
+        The folder cannot be written.
+    """
+    text = json.dumps(result, indent=1, allow_nan=False) + "\n"
+    return [
+        write_whole(text.encode(), Path(folder) / "stability.json"),
+        write_whole(page(result).encode(), Path(folder) / "stability.md"),
+    ]
 
 
 def page(result: Tables) -> str:
@@ -47,7 +32,8 @@ def page(result: Tables) -> str:
     lines = [f"# {result['title']}", ""]
     lines.append(
         f"{len(rows) - len(bad)} of {len(rows)} rows as expected, {result['cases']} cases, {result['seconds']:.0f} s on "
-        f"{result['processes']} processes ({result['reused']} cases kept from before)."
+        f"{result['processes']} processes ({result['reused']} cases kept from before); "
+        f"{result['left_out']} cases not asked for."
     )
     lines += ["", "## Failed", "", *_table(bad)] if bad else []
     for name in dict.fromkeys(row["case"] for row in rows):

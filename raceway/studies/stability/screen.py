@@ -10,12 +10,12 @@ from raceway.commands.screen import Words, micro, rows_table, written
 from raceway.storage.tables import ReadTables
 
 
-def stability_screen(content: ReadTables, every: bool, files: Sequence[str]) -> RenderableType:
+def stability_screen(content: ReadTables, every_row: bool, files: Sequence[str]) -> RenderableType:
     """A line for each case, or for each row; what is not as expected in full."""
     rows = content["rows"]
     bad = [row for row in rows if row["verdict"] == "failed"]
     parts: list[RenderableType] = [Words(content["title"], "bold")]
-    parts.append(rows_table(list(map(_row, rows)) if every else _cases(rows)))
+    parts.append(rows_table(list(map(_row, rows)) if every_row else _cases(rows)))
     for row in bad:
         told = ", ".join(cell for name, cell in _row(row).items() if cell and name != "verdict")
         parts.append(Words(f"failed: {told}. {row['note'] or row['reason']}", "red"))
@@ -24,6 +24,8 @@ def stability_screen(content: ReadTables, every: bool, files: Sequence[str]) -> 
     parts.append(
         Words(f"{good} of {len(rows)} rows as expected, {content['cases']} cases{kept}, {content['seconds']:.0f} s")
     )
+    if content["left_out"] and not every_row:
+        parts.append(Words(f"left out: {content['left_out']} cases that take longer; --all runs them"))
     return Group(*parts, *written(files))
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import attrs
 import numpy as np
 
-from raceway.framework.registry import Entry, Registry
+from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -44,18 +44,12 @@ UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.
 def transient(registry: Registry) -> list[str]:
     """Names of the integrators that march through time with inertia."""
     entries = [entry for entry in registry.all() if entry.kind == "integrator"]
-    return [entry.name for entry in entries if is_transient(entry)]
+    return [entry.name for entry in entries if entry.plugin.inertial and not entry.plugin.steady]
 
 
-def is_transient(entry: Entry) -> bool:
-    plugin: type[Integrator] = entry.plugin
-    return plugin.inertial and not plugin.steady
-
-
-def pair_laws(registry: Registry) -> list[str]:
-    """Names of the laws that rigid bodies can use, without memory: they have a stored energy."""
-    entries = [entry for entry in registry.all() if entry.kind == "contact_law"]
-    return [e.name for e in entries if "resultant" in e.plugin.discretisations]
+def laws_with(registry: Registry, *wanted: str) -> list[str]:
+    """Names of the laws that know these discretisations."""
+    return [e.name for e in registry.all() if e.kind == "contact_law" and set(wanted) <= set(e.plugin.discretisations)]
 
 
 def with_law(name: str, registry: Registry) -> Tables:
@@ -78,6 +72,29 @@ def scene_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Sce
         owner = changed if not table else changed[table]
         owner.pop(last, None)
     return scene_from_dict(changed, registry)
+
+
+def model_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Model:
+    """The bearing of such a scene."""
+    from raceway.bodies.model import build_model
+
+    return build_model(scene := scene_at(tables, changes, registry), make_plan(scene))
+
+
+def method_of(name: str, registry: Registry, tolerance: float | None = None) -> Integrator:
+    """An integrator; an implicit one with another tolerance of its steps."""
+    method: Any = registry.find("integrator", name).plugin()
+    if tolerance is None or "tolerance" not in {field.name for field in attrs.fields(type(method))}:
+        return cast("Integrator", method)
+    return cast("Integrator", attrs.evolve(method, tolerance=tolerance))
+
+
+def mass_at(place: float, speed: float = 0.0, acceleration: float = 0.0) -> Motion:
+    """The motion of one mass on one contact, along x."""
+    from raceway.core.stepping.record import Motion
+
+    x = np.eye(5)[0]
+    return Motion(place * x, speed * x, acceleration * x, np.zeros((1, 2)), np.zeros((1, 2)))
 
 
 @attrs.frozen(eq=False)
@@ -111,16 +128,15 @@ class Still:
         return size * abs(self.equilibrium.displacement[0]) * weight * self.system.free
 
 
-def still(scene: Scene) -> Still:
+def still(tables: ReadTables, changes: ReadTables, registry: Registry) -> Still:
     """The bearing of a scene, in equilibrium, nothing exciting it."""
-    from raceway.bodies.model import build_model
     from raceway.core.excitations.harmonic import no_force
     from raceway.core.ring.surrogate import surrogate
     from raceway.pipeline.settle import settle
 
-    model = build_model(scene, make_plan(scene))
+    model = model_at(tables, changes, registry)
     equilibrium = settle(model)
     system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
     damping = system.evaluate(equilibrium.displacement, ball=equilibrium.ball).damping
     limit = system.damped_time_step(equilibrium.stiffness_rows_held, damping)
-    return Still(model, system, equilibrium, limit, scene.contact.law.dissipative)
+    return Still(model, system, equilibrium, limit, model.scene.contact.law.dissipative)
