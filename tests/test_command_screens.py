@@ -50,7 +50,6 @@ COMMANDS = {
     "verify, all": ("verify", "--only", "harris-table-6.1", "--all"),
     "precision": ("precision", MINIMAL, "--vary", "integrator.steps_per_turn=45,90", "--repeats", "1", "--out", "OUT"),
     "stability": ("stability", "--only", "chatter", "--processes", "0", "--out", "OUT"),
-    "stability, all": ("stability", "--only", "chatter", "--processes", "0", "--all", "--out", "OUT"),
     "sweep": ("sweep", "STATIC", *SPEEDS, "--out", "STORE"),
     "plot": ("plot", "STORE", "--value", "stiffness:y,y"),
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),

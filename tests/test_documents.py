@@ -57,7 +57,7 @@ NOT_RUN = {
 BY_EVIDENCE = {
     "raceway study article": "article",
     "raceway study article --bodies rigid --friction 0": "article",
-    "raceway stability": "stability",
+    "raceway stability --all": "stability",
     "python -m benchmarks.against_calculix --json": "elastic",
     "raceway run benchmarks/b7206_elastic_60k.toml": "elastic",
 }

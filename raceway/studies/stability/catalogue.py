@@ -143,7 +143,7 @@ def _points(base: Changes, registry: Registry) -> Iterator[Case]:
             if registry.find("integrator", name).plugin.implicit:
                 yield case("a turn", "surface:turn", turn, shown, integrator=name)
             else:
-                told = {"words": "through too many steps", "reason": "a step takes a tenth of a second"}
+                told: dict[str, Any] = {"words": "through too many steps", "reason": "a step takes a tenth of a second"}
                 yield case("a turn", "scenes:refusal", {**turn, "integrator.kind": name}, shown, **told)
 
 

@@ -80,7 +80,8 @@ def _begun(tables: Tables, changes: Tables, registry: Registry) -> tuple[Any, Mo
     """Elastic bodies at rest, as a force meets them."""
     model = model_at(tables, changes, registry)
     still = settle(model)
-    return model.system, at_rest(model.system, still.displacement, still.ball, False), still
+    system: Any = model.system
+    return system, at_rest(system, still.displacement, still.ball, False), still
 
 
 def motion(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:

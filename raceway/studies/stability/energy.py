@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -197,7 +197,8 @@ def chatter(
     k = float(at_rest.evaluate(q, ball=np.zeros((1, 2))).stiffness[0, 0])
     system = impact_system(mass, law, params, load=load, damping=2.0 * 0.2 * sqrt(k * mass))
     dt = step * 2.0 * pi * sqrt(mass / k)
-    method = attrs.evolve(method_of(integrator, registry), **options)
+    method: Any = method_of(integrator, registry)
+    method = attrs.evolve(method, **options)
     found = []
     for height in _HEIGHTS:
         start = mass_at(-height * q[0], 0.0, load / mass)
