@@ -40,7 +40,7 @@ ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
 evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
 	$(BIN)/python -m benchmarks.night
 
-mutants: $(VENV)/.all ## deliberate faults of one line, and whether the tests catch them: half an hour
+mutants: $(VENV)/.all ## deliberate faults of one line, and whether the tests catch them: an hour
 	$(BIN)/python -m benchmarks.mutants
 
 # The package is installed in place, so only a change of pyproject.toml installs anything again.

@@ -5,6 +5,5 @@ and what the fault does.  ``make mutants`` puts each into a copy of the sources 
 
 faults      the table
 trial       a fault in a copy of the sources, and its tests
-kept        verdicts on disk
 kernels     compiled kernels that a fault leaves as they are
 """

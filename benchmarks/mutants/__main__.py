@@ -1,16 +1,16 @@
 """``python -m benchmarks.mutants [WORD...]``: try the faults whose file or effect holds one of the words, all without words.
 
-Exit code 1 when a fault survives, or when its tests fail without it.
+Two at a time, each in a copy of its own.  Exit code 1 when a fault survives, or when its tests fail without it.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
-from benchmarks.mutants.faults import chosen
-from benchmarks.mutants.kept import tried
-from benchmarks.mutants.trial import Verdict
+from benchmarks.mutants.faults import Fault, chosen
+from benchmarks.mutants.trial import QUICK, Verdict, copied
 
 
 def main(words: list[str]) -> int:
@@ -21,24 +21,43 @@ def main(words: list[str]) -> int:
         "words", nargs="*", metavar="WORD", help="try the faults whose file or effect holds it; all without words"
     )
     parser.add_argument("--list", action="store_true", help="only show the faults")
+    parser.add_argument("--quick", action="store_true", help=f"with the tests that `make test` runs: {QUICK}")
     asked = parser.parse_args(words)
     faults = chosen(asked.words)
     if asked.list:
         for fault in faults:
             print(f"{fault.file}: {fault.does} ({', '.join(fault.tests)})")
         return 0
-    failing, verdicts = tried(faults, _show)
-    if failing:
-        print(f"fails without any fault: {failing}")
-        return 1
-    survived = sum(not verdict.caught for verdict in verdicts)
-    print(f"{len(faults) - survived} of {len(faults)} caught")
+    with ThreadPoolExecutor() as pool:
+        parts = list(pool.map(lambda part: tried(part, asked.quick), (faults[::2], faults[1::2])))
+    survived = [verdict for part in parts for verdict in part if not verdict.caught]
+    for verdict in survived:
+        _show(verdict)
+    print(f"{len(faults) - len(survived)} of {len(faults)} caught")
     return 1 if survived else 0
+
+
+def tried(faults: list[Fault], quick: bool) -> list[Verdict]:
+    """Verdicts on faults, put into a copy of the sources one after another; shown as they come.
+
+    Raises
+    ------
+    SystemExit
+        A test fails without any fault.
+    """
+    verdicts = []
+    with copied() as copy:
+        if failing := copy.unharmed(faults, quick):
+            sys.exit(f"fails without any fault: {failing}")
+        for fault in faults:
+            verdicts.append(copy.trial(fault, quick))
+            _show(verdicts[-1])
+    return verdicts
 
 
 def _show(verdict: Verdict) -> None:
     word, fault = "caught  " if verdict.caught else "SURVIVED", verdict.fault
-    print(f"{word} {fault.file}: {fault.does} ({verdict.how}; {verdict.seconds:.0f} CPU-s)", flush=True)
+    print(f"{word} {fault.file}: {fault.does} ({verdict.how})", flush=True)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -33,7 +32,9 @@ COPIED = (
     "Makefile",
     "conftest.py",
 )
-_FAILED = 1
+#: What `make test` runs.
+QUICK = "not slow and not night and not release and not ross"
+_FAILED, _NONE_LEFT = 1, 5
 
 
 @attrs.frozen
@@ -44,13 +45,11 @@ class Verdict:
     ----------
     caught : a test failed, or ran beyond the limit
     how : the first test that failed, or what went wrong otherwise
-    seconds : processor time of the trial
     """
 
     fault: Fault
     caught: bool
     how: str
-    seconds: float
 
 
 @attrs.frozen
@@ -65,9 +64,19 @@ class Copy:
     place: Path
     good: Path
 
-    def pytest(self, tests: list[str], cache: Path, limit: float | None = LIMIT_S) -> tuple[int, str]:
+    def pytest(self, tests: list[str], cache: Path, quick: bool, limit: float | None = LIMIT_S) -> tuple[int, str]:
         """Exit code of pytest (-1: beyond the limit) and its output."""
-        command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "-x",
+            "-p",
+            "no:cacheprovider",
+            *(["-m", QUICK] if quick else []),
+            *tests,
+        ]
         try:
             done = subprocess.run(
                 command, cwd=self.place, env=self.environment(cache), capture_output=True, text=True, timeout=limit
@@ -80,17 +89,16 @@ class Copy:
         """What the tests run under: these sources, this cache."""
         return {**os.environ, "PYTHONPATH": str(self.place), "RACEWAY_CACHE_DIR": str(cache)}
 
-    def unharmed(self, faults: list[Fault]) -> str:
+    def unharmed(self, faults: list[Fault], quick: bool = False) -> str:
         """What fails of the faults' tests without any fault; empty when all pass, as they must."""
         tests = sorted({test for fault in faults for test in fault.tests})
         if not tests:
             return ""
-        code, output = self.pytest(tests, self.good, limit=None)
-        return "" if code == 0 else _first_failure(output) or output[-300:]
+        code, output = self.pytest(tests, self.good, quick, limit=None)
+        return "" if code in (0, _NONE_LEFT) else _first_failure(output) or output[-300:]
 
-    def trial(self, fault: Fault) -> Verdict:
+    def trial(self, fault: Fault, quick: bool = False) -> Verdict:
         """Put a fault in, run its tests, take it out."""
-        start = processor_seconds()
         path = self.place / fault.file
         good, before = path.read_text(encoding="utf-8"), path.stat()
         path.write_text(fault.put(good), encoding="utf-8")
@@ -101,12 +109,11 @@ class Copy:
                     carry_over(self.good, self.place, fault.file, self.environment(cache))
                 else:  # another key would mean other kernels
                     cache = self.good
-                code, output = self.pytest(list(fault.tests), cache)
+                code, output = self.pytest(list(fault.tests), cache, quick)
         finally:
             path.write_text(good, encoding="utf-8")
             os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))  # compiled files tell by the time what is theirs
-        caught, how = _judged(code, output)
-        return Verdict(fault, caught, how, processor_seconds() - start)
+        return Verdict(fault, *_judged(code, output))
 
 
 @contextmanager
@@ -124,17 +131,13 @@ def copied() -> Iterator[Copy]:
         yield Copy(place, place.parent / "cache")
 
 
-def processor_seconds() -> float:
-    """Processor time of all child processes so far [s]."""
-    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return spent.ru_utime + spent.ru_stime
-
-
 def _judged(code: int, output: str) -> tuple[bool, str]:
     if code == -1:
         return True, "beyond the limit of time"
     if code == _FAILED:
         return True, _first_failure(output) or "a test failed"
+    if code == _NONE_LEFT:
+        return False, "no test of this tier"
     return False, "survived" if code == 0 else f"pytest ends with {code}: {output[-200:]}"
 
 
