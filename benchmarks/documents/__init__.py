@@ -7,7 +7,7 @@ and examples/k_over_speed.py (here).
 commands  docs/command_line.md: the help of every command
 versions  the table of docs/versions.md, from pyproject.toml
 drawing   docs/pictures/parameters.svg: what the keys of [bearing] mean
-promises  docs/pictures/stability.svg, leaving_out.svg: from their reports
+promises  docs/pictures/stability.svg: from its report
 """
 
 from __future__ import annotations
@@ -34,7 +34,6 @@ COMMANDS = ROOT / "docs" / "command_line.md"
 VERSIONS = ROOT / "docs" / "versions.md"
 DRAWING = ROOT / "docs" / "pictures" / "parameters.svg"
 STABILITY = ROOT / "docs" / "pictures" / "stability.svg"
-LEAVING_OUT = ROOT / "docs" / "pictures" / "leaving_out.svg"
 SHOWN = ROOT / "examples" / "minimal.toml"
 EXAMPLE = ROOT / "examples" / "k_over_speed.py"
 _SCENE = re.compile(r"(<!-- scene -->\n```toml\n)(.*?)(```\n<!-- /scene -->)", re.DOTALL)

@@ -17,7 +17,6 @@ def main() -> None:
     drawing.draw(documents.DRAWING)
     reports = _files.read()
     promises.draw_stability(reports["stability"], documents.STABILITY)
-    promises.draw_leaving_out(reports["leave_out"], documents.LEAVING_OUT)
 
 
 if __name__ == "__main__":

@@ -1,37 +1,14 @@
-"""Pictures of the pages on stability and on what is left out, drawn from their reports."""
+"""Picture of the page on stability, drawn from its report."""
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 _GOOD, _BAD, _WITHOUT, _LIMIT = "#2f6f9f", "#b3261e", "#c9d3dd", "#1f2933"
 _SETTINGS = {"svg.hashsalt": "raceway", "svg.fonttype": "path", "font.size": 9.5, "font.family": "DejaVu Sans"}
-_SAVED = re.compile(r"difference ([\d.e+-]+); ([\d.e+]+) ms instead of ([\d.e+]+)")
-
-
-def draw_leaving_out(report: dict[str, Any], path: Path) -> None:
-    """The time of a run with and without each part that the plan leaves out."""
-    rows = [(row["quantity"].removeprefix("left out: "), _SAVED.match(str(row["value"]))) for row in report["rows"]]
-    found = [(name, float(match[2]), float(match[3])) for name, match in rows if match is not None]
-    found.sort(key=lambda one: one[2] / one[1])
-    names, left_out, kept = zip(*found, strict=True)
-    with _figure((9.0, 5.2), path) as figure:
-        axes, places = figure.add_subplot(), np.arange(len(names))
-        axes.barh(places, kept, color=_WITHOUT, label="with the part")
-        axes.barh(places, left_out, color=_GOOD, height=0.5, label="without, as the plan decides")
-        axes.set(xscale="log", xlabel="time of the scene [ms]")
-        axes.set_yticks(places, names)
-        for place, quick, slow in zip(places, left_out, kept, strict=True):
-            axes.annotate(f"{slow / quick:.3g}x", (max(quick, slow), place), (4, 0), textcoords="offset points", va="center")
-        axes.legend(frameon=False, loc="lower right")
-        axes.margins(x=0.12)
-        figure.suptitle("Parts that a scene does not need: what leaving them out saves", fontsize=11)
 
 
 def draw_stability(report: dict[str, Any], path: Path) -> None:

@@ -33,15 +33,6 @@ CHOSEN = {
             "extreme scenes without an answer, of 2900",
         ),
     ),
-    "promise_precision": (
-        ("precision", "solve time for K within 1 % [ms]", "time to solve for K within 1 % [ms]"),
-        ("precision", "solve time for K within 0.01 % [ms]", "within 0.01 % [ms]"),
-        (
-            "precision",
-            "bound of the reference over the error of the best transient row",
-            "bound of the reference, over the smallest error that is held against it",
-        ),
-    ),
     "promise_stability": (
         ("stability", "rows that are not as expected", "expectations that are not met"),
         (
@@ -54,10 +45,6 @@ CHOSEN = {
             "energy's trend in a million steps, newmark, hertz, all contacts stay closed",
             "trend of the energy in a million undamped steps",
         ),
-    ),
-    "promise_leaving_out": (
-        ("leave_out", "rules with a measured saving", "rules whose saving was measured"),
-        ("leave_out", "planning, the kind of bodies that takes longest [ms]", "time to plan a scene [ms]"),
     ),
 }
 

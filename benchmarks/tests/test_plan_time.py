@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.plan_time import LEAST, MOST, SCENE, SCENES
 from raceway import load_scene
 from raceway.planning import machine
 from raceway.planning.plan import make_plan
 from validation.command_line import ARTICLE
+from validation.plan_time import LEAST, MOST, SCENE, SCENES
 
-#: Processor times [s] of whole runs on the reference machine, as `python -m benchmarks.plan_time` measured them: what a test can
+#: Processor times [s] of whole runs on the reference machine, as report cost measures them: what a test can
 #: hold a prediction against without a clock.  All but start-up, 1.2 s, is what the predictions tell apart.
 MEASURED_S = {
     "rigid, friction, 60 turns": 2.04,

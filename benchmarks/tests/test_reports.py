@@ -96,8 +96,8 @@ def test_rows_without_a_limit_are_counted_apart():
 
 
 def test_unknown_report_is_exit_code_2(capsys):
-    assert main(["precison"]) == 2
-    assert "precision" in capsys.readouterr().err
+    assert main(["nothing"]) == 2
+    assert "no report is called nothing; there are" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", sorted(REPORTS))

@@ -1,7 +1,7 @@
 """Predicted time of a run of compiled rings, from measured times of its parts.
 
 Constants are seconds of processor time of the reference machine of ``raceway.planning.machine``, with all that a run does
-for its error beside its answer: `python -m benchmarks.plan_time` holds whole runs against them.
+for its error beside its answer: tests/evidence/test_cost.py holds whole runs against them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Predicted against measured time of whole runs: ``python -m benchmarks.plan_time``.
+"""Predicted against measured time of whole runs.
 
 Each scene runs in a process of its own, which times the machine before and after: what other programs take of a core meets
 both.  Times are processor times, the least of some repeats; kernels are compiled, and compliances made, in a run before.
@@ -91,15 +91,3 @@ def compare(changes: tuple[str, ...], repeats: int = 3) -> Time:
             if found[-1].holds:
                 break
     return min(found, key=lambda time: max(time.ratio, 1.0 / time.ratio))
-
-
-def main() -> int:
-    found = {name: compare(changes) for name, changes in SCENES.items()}
-    for name, time in found.items():
-        mark = "" if time.holds else "  beyond a factor of 2"
-        print(f"{name:40s} predicted {time.predicted:6.2f} s, measured {time.measured:6.2f} s, ratio {time.ratio:.2f}{mark}")
-    return 0 if all(time.holds for time in found.values()) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,4 +1,4 @@
-"""What leaving out saves: ``python -m benchmarks.leave_out [--json] [RULE...]``.
+"""What leaving out saves.
 
 A row for each rule of the plan: a scene that does not need a part, run as planned and with the part forced in; the answers'
 difference, processor time and memory of both.  Times are the least of some repeats, in this process with warm kernels;
@@ -422,33 +422,3 @@ def planning() -> float:
             times.append(time.process_time() - begun)
         worst = max(worst, min(times))
     return worst
-
-
-def main(words: list[str]) -> int:
-    as_json = "--json" in words
-    names = [word for word in words if word != "--json"] or list(RULES)
-    unknown = [name for name in names if name not in RULES]
-    if unknown:
-        print(f"no rule is called {', '.join(unknown)}; there are {', '.join(RULES)}", file=sys.stderr)
-        return 2
-    found = [RULES[name]() for name in names]
-    if as_json:
-        print(
-            json.dumps(
-                {"planning_s": planning(), "rows": [{**attrs.asdict(rule), "saves": rule.saves} for rule in found]}, indent=1
-            )
-        )
-        return 0 if all(rule.holds for rule in found) else 1
-    print(f"{'left out':58s} {'difference':>10s} {'cpu ms':>8s} {'forced':>8s} {'MiB':>7s} {'forced':>7s}")
-    for rule in found:
-        mark = "  does not hold" if not rule.holds else "" if rule.saves else "  no saving above the noise"
-        print(
-            f"{rule.rule[:58]:58s} {rule.difference:10.1e} {1e3 * rule.cpu_s:8.2f} {1e3 * rule.cpu_forced_s:8.2f} "
-            f"{rule.bytes / 2**20:7.2f} {rule.bytes_forced / 2**20:7.2f}{mark}"
-        )
-    print(f"planning {1e3 * planning():.2f} ms")
-    return 0 if all(rule.holds for rule in found) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
