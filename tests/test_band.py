@@ -29,6 +29,7 @@ def test_indices_of_ishigamis_function_are_the_closed_form():
     assert np.abs(found.total[0] - np.array([v1 + v13, v2, v13]) / whole).max() < 0.02
 
 
+@pytest.mark.slow  # the first-order band of a result, below, is held against samples, too
 def test_a_small_band_is_that_of_the_derivatives():
     """Even numbers in p +- h through a nearly straight line: 95 % of them lie within 0.95 h."""
     given = {"load.axial": "±0.1 %", "bearing.contact_angle_deg": "± 0.01 deg"}

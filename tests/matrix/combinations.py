@@ -9,6 +9,7 @@ from itertools import product
 from typing import Any
 
 import attrs
+import pytest
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
@@ -59,6 +60,17 @@ def only_planned(cell: Combination) -> bool:
     plain, options = (PLAIN, 1) if cell.discretisation == "nodal" else (RESULTANT, 2)
     changed = sum(a != b for a, b in zip(attrs.astuple(cell), attrs.astuple(plain), strict=True))
     return changed > options
+
+
+def crossed() -> list[Any]:
+    """Parameters ``excitation, integrator``; quick are those with the plain one of either, but no run-up: thousands of steps."""
+    pairs = product(*(default_registry().names(kind) for kind in ("excitation", "integrator")))
+    return [
+        pytest.param(
+            *pair, marks=() if "run_up" not in pair and {"bidirectional", "newmark"} & {*pair} else pytest.mark.slow
+        )
+        for pair in pairs
+    ]
 
 
 class NeedsOptions(Exception):

@@ -18,7 +18,7 @@ from raceway.errors import SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.run import run
 from raceway.scene.reading import scene_from_dict
-from tests.matrix.combinations import options
+from tests.matrix.combinations import crossed, options
 
 PACKAGE = Path(__file__).parents[2] / "examples" / "third_party_law"
 OIL = {"kind": "film", "oil": "VG 32", "temperature_c": 40.0}
@@ -31,13 +31,6 @@ CONTACTS = {
     "hunt_crossley": {"kind": "hunt_crossley", "dissipation": 0.5},
     "hunt_crossley with memory": {"kind": "hunt_crossley", "restitution": 0.9},
 }
-
-
-#: A run-up takes thousands of steps.
-EXCITATIONS = [
-    pytest.param(name, marks=pytest.mark.slow) if name == "run_up" else name
-    for name in default_registry().names("excitation")
-]
 
 
 @cache
@@ -77,8 +70,7 @@ def outcome(contact, excitation, integrator, bodies="rigid", steps=120):
 
 
 @pytest.mark.parametrize("contact", [name for name in CONTACTS if name != DRY])
-@pytest.mark.parametrize("integrator", default_registry().names("integrator"))
-@pytest.mark.parametrize("excitation", EXCITATIONS)
+@pytest.mark.parametrize(("excitation", "integrator"), crossed())
 def test_laws_with_speed_rate_and_reach(excitation, integrator, contact):
     method = default_registry().find("integrator", integrator).plugin
     found, dry = outcome(contact, excitation, integrator), outcome(DRY, excitation, integrator)

@@ -17,7 +17,7 @@ from raceway.errors import SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.run import run
 from raceway.scene.reading import scene_from_dict
-from tests.matrix.combinations import options
+from tests.matrix.combinations import crossed, options
 
 PACKAGE = Path(__file__).parents[2] / "examples" / "cylindrical_rollers"
 
@@ -56,8 +56,7 @@ def outcome(excitation, integrator):
         return refused
 
 
-@pytest.mark.parametrize("integrator", default_registry().names("integrator"))
-@pytest.mark.parametrize("excitation", default_registry().names("excitation"))
+@pytest.mark.parametrize(("excitation", "integrator"), crossed())
 def test_rollers_run_with_every_integrator_and_excitation(excitation, integrator):
     found = outcome(excitation, integrator)
     if isinstance(found, SceneError):

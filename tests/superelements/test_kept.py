@@ -56,8 +56,8 @@ def test_another_load_reads_the_same(monkeypatch):
     "change",
     [
         {"bodies": {"formulation": "full"}},
-        {"mesh": {"azimuth_cells": 30}},
-        {"bearing": {"preset": "B7206C", "ball_count": 3, "rings": {"young": 205e9}}},
+        pytest.param({"mesh": {"azimuth_cells": 30}}, marks=pytest.mark.slow),
+        pytest.param({"bearing": {"preset": "B7206C", "ball_count": 3, "rings": {"young": 205e9}}}, marks=pytest.mark.slow),
         {"supports": {"outer_seat": 1e13}},
     ],
     ids=["formulation", "mesh", "material", "seat"],

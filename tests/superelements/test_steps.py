@@ -131,7 +131,11 @@ def test_superelements_of_a_step_are_kept_and_know_its_mass():
 
 
 @pytest.mark.parametrize(
-    "method", [Newmark(tolerance=1e-10), GeneralizedAlpha(tolerance=1e-10)], ids=["newmark", "generalized_alpha"]
+    "method",
+    [
+        pytest.param(Newmark(tolerance=1e-10), id="newmark"),
+        pytest.param(GeneralizedAlpha(tolerance=1e-10), id="generalized_alpha", marks=pytest.mark.slow),
+    ],
 )
 @pytest.mark.parametrize(
     "tables", [pytest.param({}, id="fastened"), pytest.param(SEATS, id="on beds", marks=pytest.mark.slow)]
