@@ -22,22 +22,9 @@ from raceway.studies.article.files import write
 from raceway.studies.article.panel import Picture
 from raceway.studies.article.report import page
 from raceway.studies.follow.instead import FAILED, Instead
+from tests.test_commands import SMALL
 from validation.article_study import curves, row, study
 from validation.command_line import EXAMPLES, invoke
-
-#: Far from resonances, so that a run takes milliseconds.
-SMALL = (
-    "--bodies",
-    "rigid",
-    "--speeds",
-    "11000,13000,15000",
-    "--axial",
-    "1600,1800,2000",
-    "--friction",
-    "0",
-    "--processes",
-    "0",
-)
 
 
 @pytest.fixture
@@ -69,7 +56,7 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
     stop.__qualname__ = real.__qualname__  # a part of the key of finished work
     monkeypatch.setattr(driver, "curve", stop)
     monkeypatch.setattr(causes, "curve", stop)
-    words = ("study", "article", *SMALL, "--no-pictures", "--out", tmp_path)
+    words = ("study", "article", *SMALL, "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert "go on" in found.stderr or "goes on from there" in found.stderr
@@ -107,7 +94,7 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
 
     monkeypatch.setattr(runs, "run", fail)
     monkeypatch.setattr(runs, "from_rest", lambda _, speed, turns: Instead(speed, FAILED, turns, why="nothing"))
-    found = invoke("study", "article", *SMALL, "--no-pictures", "--out", tmp_path)
+    found = invoke("study", "article", *SMALL, "--out", tmp_path)
     assert found.exit_code == 1
     assert "every run failed" in found.stderr and "no motion was found" in found.stderr
     verdicts = json.loads((tmp_path / "article.json").read_text(encoding="utf-8"))["verdicts"]
@@ -235,13 +222,6 @@ def test_a_scene_without_unbalance_is_refused(tmp_path):
     scene.write_text(re.sub(r"\[excitation\].*?(?=\n\[)", "", text, flags=re.DOTALL), encoding="utf-8")
     found = invoke("study", "article", scene, "--out", tmp_path / "out")
     assert found.exit_code == 2 and "`excitation.unbalance`" in found.stderr
-
-
-def test_help_teaches_with_an_example_and_an_unknown_study_is_named():
-    assert "Example:" in invoke("study", "article", "--help").stdout
-    found = invoke("study", "artcle")
-    assert found.exit_code == 2 and "did you mean 'article'" in found.stderr
-    assert "article" in invoke("study", "--help").stdout
 
 
 @pytest.mark.slow

@@ -138,26 +138,6 @@ def test_a_near_miss_of_a_file_is_offered(tmp_path):
     assert "did you mean 'scene.toml'?" in invoke("check", tmp_path / "scnee.toml").stderr
 
 
-COMMANDS = {
-    "no scene": (["run"], "Missing argument 'SCENE'"),
-    "unknown command": (["rnu"], "did you mean 'run'?"),
-    "unknown option": (["run", ARTICLE, "--jsn"], "--json"),
-    "no axis": (["compare", ARTICLE], "--vary"),
-    "axis without a key": (["compare", ARTICLE, "--vary", "nothing"], "nothing"),
-    "unknown case": (["verify", "--only", "nobody"], "no such case"),
-}
-
-
-@pytest.mark.parametrize("case", COMMANDS)
-def test_a_slip_on_the_command_line(case):
-    words, message = COMMANDS[case]
-    found = invoke(*words)
-    assert found.exit_code == 2
-    assert message in found.stderr
-    content = json.loads(invoke(*words, "--json").stdout)
-    assert message in content["errors"][0]["message"] or message in str(content["errors"][0]["path"])
-
-
 def test_a_plug_in_that_fails_to_import(tmp_path):
     install(tmp_path, "broken", "import nothing_of_that_name")
     found = raceway("run", MINIMAL, "--out", tmp_path / "out", PYTHONPATH=tmp_path)

@@ -18,7 +18,6 @@ import pytest
 import raceway as rw
 from raceway.framework.doors import door
 from raceway.storage.files import write_whole
-from validation.command_line import invoke
 
 SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 
@@ -164,22 +163,6 @@ def test_text_of_a_store_that_is_no_text_is_told(tmp_path):
     file.write_bytes(file.read_bytes().replace(b"CREATE TABLE points", b"CREATE TABLE poi\xff\xfe\xff"))
     with pytest.raises(rw.RacewayError, match="points.sqlite"):
         rw.export_ross(store)
-
-
-@pytest.mark.slow
-def test_a_band_of_a_plugin_in_a_file_works_in_processes(tmp_path):
-    words = [
-        "--plugin",
-        "tests/cubic_law.py",
-        "--set",
-        "contact.kind=cubic",
-        "--tolerance",
-        "load.axial=±10 %",
-        "--count",
-        "4",
-    ]
-    found = invoke("band", "examples/minimal.toml", *words, "--processes", "2", "--out", tmp_path, "--no-pictures", "--json")
-    assert found.exit_code == 0, found.output
 
 
 def test_soft_balls_are_told_by_their_key():

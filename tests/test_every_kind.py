@@ -171,24 +171,6 @@ def test_json_holds_the_result_and_the_reports_failure(tmp_path):
     assert found.returncode == 2 and "report 'bad'" in content["errors"][0]["message"] and content["equilibrium"]
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (
-            ("run", MINIMAL, "--report", "picturs"),
-            "no report named 'picturs' (did you mean 'pictures'?); installed: pictures",
-        ),
-        (("mesh", MINIMAL, "--format", "vtk"), "installed: abaqus, msh, vtu"),
-        (("sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"), "installed: dask, joblib, processes, serial"),
-        (("check", MINIMAL, "--set", "mesh.kind=moon"), "installed: file, gmsh, structured"),
-    ],
-)
-def test_an_unknown_name_lists_what_is_installed_and_computes_nothing(tmp_path, words, told):
-    out = () if words[0] == "check" else ("--out", tmp_path / "out")
-    assert told in one_message(raceway(*words, *out))
-    assert not (tmp_path / "out").exists()
-
-
 def test_two_reports_of_one_name_are_refused_before_the_run(tmp_path):
     twins = [report(tmp_path, "twin", "return []", cls) for cls in ("One", "Two")]
     words = [word for path in twins for word in ("--plugin", path)]

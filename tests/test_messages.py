@@ -73,3 +73,10 @@ def test_check_foresees_what_a_run_would_fail_at(case):
     found = invoke("check", ARTICLE, *(word for change in changes for word in ("--set", change)))
     assert found.exit_code == 2, found.output
     assert words in found.stderr
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    command = f"{sys.executable} -m raceway schema | head -n 1"
+    found = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False)
+    assert found.stdout == "{\n"
+    assert found.stderr == ""

@@ -43,12 +43,3 @@ def test_it_is_written_once(tmp_path, monkeypatch):
     found = invoke("new-scene", "B7206E", "--out", "inside/other.toml", "--json")
     assert json.loads(found.stdout) == {"file": "inside/other.toml"}
     assert invoke("check", "inside/other.toml").exit_code == 0
-
-
-def test_an_unknown_bearing_is_told_with_the_nearest(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    found = invoke("new-scene", "b7206c")
-    assert found.exit_code == 2 and "the nearest: B7206C, " in found.stderr
-    file = invoke("new-scene", "mine.toml")
-    assert file.exit_code == 2 and "raceway new-scene B7206C --out mine.toml" in file.stderr
-    assert list(tmp_path.iterdir()) == []

@@ -88,30 +88,3 @@ def test_export_says_what_is_lost_and_for_which_ross(store, tmp_path, monkeypatc
     found = invoke("export", store, "--ross", tmp_path / "b.json", "--at", "load.axial=600")
     assert "for ROSS 2" in found.stdout
     assert "frequency" in json.loads((tmp_path / "b.json").read_text())["BearingElement_B7206C"]
-
-
-@pytest.mark.parametrize(
-    "words, told",
-    [
-        (("export", "STORE", "--ross", "b.toml"), "choose one with --at load.axial=600"),
-        (("export", "STORE", "--ross", "b.xls", "--at", "load.axial=600"), "ROSS reads .toml and .json"),
-        (("export", "STORE", "--ross", "b.toml", "--at", "load.axial=7"), "is not in the sweep, which has 600, 1000"),
-        (("export", "nowhere", "--ross", "b.toml"), "`nowhere` is no store of a sweep"),
-        (("plot", "STORE", "--value", "nothing"), "is not a quantity of this sweep"),
-        (("plot", "STORE", "--at", "load.axial"), "must have the form KEY=VALUE"),
-        (("plot", "STORE", "--out", "a.pdf"), "pictures are written as .png or .svg"),
-    ],
-)
-def test_mistakes_end_with_one_message_and_exit_code_2(store, words, told):
-    found = invoke(*(store if word == "STORE" else word for word in words))
-    assert found.exit_code == 2
-    assert told in " ".join(found.stderr.split())
-
-
-def test_a_missing_extra_is_named(store, monkeypatch):
-    from raceway.commands import inputs as command_inputs
-
-    monkeypatch.setattr(command_inputs, "find_spec", lambda _name: None)
-    found = invoke("plot", store)
-    assert found.exit_code == 2
-    assert "pip install '.[pictures]'" in found.stderr

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 
 import numpy as np
@@ -17,7 +16,7 @@ from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.contacts import contacts
 from raceway.studies.view.labels import LETTERS, ball_labels
 from raceway.studies.view.states import at_peak, at_rest
-from validation.command_line import ARTICLE, MINIMAL, invoke, raceway
+from validation.command_line import MINIMAL, raceway
 from validation.tables import b7206c
 
 STATIC = ("--set", "load.radial=[600.0, 0.0]")
@@ -181,17 +180,3 @@ def test_the_command_draws_without_a_display_and_in_silence(tmp_path):
     assert names == ["bearing.png", "bearing-peak.png", "contacts.png", "ball-loads.png", "orbit.png"]
     assert all((tmp_path / name).stat().st_size > 20_000 for name in names)  # empty pictures are smaller
     assert content["largest_ball_load_n"] > 300.0 and 1e9 < content["largest_pressure_pa"] < 4e9
-
-
-@pytest.mark.parametrize("package", ["pyvista", "matplotlib"])
-def test_a_missing_package_is_named_before_anything_is_computed(tmp_path, monkeypatch, package):
-    real = importlib.util.find_spec
-    monkeypatch.setattr("raceway.studies.view.front.find_spec", lambda name: None if name == package else real(name))
-    found = invoke("view", MINIMAL, "--out", tmp_path)
-    assert found.exit_code == 2
-    assert package in found.output and "pip install '.[view]'" in found.output
-
-
-def test_help_teaches():
-    text = invoke("view", "--help").output
-    assert f"raceway view {ARTICLE.rpartition('/')[2]}".replace("view ", "view examples/") in text
