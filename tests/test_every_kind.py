@@ -10,7 +10,7 @@ from raceway.errors import PluginError
 from raceway.framework.contracts import KINDS
 from raceway.framework.registry import Registry
 from tests.test_docs import FILES
-from validation.command_line import MINIMAL, install, raceway
+from validation.command_line import MINIMAL, install, invoke, raceway
 
 ROOT = Path(__file__).parents[1]
 #: The plug-ins of docs/plugins.md by kind.
@@ -74,7 +74,7 @@ def report(folder, name, body, cls="Own"):
 
 def one_message(found, code=2):
     """The one error of a command that failed."""
-    assert found.returncode == code, found.stdout + found.stderr
+    assert found.exit_code == code, found.stdout + found.stderr
     assert found.stderr.count("error: ") == 1 and "Traceback" not in found.stderr, found.stderr
     return " ".join(found.stderr.split())
 
@@ -113,12 +113,12 @@ def test_meshes_are_made_written_and_read_by_foreign_plugins(files, tmp_path):
     made, again = tmp_path / "made", tmp_path / "again"
     plugins = files("mesher", "format")
     words = ("--set", "mesh.kind=one_cell", "--format", "json_mesh")
-    found = raceway("mesh", MINIMAL, *plugins, *words, "--out", made, "--json")
-    assert found.returncode == 0, found.stderr
+    found = invoke("mesh", MINIMAL, *plugins, *words, "--out", made, "--json")
+    assert found.exit_code == 0, found.stderr
     assert json.loads(found.stdout)["files"] == [str(made / "inner_ring.mesh.json")]
     words = ("--set", "mesh.kind=file", "--set", f"mesh.inner_ring={made / 'inner_ring.mesh.json'}", "--format", "json_mesh")
-    found = raceway("mesh", MINIMAL, *plugins, *words, "--out", again)
-    assert found.returncode == 0, found.stderr
+    found = invoke("mesh", MINIMAL, *plugins, *words, "--out", again)
+    assert found.exit_code == 0, found.stderr
     first, second = (json.loads((folder / "inner_ring.mesh.json").read_text()) for folder in (made, again))
     assert sorted(first["points"]) == sorted(second["points"])  # the mesher renumbers
 
@@ -130,8 +130,8 @@ def test_a_run_has_foreign_bodies(files, tmp_path):
         "[load]\nradial = [1500.0, 100.0]\n[kinematics]\nball_inertia = false\n"
         '[excitation]\nkind = "bidirectional"\nspeed_rpm = 9000\nunbalance = 1e-4\n[integrator]\nturns = 2\n'
     )
-    found = raceway("run", scene, *files("bodies"), "--out", tmp_path / "out")
-    assert found.returncode == 0, found.stderr
+    found = invoke("run", scene, *files("bodies"), "--out", tmp_path / "out")
+    assert found.exit_code == 0, found.stderr
     result = json.loads((tmp_path / "out" / "result.json").read_text())
     used = {p["kind"]: p["distribution"] for p in result["environment"]["plugins"]}
     assert used["bodies"] == OWN["bodies"] and result["scene"]["bodies"]["kind"] == "radial_balls"
@@ -139,12 +139,11 @@ def test_a_run_has_foreign_bodies(files, tmp_path):
 
 def test_a_sweep_uses_a_foreign_executor(files, tmp_path):
     words = ("--executor", "backwards", "--workers", 2, "--grid", "load.axial=900,1000", "--set", "identifier.kind=tangent")
-    found = raceway("sweep", MINIMAL, *files("executor"), *words, "--out", tmp_path / "store", "--json")
-    assert found.returncode == 0, found.stderr
+    found = invoke("sweep", MINIMAL, *files("executor"), *words, "--out", tmp_path / "store", "--json")
+    assert found.exit_code == 0, found.stderr
     assert json.loads(found.stdout)["states"]["done"] == 2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "words"),
     [("raise ValueError('no ink')", "write() raises ValueError: no ink"), ("raise RacewayError('no ink')", "no ink"),
@@ -156,7 +155,7 @@ def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body,
     good = report(tmp_path, "good", "p = Path(folder) / 'good.txt'; p.write_text('good'); return [p]", "Good")
     out = tmp_path / "out"
     names = ("--plugin", bad, "--plugin", good, "--report", "bad", "--report", "good")
-    found = raceway("run", MINIMAL, "--set", "identifier.kind=tangent", *names, "--out", out)
+    found = invoke("run", MINIMAL, "--set", "identifier.kind=tangent", *names, "--out", out)
     told = one_message(found)
     assert f"report 'bad' of {bad.name}: {words}" in told and "The result is saved" in told
     assert json.loads((out / "result.json").read_text())["title"] and (out / "good.txt").read_text() == "good"
@@ -166,15 +165,15 @@ def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body,
 def test_json_holds_the_result_and_the_reports_failure(tmp_path):
     bad = report(tmp_path, "bad", "print('a word'); raise ValueError('no ink')")
     words = ("--set", "identifier.kind=tangent", "--plugin", bad, "--report", "bad", "--json")
-    found = raceway("run", MINIMAL, *words, "--out", tmp_path / "out")
+    found = invoke("run", MINIMAL, *words, "--out", tmp_path / "out")
     content = json.loads(found.stdout)
-    assert found.returncode == 2 and "report 'bad'" in content["errors"][0]["message"] and content["equilibrium"]
+    assert found.exit_code == 2 and "report 'bad'" in content["errors"][0]["message"] and content["equilibrium"]
 
 
 def test_two_reports_of_one_name_are_refused_before_the_run(tmp_path):
     twins = [report(tmp_path, "twin", "return []", cls) for cls in ("One", "Two")]
     words = [word for path in twins for word in ("--plugin", path)]
-    found = raceway("run", MINIMAL, *words, "--report", "twin", "--out", tmp_path / "out")
+    found = invoke("run", MINIMAL, *words, "--report", "twin", "--out", tmp_path / "out")
     told = one_message(found)
     assert "two plug-ins claim the name 'twin' as report: `One` of twin_One.py and `Two` of twin_Two.py" in told
     assert not (tmp_path / "out").exists()
