@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._kept import kept
-from benchmarks.evidence.condensed_calibrated import quantities, tables
+from validation.condensed import quantities, tables
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.pipeline.run import run
@@ -24,7 +24,7 @@ from raceway.scene.reading import scene_from_dict
 TITLE = "Elastic bodies: coarse meshes with the calibrated law"
 COMMAND = "python -m benchmarks.evidence elastic_resultants"
 #: Largest element [m], elements around a ring, along a semi-axis; and how near condensed bodies of fine meshes it must come, which
-#: themselves are below 0.1 % from their limit (report condensed_calibrated, elements of 0.5 mm).
+#: themselves are below 0.1 % from their limit (report ``condensed``, elements of 0.5 mm).
 MESHES = {"3.2 mm, 24 around": ((3.2e-3, 24, 0), 0.015), "3.2 mm, 36 around": ((3.2e-3, 36, 0), 0.01),
           "1.6 mm, 60 around": ((1.6e-3, 60, 0), 0.01), "3.2 mm, refined at the contacts": ((3.2e-3, 36, 1), 0.005)}  # fmt: skip
 COARSEST = MESHES["3.2 mm, 24 around"][0]

@@ -82,7 +82,7 @@ def test_resultants_on_beds_are_near_pressures_at_surface_points(tilt):
 
 @pytest.mark.parametrize(("size", "along", "tolerance"), [(2e-3, 1, 0.02), (1e-3, 1, 0.02), (0.5e-3, 2, 0.01)])
 def test_mesh_independence(size, along, tolerance):
-    """Against elements of 0.25 mm, which are 0.1 % from their limit (report condensed_calibrated)."""
+    """Against elements of 0.25 mm, which are 0.1 % from their limit (report ``condensed``)."""
     fine, coarse = (
         np.diag(settled(mesh={"kind": "structured", "element_size": h, "nodes_per_semi_axis": n})[1].stiffness)
         for h, n in ((0.25e-3, 4), (size, along))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import attrs
 import numpy as np
 
 from raceway import load_scene
@@ -16,9 +19,15 @@ STEEL = (212e9, 0.29, 7810.0)
 RADIUS = 0.5 * BEARING.ball_diameter
 
 
+def shape(inner: bool, land: float | None = None) -> Any:
+    """Of a ring of the preset, with another radius of its shoulders [m]."""
+    found = ring_shape(BEARING, inner)
+    return found if land is None else attrs.evolve(found, land=land)
+
+
 def ring(inner: bool, step: float = 0.5e-3, size: float = 3e-3) -> Profile:
     window = (np.deg2rad(0.0), np.deg2rad(30.0))
-    return graded_profile(ring_shape(BEARING, inner), step, window, 3.0 * step, size)
+    return graded_profile(shape(inner), step, window, 3.0 * step, size)
 
 
 def ball(step: float = 0.5e-3) -> Profile:
