@@ -35,13 +35,6 @@ def quick(monkeypatch):
     monkeypatch.setattr(trends, "TRENDS", dict(list(trends.TRENDS.items())[-1:]))
 
 
-def _page(k, monkeypatch) -> str:
-    """The page of invented numbers; figures are drawn, but not turned into pictures."""
-    monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
-    found = study(curves(k, ("rigid", "condensed")))
-    return page(found, pictures(found), "raceway study article").html()
-
-
 @pytest.mark.slow
 def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, quick, monkeypatch):
     done = []
@@ -101,8 +94,21 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
     assert {one["kind"] for one in verdicts} == {"failed", "cannot be tested"}
 
 
-def test_page_of_invented_numbers_has_every_figure_and_every_verdict(monkeypatch):
-    text = _page(lambda s, load, w: 1e8 * (1.0 + 0.2 * w * (s.tilt == "free")), monkeypatch)
+@pytest.fixture
+def made_page(monkeypatch):
+    """The page of invented numbers; its figures are drawn by ``test_figures``."""
+    monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
+    monkeypatch.setattr(Picture, "figure", lambda self: None)
+
+    def make(k, bodies=("rigid", "condensed"), **options) -> str:
+        found = study(curves(k, bodies, **options))
+        return page(found, pictures(found), "raceway study article").html()
+
+    return make
+
+
+def test_page_of_invented_numbers_has_every_figure_and_every_verdict(made_page):
+    text = made_page(lambda s, load, w: 1e8 * (1.0 + 0.2 * w * (s.tilt == "free")))
     images = re.findall(r'<img alt="([^"]+)"', text)
     assert len(images) == 70 and all(len(words) > 40 for words in images)
     for number in ("1a", "1b", "2", "3a", "3b", "4", "5a", "5b", "5c", "5d", "5e", "6a", "6b", "6c", "6"):
@@ -110,22 +116,17 @@ def test_page_of_invented_numbers_has_every_figure_and_every_verdict(monkeypatch
     assert not re.search(r"\bnan\b", re.sub(r'src="[^"]+"', "", text))
 
 
-def test_the_page_says_friction_first(monkeypatch):
+def test_the_page_says_friction_first_or_that_there_is_none(made_page):
     def k(setting, load, w):
         return 1e8 * (1.0 + {"none": 0.076, "standing": -0.055, "orbiting": 0.027}[setting.friction] * w)
 
-    text = _page(k, monkeypatch)
+    text = made_page(k)
     assert "Friction, 0.03 in the article, comes first" in text
     assert text.index("comes first") < text.index("Under the rotating force") < text.index("Rule")
     for words in ("+7.60\u202f% without friction", "−5.50\u202f% friction on balls that stand", "+2.70\u202f%"):
         assert words in text, words
     assert text.index("what sticks changes all the time") < text.index("how each was decided")
-
-
-def test_without_friction_the_page_says_that(monkeypatch):
-    monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
-    found = study(curves(lambda s, load, w: 1e8 * (1.0 + w), friction=0.0))
-    text = page(found, pictures(found), "raceway study article --friction 0").html()
+    text = made_page(lambda s, load, w: 1e8 * (1.0 + w), ("rigid",), friction=0.0)
     assert "All runs are without friction" in text and "Every verdict is without it" in text
 
 
@@ -154,8 +155,8 @@ def test_friction_on_balls_that_stand_reverses_the_trend_at_a_heavy_load_with_ti
         assert sense * (last["k"] / first["k"] - 1.0) > 0.02, friction
 
 
-def test_page_says_what_failed(monkeypatch):
-    text = _page(lambda s, load, w: None if s.tilt == "locked" else (1e8,) if w == 1.0 else 1e8, monkeypatch)
+def test_page_says_what_failed(made_page):
+    text = made_page(lambda s, load, w: None if s.tilt == "locked" else (1e8,) if w == 1.0 else 1e8)
     assert "no motion was found" in text and "the steady motion is unstable" in text
     assert '<span class="tone failed">failed</span>' in text
 
