@@ -1,0 +1,243 @@
+"""Derivatives by the keys of a scene against differences of complete runs, bands over tolerances, and what both cost."""
+
+from __future__ import annotations
+
+from unittest import mock
+
+import numpy as np
+import pytest
+
+from raceway import build_model, load_scene, make_plan, scene_from_dict
+from raceway.core.jit import working_processor_time
+from raceway.core.ring.system import System
+from raceway.errors import ConvergenceError, SceneError
+from raceway.pipeline.gradient.differences import WEIGHTS, derivative
+from raceway.pipeline.gradient.motion import SteadyOrbit
+from raceway.pipeline.gradient.statics import static_gradient
+from raceway.pipeline.gradient.variation import NoDerivative
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.scene.catalogue import single_presets
+from raceway.scene.continuous import continuous_keys, with_number
+from raceway.studies.band.front import band
+from raceway.studies.band.sobol import design, indices
+from raceway.studies.sensitivities.front import sensitivities
+from raceway.studies.sensitivities.sensitivities import sensitivities_of
+
+pytestmark = pytest.mark.night
+
+QUANTITIES = ("displacement", "stiffness", "contact_force")
+#: Keys of orbits, each of which takes four searches.
+OF_ORBITS = {
+    "load.axial", "bearing.contact_angle_deg", "rotor.mass", "contact.damping", "excitation.speed_rpm", "excitation.force"
+}  # fmt: skip
+LIMIT = {"at_most": 1e-6, "basis": "own other method"}
+
+
+def drawn(rng, bodies):
+    axial = float(10.0 ** rng.uniform(1.7, 3.3))
+    names = sorted(single_presets())
+    tables = {
+        "bearing": {"preset": "B7206C" if bodies == "condensed" else str(rng.choice(names))},
+        "bodies": {"kind": bodies},
+        "load": {"axial": axial, "radial": (axial * rng.uniform(-0.3, 0.3, 2)).tolist()},
+        "supports": {"tilt": ["locked", "free", float(10.0 ** rng.uniform(3.0, 6.0))][rng.integers(3)]},
+        "mounting": {"inner_temperature": float(rng.uniform(1.0, 15.0))},
+    }
+    if rng.random() < 0.5:
+        tables["kinematics"] = {"spin_speed_rpm": float(rng.uniform(500.0, 12000.0))}
+        if bodies == "rigid" and rng.random() < 0.3:
+            tables["kinematics"]["gyroscopic"] = "outer_race"
+    if rng.random() < 0.3:
+        tables["bearing"] |= {"arrangement": str(rng.choice(["DB", "DF"])), "preload": axial, "row_distance": 0.016}
+        tables["load"]["axial"] = 0.3 * axial
+    return tables
+
+
+def model_of(scene):
+    return build_model(scene, make_plan(scene))
+
+
+def scales(model):
+    """By which entries are divided: lengths and tilts, forces and moments made alike by the arm of the tilts."""
+    arm = np.array([1.0, 1.0, 1.0, 1.0 / model.system.arm, 1.0 / model.system.arm])
+    return {"displacement": arm, "stiffness": 1.0 / np.outer(arm, arm), "contact_force": 1.0}
+
+
+def moved(model, key, step):
+    """Models at the places of a difference."""
+    return {k: build_model(with_number(model.scene, key.path, key.value + k * step), model.plan) for k in WEIGHTS}
+
+
+def static_errors(model, still, key):
+    """Error and size of each quantity, both times the number at the key; None where the key changes nothing or an edge is near.
+
+    The steps of the runs are 1.5 times those of the gradients, so that both do not share their error.
+    """
+    try:
+        gradient = static_gradient(model, still, key) if key.value else None
+    except NoDerivative:
+        return None
+    if gradient is None or gradient.step == 0.0 or gradient.remark:
+        return None
+    step = 1.5 * gradient.step
+    runs, result = {k: settle(one) for k, one in moved(model, key, step).items()}, {}
+    for what, scale in scales(model).items():
+        other = derivative({k: getattr(one, what) for k, one in runs.items()}, step)
+        parts = getattr(gradient, what) - other, other
+        result[what] = [float(np.abs(part * key.value / scale).max()) for part in parts]
+    return result
+
+
+@pytest.mark.parametrize(("bodies", "wanted", "seed"), [("rigid", 150, 23), ("condensed", 50, 24)])
+def test_static_derivatives(claim, bodies, wanted, seed):
+    rng, worst, count, scenes = np.random.default_rng(seed), 0.0, 0, 0
+    while scenes < wanted:
+        try:
+            model = model_of(scene_from_dict(drawn(rng, bodies)))
+            still = settle(model)
+        except (ConvergenceError, SceneError):
+            continue
+        errors = [one for one in (static_errors(model, still, key) for key in continuous_keys(model.scene)) if one]
+        scenes, count = scenes + 1, count + len(errors)
+        for what in QUANTITIES:
+            off, size = (max(one[what][k] for one in errors) for k in (0, 1))
+            worst = max(worst, off / size)
+    quantity = (
+        f"displacement, stiffness, contact forces of {wanted} random scenes, {bodies} bodies: largest error over the largest"
+    )
+    claim(
+        quantity, worst, **LIMIT, source=f"differences of complete runs, {count} derivatives by keys that change something"
+    )
+
+
+def test_derivatives_of_steady_orbits(claim):
+    rng, worst, count, scenes, wanted = np.random.default_rng(25), 0.0, 0, 0, 12
+    while scenes < wanted:
+        tables = drawn(rng, "rigid")
+        tables.pop("kinematics", None)
+        tables |= {
+            "rotor": {"mass": 2.0, "transverse_inertia": 1e-3},
+            "contact": {"damping": float(rng.choice([1e-3, 50.0]))},
+            "excitation": {
+                "kind": str(rng.choice(["unidirectional", "bidirectional"])),
+                "speed_rpm": float(rng.uniform(3000.0, 12000.0)),
+                "amplitude": "constant",
+                "force": 0.1 * tables["load"]["axial"],
+            },
+            "integrator": {"kind": "periodic", "tolerance": 1e-10},
+        }
+        try:
+            model = model_of(scene_from_dict(tables))
+            still = settle(model)
+            orbit = SteadyOrbit.of(model, still)
+            keys = [key for key in continuous_keys(model.scene) if key.path in OF_ORBITS and key.value]
+            errors = [one for one in (orbit_error(model, still, orbit, key) for key in keys) if one]
+        except (ConvergenceError, SceneError):
+            continue
+        worst = max(worst, max(off for off, _ in errors) / max(size for _, size in errors))
+        scenes, count = scenes + 1, count + len(errors)
+    quantity = f"Z of the steady orbit of {wanted} random scenes: largest error over the largest"
+    claim(quantity, worst, **LIMIT, source=f"differences of complete searches to 1e-10, {count} derivatives")
+
+
+def orbit_error(model, still, orbit, key):
+    try:
+        gradient = orbit.gradient(static_gradient(model, still, key))
+    except NoDerivative:
+        return None
+    step, lines = 1e-4 * abs(key.value), {}
+    for k, one in moved(model, key, step).items():
+        there = SteadyOrbit.of(one, settle(one))
+        real, damping, _, _ = there.line
+        lines[k] = np.array([real, damping * there.solved.problem.speed])
+    other = complex(*derivative(lines, step))
+    return abs(gradient.dynamic_stiffness - other) * abs(key.value), abs(other) * abs(key.value)
+
+
+def seconds(work) -> float:
+    begun = working_processor_time()
+    work()
+    return working_processor_time() - begun
+
+
+def further_equilibria(scene) -> int:
+    """Solutions for an equilibrium that derivatives by all keys begin."""
+    model = model_of(scene)
+    still, begun, plain = settle(model), 0, System.settle
+
+    def counted(self, *given, **options):
+        nonlocal begun
+        begun += 1
+        return plain(self, *given, **options)
+
+    with mock.patch.object(System, "settle", counted):
+        sensitivities_of(model, still, continuous_keys(scene))
+    return begun
+
+
+def test_cost_of_all_derivatives(claim):
+    article = load_scene("examples/b7206.toml")
+    static = [load_scene(f"examples/{name}.toml").with_(excitation=None) for name in ("b7206", "b7206_condensed")]
+    orbits = [
+        article.with_(excitation={"kind": kind}, integrator={"kind": "periodic"})
+        for kind in ("unidirectional", "bidirectional")
+    ]
+    misses = "building two models a key and evaluating contacts from Python"
+    for words, scenes in (("static, rigid and condensed bodies", static), ("steady orbit of a turn and of a pitch", orbits)):
+        ratios = []
+        for scene in scenes:
+            sensitivities(scene)  # kernels and meshes
+            complete = min(seconds(lambda scene=scene: run(scene)) for _ in range(3))
+            ratios.append(min(sensitivities(scene).gradients_s for _ in range(3)) / complete)
+        quantity, source = f"all derivatives over the run, processor time, {words}: larger", "no dearer than a second run"
+        claim(quantity, max(ratios), at_most=2.0, basis="regression", source=source, misses=misses)
+    most = max(map(further_equilibria, static))
+    source = "implicit function theorem: nothing is solved again"
+    claim(
+        "further equilibria for all derivatives, rigid and condensed bodies",
+        most,
+        at_most=1,
+        basis="closed form",
+        source=source,
+    )
+
+
+def test_sobol_indices(claim):
+    """As `raceway band` makes and reads its samples."""
+    a, b = 7.0, 0.1
+    x = np.pi * (2.0 * design(4096, 3, seed=1) - 1.0)
+    own = indices((np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0]))[None], 3)
+    v1, v2, v13 = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2, a**2 / 8.0, b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    exact = np.array([[v1, v2, 0.0], [v1 + v13, v2, v13]]) / (v1 + v2 + v13)
+    error = max(float(np.abs(one[0] - other).max()) for one, other in zip((own.first, own.total), exact, strict=True))
+    quantity = "Ishigami's function, first-order and total indices of 4096 samples: largest error"
+    source = "Ishigami and Homma, ISUMA 1990: sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1; 1 / sqrt(4096)"
+    claim(quantity, error, at_most=0.02, basis="published", source=source)
+
+
+def test_preload_moves_stiffness(claim):
+    off = []
+    for name, wanted in (("7206C", 4.8), ("7206A5", 3.9), ("7206A", 3.5)):
+        scene = {"bearing": {"preset": name, "arrangement": "DB", "preload": 400.0}}
+        share = sensitivities(scene, ["bearing.preload"])["bearing.preload"].influence["kxx"]
+        off.append(abs(10.0 * share - wanted))
+    quantity = "10 % of preload moves kxx of 7206C, 7206A5, 7206A by 4.8, 3.9, 3.5 %: largest distance"
+    source = "numbers of the requirement, which names no preload: DB pairs at 400 N"
+    claim(quantity, max(off), at_most=0.3, unit="percentage points", basis="regression", source=source)
+
+
+@pytest.mark.parametrize(
+    ("words", "orbits", "count", "limit"), [("static", False, 2048, 60.0), ("steady orbit of a pitch", True, 128, 150.0)]
+)
+def test_cost_of_a_band(claim, words, orbits, count, limit):
+    scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}}
+    if orbits:
+        scene |= {"rotor": {"mass": 2.0}, "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4}}
+    given = {"load.axial": "±10 %", "bearing.contact_angle_deg": "±1 deg"}
+    band(scene, given, count=2)  # kernels
+    begun = working_processor_time()
+    samples = band(scene, given, count=count).samples
+    spent = (working_processor_time() - begun) * 10_000 / samples
+    quantity = f"10 000 samples of a band, {words}: processor time"
+    claim(quantity, spent, at_most=limit, unit="s", basis="regression", source="a minute or two, as one waits")
