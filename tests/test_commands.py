@@ -7,6 +7,7 @@ import io
 import json
 import os
 import re
+import sys
 import time
 from collections import Counter
 from importlib.util import find_spec
@@ -294,6 +295,7 @@ def test_a_screen_fits_80_columns_and_breaks_no_number(name, seen, folder):
         assert all(line in found.stdout.replace("\u00a0", " ") for line in narrow if line.strip())
     text = " ".join(found.stdout.split())
     assert not [words for words in TOLD.get(name, ()) if words not in text]
+    assert name != "view" or {"bearing.png", "bearing-peak.png", "orbit.png"} < {*whole_files(place(name, folder))}
     assert whole_files(place(name, folder)) or "--out" not in COMMANDS[name]
 
 
@@ -465,6 +467,7 @@ MISSING = {
     "run": ("raceway.commands.inputs.find_spec", "matplotlib", "pictures"),
     "plot": ("raceway.commands.inputs.find_spec", "matplotlib", "pictures"),
     "mesh": ("raceway.studies.view.mesh_command.find_spec", "meshio", "mesh"),
+    "mesh --picture": (None, "pyvista", "view"),  # files come first
     "view": ("raceway.studies.view.front.find_spec", "pyvista", "view"),
     "view, matplotlib": ("raceway.studies.view.front.find_spec", "matplotlib", "view"),
 }
@@ -473,12 +476,16 @@ MISSING = {
 @pytest.mark.parametrize("case", MISSING)
 def test_a_missing_package_is_named_with_its_extra_before_anything_is_computed(case, seen, folder, tmp_path, monkeypatch):
     where, package, extra = MISSING[case]
-    given = words(case.partition(",")[0], seen, folder, tmp_path / "out")
-    monkeypatch.setattr(where, lambda name: None if name == package else find_spec(name))
-    monkeypatch.setattr(ProgressBar, "__call__", lambda *_: pytest.fail("computed"))
+    name, *more = case.partition(",")[0].split(" --")
+    given = [*words(name, seen, folder, tmp_path / "out"), *(f"--{option}" for option in more)]
+    if where is None:
+        monkeypatch.setitem(sys.modules, package, None)
+    else:
+        monkeypatch.setattr(where, lambda name: None if name == package else find_spec(name))
+        monkeypatch.setattr(ProgressBar, "__call__", lambda *_: pytest.fail("computed"))
     found = invoke(*given)
     assert found.exit_code == 2 and package in found.stderr and f"pip install '.[{extra}]'" in found.stderr
-    assert not (tmp_path / "out").exists()
+    assert not (tmp_path / "out").exists() or where is None
 
 
 def test_pictures_of_a_command_leave_pyplot_alone():

@@ -1,8 +1,9 @@
-"""raceway view: what the surfaces measure, what is drawn of a state, the command."""
+"""raceway view and mesh: what the surfaces measure, what is drawn of a state, numbers and files of meshes, refusals."""
 
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,13 +11,15 @@ import pytest
 from raceway import scene_from_dict
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.pipeline.run import run
+from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.reports.pictures import ball_loads
 from raceway.studies.view import surfaces
 from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.contacts import contacts
 from raceway.studies.view.labels import LETTERS, ball_labels
 from raceway.studies.view.states import at_peak, at_rest
-from validation.command_line import MINIMAL, raceway
+from tests.test_commands import COARSE
+from validation.command_line import EXAMPLES, MINIMAL, invoke, python
 from validation.tables import b7206c
 
 
@@ -157,13 +160,109 @@ def test_rings_without_dimensions_are_drawn_and_told(result):
     assert len(drawn.rings()) == 4
 
 
+DRAWING = """
+from raceway.cli import main
+for words in {commands!r}:
+    try:
+        main(words)
+    except SystemExit as end:
+        assert end.code == 0, end.code
+"""
+
+
 @pytest.mark.needs("pyvista")
-def test_the_command_draws_without_a_display_and_in_silence(tmp_path):
-    words = ("view", MINIMAL, "--set", "load.radial=[600.0, 0.0]", "--out", tmp_path, "--json")
-    found = raceway(*words, DISPLAY="", PYTHONWARNINGS="always")
+def test_pictures_are_drawn_without_a_display_and_in_silence(tmp_path):
+    """Of the view at a static load, and of a mesh; ``test_commands`` looks at those of a motion."""
+    (tmp_path / "scene.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\nradial = [600.0, 0.0]\n')
+    view, mesh = (["--out", str(tmp_path / name), "--json"] for name in ("view", "mesh"))
+    commands = [["view", str(tmp_path / "scene.toml"), *view], ["mesh", MINIMAL, *COARSE, "--picture", *mesh]]
+    found = python("-c", DRAWING.format(commands=commands), DISPLAY="", PYTHONWARNINGS="always")
     assert found.returncode == 0 and found.stderr == "", found.stderr
-    content = json.loads(found.stdout)
-    names = [path.rpartition("/")[2] for path in content["files"]]
-    assert names == ["bearing.png", "bearing-peak.png", "contacts.png", "ball-loads.png", "orbit.png"]
-    assert all((tmp_path / name).stat().st_size > 20_000 for name in names)  # empty pictures are smaller
+    content, _ = json.JSONDecoder().raw_decode(found.stdout)
+    assert [Path(path).name for path in content["files"]] == ["bearing.png", "contacts.png", "ball-loads.png"]
+    for path in [*tmp_path.glob("*/*.png")]:
+        assert path.stat().st_size > 20_000, "empty pictures are smaller"
+    assert (tmp_path / "mesh" / "mesh.png").is_file()
     assert content["largest_ball_load_n"] > 300.0 and 1e9 < content["largest_pressure_pa"] < 4e9
+
+
+def test_mesh_counts_and_files(tmp_path):
+    found = invoke("mesh", MINIMAL, *COARSE, "--out", tmp_path, "--json")
+    assert found.exit_code == 0, found.output
+    content = json.loads(found.stdout)
+    assert content["elements"] == sum(body["elements"] for body in content["bodies"].values()) > 1000
+    assert content["scaled_jacobian"]["min"] > 0.2
+    assert len(content["bodies"]) == 14
+    assert [Path(name).name for name in content["files"]] == ["inner_ring.vtu", "outer_ring.vtu", "balls.vtu"]
+    assert sorted(map(str, tmp_path.iterdir())) == sorted(content["files"])
+    balls = Vtu().read(tmp_path / "balls.vtu")
+    sizes = {name: body["elements"] for name, body in content["bodies"].items() if name.startswith("ball")}
+    assert len(balls.cells) == sum(sizes.values()) and set(sizes) <= set(balls.node_sets)
+
+
+def test_a_format_goes_by_the_ending_of_its_files_too(tmp_path):
+    for word in ("inp", "abaqus"):
+        found = invoke("mesh", MINIMAL, *COARSE, "--format", word, "--out", tmp_path / word)
+        assert found.exit_code == 0, found.output
+    assert (tmp_path / "inp/balls.inp").read_bytes() == (tmp_path / "abaqus/balls.inp").read_bytes()
+
+
+def test_the_axial_load_sets_the_patch(tmp_path):
+    widths = []
+    for axial in (50.0, 5000.0):
+        found = invoke("mesh", MINIMAL, *COARSE, "--set", f"load.axial={axial}", "--out", tmp_path, "--json")
+        widths.append(json.loads(found.stdout)["patch_size_m"]["short"]["min"])
+    # Semi-axes go with the cube root of a ball's load; 100 times the axial load, on a contact angle that grows, is 3 to 4.7.
+    assert 3.0 < widths[1] / widths[0] < 4.7
+
+
+MESHER = '''
+import attrs
+import numpy as np
+from types import SimpleNamespace
+from raceway import hookimpl
+
+@attrs.frozen
+class Wrong:
+    """A mesher of a test."""
+
+    name = "wrong"
+
+    def mesh(self, bearing):
+        corner = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        points = 0.01 * np.array(corner, dtype=float)
+        return {answer}
+
+@hookimpl
+def raceway_meshers():
+    return [Wrong]
+'''
+
+
+FLIPPED = '{"ball_0": SimpleNamespace(points=points, cells=np.array([[4, 5, 6, 7, 0, 1, 2, 3]]))}'
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        ("None", "mesher 'wrong': mesh() returned NoneType; it must be meshes by name"),
+        (FLIPPED, "`ball_0`: 1 of 1 cells are inverted or degenerate"),
+        ('{"ball_0": points}', "mesher 'wrong': body 'ball_0' is no mesh"),
+        ('{"inner_ring": SimpleNamespace(points=1e3 * points, cells=np.arange(8)[None])}', "must return metres"),
+    ],
+)
+def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
+    (tmp_path / "wrong.py").write_text(MESHER.replace("{answer}", answer))
+    given = ("--plugin", tmp_path / "wrong.py", "--set", "mesh.kind=wrong", "--out", tmp_path / "out")
+    found = invoke("mesh", MINIMAL, *given)
+    assert found.exit_code == 2
+    assert words in " ".join(found.output.split())
+
+
+def test_the_documents_mesher_runs(tmp_path):
+    text = (EXAMPLES.parent / "docs" / "plugins.md").read_text(encoding="utf-8")
+    (tmp_path / "one_cell.py").write_text(text.split("# one_cell.py\n")[1].split("```")[0])
+    words = ("mesh", MINIMAL, "--plugin", tmp_path / "one_cell.py", "--set", "mesh.kind=one_cell")
+    found = invoke(*words, "--out", tmp_path / "out", "--json")
+    assert found.exit_code == 0
+    assert json.loads(found.stdout)["elements"] == 1
