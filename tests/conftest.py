@@ -14,10 +14,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.bodies.model import Model
-from raceway.framework.registry import default_registry
+from raceway.testing import Model, b7206c, default_registry
 from tests.figures import outside
-from validation.tables import b7206c
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks

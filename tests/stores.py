@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from validation.tables import b7206c
+from raceway.testing import b7206c
 
 DOFS = ["x", "y", "z", "tilt_y", "tilt_z"]
 MASS = 2.061

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway import scene_from_dict
-from raceway.errors import SceneError
+from raceway import SceneError, scene_from_dict
 from raceway.pipeline.gradient.first_order import limits
 from raceway.scene.tolerance import tolerances_of
 from raceway.studies.band.sobol import design, indices
+from raceway.testing import b7206c
 from validation.command_line import invoke
-from validation.tables import b7206c
 
 LOADED = b7206c(load={"axial": 500.0})
 

@@ -8,9 +8,8 @@ import pytest
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.energy import cumulative, energy_balance
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
-from validation.scenes import model_of, rotating
+from raceway.testing import model_of, settle, simulate
+from validation.scenes import rotating
 
 
 def drift(integrator: str, steps: int, damping: float = 0.0, inertia: bool = False, law: str = "hertz") -> float:

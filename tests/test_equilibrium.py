@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.bodies.model import Model
+from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, SINE
-from raceway.errors import ConvergenceError
-from raceway.pipeline.settle import settle
+from raceway.testing import Model, model_of, settle, settled
 from validation.equilibria import loose, random_scenes
 from validation.reference.ring import Ring
 from validation.reference.statics import equilibrium
-from validation.scenes import imbalance, model_of, settled, static
+from validation.scenes import imbalance, static
 
 
 def twin(model: Model) -> Ring:

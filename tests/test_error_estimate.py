@@ -12,8 +12,8 @@ from raceway.commands.screen.text import number_within
 from raceway.pipeline.error import estimate as error_estimate
 from raceway.pipeline.error.finer_series import more_equilibria
 from raceway.pipeline.error.steady_motion import _at_speed, settles_elsewhere
-from raceway.pipeline.run import run
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
+from raceway.testing import run
 from validation.error_estimate import judge, named, right
 from validation.scenes import rotating
 from validation.series_errors import SERIES, series

@@ -10,7 +10,7 @@ from validation.expected_values import secant
 def test_same_numbers_through_run():
     """The public path: a scene with an excitation and integrator quasi_static gives the mean of the static ones."""
     from raceway import scene_from_dict
-    from raceway.pipeline.run import run
+    from raceway.testing import run
     from validation.scenes import rotating
 
     result = run(scene_from_dict(rotating(1000.0, "locked", 12000.0, False, "quasi_static"))).to_dict()

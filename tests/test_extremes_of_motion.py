@@ -5,12 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.errors import StabilityError
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway import StabilityError, scene_from_dict
+from raceway.testing import b7206c, run, settle, simulate
 
 #: A force that lifts balls off and presses others with many times the preload.
 HEAVY = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 1500.0}

@@ -16,7 +16,6 @@ from matplotlib.text import Text
 import raceway
 from raceway import scene_from_dict
 from raceway.bodies.elastic.subsurface import below_contacts
-from raceway.pipeline.run import run
 from raceway.plugins.reports import pictures
 from raceway.studies.article import figures as article
 from raceway.studies.article import panel
@@ -41,13 +40,13 @@ from raceway.studies.sweep.selection import select
 from raceway.studies.view import contact_stress, contacts
 from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.states import at_rest
+from raceway.testing import b7206c, run
 from tests import test_compare, test_map
 from tests.elastic.test_below_contact import TINY
 from tests.figures import outside
 from tests.rig.test_orders import made as a_record
 from tests.stores import SPEEDS, as_list, made
 from validation import article_study
-from validation.tables import b7206c
 
 LOADS = np.linspace(200.0, 2000.0, 5)
 

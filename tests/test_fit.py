@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.registry import default_registry
+from raceway import ConvergenceError, SceneError, load_scene
 from raceway.scene.continuous import with_number
-from raceway.scene.file import load_scene
 from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
 from raceway.studies.fit.disturbed import aliased, spectrum, tone, uneven
@@ -26,9 +24,9 @@ from raceway.studies.rig.sensors import response, slow_roll_record, white_noise
 from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor
+from raceway.testing import b7206c, default_registry
 from validation.command_line import EXAMPLES, invoke
 from validation.shaker import hammer_record, record, turning_record
-from validation.tables import b7206c
 
 ANGLE = "bearing.contact_angle_deg"
 LOADED = b7206c(load={"axial": 500.0})

@@ -16,8 +16,8 @@ import pytest
 import raceway as rw
 from raceway.framework.shown import LINES, WIDTH, as_html, as_text
 from raceway.scene.given import as_given
+from raceway.testing import b7206c
 from validation.command_line import EXAMPLES, invoke, python
-from validation.tables import b7206c
 
 ROOT = EXAMPLES.parent
 SCENE = EXAMPLES / "b7206.toml"

@@ -5,20 +5,16 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway import scene_from_dict
-from raceway.bodies.model import build_model
-from raceway.errors import SceneError
+from raceway import SceneError, build_model, make_plan, scene_from_dict
 from raceway.pipeline.gradient.differences import derivative
 from raceway.pipeline.gradient.gradients import Gradients
 from raceway.pipeline.gradient.motion import SteadyOrbit
 from raceway.pipeline.gradient.quantities import derivatives, values
 from raceway.pipeline.gradient.statics import static_gradient
 from raceway.pipeline.gradient.variation import NoDerivative
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
 from raceway.scene.continuous import continuous_keys, key_of, with_number
+from raceway.testing import b7206c, settle
 from validation.command_line import invoke
-from validation.tables import b7206c
 
 LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})
 #: Whole runs are solved to 1e-11; a step of 1e-4 leaves 1e-7 of that in a difference.

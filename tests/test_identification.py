@@ -8,9 +8,8 @@ import pytest
 from raceway import scene_from_dict
 from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
 from raceway.core.stepping.record import Motion, Record, Schedule
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from validation.scenes import model_of, rotating
+from raceway.testing import model_of, run, settle
+from validation.scenes import rotating
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi
 FREQUENCY = SPEED / (2.0 * np.pi)

@@ -6,18 +6,16 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import scene_from_dict
+from raceway import StabilityError, scene_from_dict
 from raceway.core.ring.address import by_address
 from raceway.core.ring.start import at_rest
 from raceway.core.schemes.compiled import outer_force
 from raceway.core.schemes.drivers import integrate
 from raceway.core.signatures import Outer
 from raceway.core.stepping.record import Schedule
-from raceway.errors import StabilityError
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
+from raceway.testing import model_of, settle, simulate
 from validation import orders
-from validation.scenes import model_of, rotating
+from validation.scenes import rotating
 
 INTEGRATORS = orders.INTEGRATORS
 

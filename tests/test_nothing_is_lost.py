@@ -7,21 +7,18 @@ import json
 import numpy as np
 import pytest
 
-from raceway import SceneError, build_model, scene_from_dict
+from raceway import ConvergenceError, MeshError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.commands.inputs import slug
 from raceway.core.mesh.hex_mesh import HexMesh
-from raceway.errors import ConvergenceError, MeshError
 from raceway.pipeline.error.estimate import no_error
-from raceway.pipeline.run import run
 from raceway.planning.closed_form import highest_frequency
-from raceway.planning.plan import make_plan
 from raceway.planning.recording import fits, record_bytes, recorded_per_turn
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.meshers.file import File
 from raceway.studies.measured.recording import read_recording
+from raceway.testing import b7206c, run
 from validation.command_line import ARTICLE, MINIMAL, invoke, raceway
 from validation.cubes import block
-from validation.tables import b7206c
 
 HOOK = """
 from raceway import hookimpl

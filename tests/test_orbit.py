@@ -7,12 +7,11 @@ import pytest
 
 from raceway.core.ring.orbit import at_time, differentiation, steady_orbit
 from raceway.core.ring.start import from_orbit
-from raceway.pipeline.settle import settle
 from raceway.pipeline.starting import chosen_start
+from raceway.testing import b7206c, model_of, settle
 from validation.reference.ring import Ring
 from validation.reference.shooting import periodic, swinging
-from validation.scenes import model_of, rig_force, rotating
-from validation.tables import b7206c
+from validation.scenes import rig_force, rotating
 
 
 def test_differentiation_is_exact_for_harmonics():

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from raceway import scene_from_dict
+from raceway import SceneError, scene_from_dict
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import _newton, solve
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
@@ -28,15 +28,13 @@ from raceway.core.ring.address import by_address
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
-from raceway.errors import SceneError
 from raceway.integrators.periodic import Periodic
 from raceway.pipeline.error.steady_motion import steady_record
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
+from raceway.testing import model_of, run, settle
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
 from validation.command_line import ARTICLE, invoke
-from validation.scenes import model_of, rotating
+from validation.scenes import rotating
 from validation.several import heavy
 
 

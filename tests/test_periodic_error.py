@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway import scene_from_dict
+from raceway.testing import b7206c, run
 
 
 def motion(tolerance: float, axial: float):

@@ -12,18 +12,16 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from raceway import ConvergenceError, SceneError, scene_from_dict
 from raceway.commands.screen.result import run_screen
-from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.options import nearest
 from raceway.pipeline.facts import facts
 from raceway.pipeline.plausibility import inertia_warnings
-from raceway.pipeline.run import run
 from raceway.pipeline.simulate import _stride
 from raceway.planning.implausible import implausible
 from raceway.planning.recording import samples_per_turn
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import b7206c, run
 from validation.command_line import EXAMPLES
-from validation.tables import b7206c
 
 EXCITED = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
 

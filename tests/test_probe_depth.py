@@ -7,15 +7,9 @@ import numba
 import numpy as np
 import pytest
 
-from raceway.bodies.model import build_model
+from raceway import LAW, PluginError, build_model, make_plan, scene_from_dict
 from raceway.contact_laws.hertz import Hertz
-from raceway.core.signatures import LAW
-from raceway.errors import PluginError
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway.testing import b7206c, run, settle
 
 
 @numba.njit(LAW)

@@ -8,10 +8,9 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.framework.registry import default_registry
 from raceway.studies.precision.design import make_design
 from raceway.studies.precision.reference import find_reference
-from validation.tables import b7206c
+from raceway.testing import b7206c, default_registry
 
 EXACT = 2.3e8
 MOVING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 100.0}

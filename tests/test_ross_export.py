@@ -11,15 +11,15 @@ import tomllib
 import numpy as np
 import pytest
 
-from raceway.errors import RacewayError, SceneError
+from raceway import RacewayError, SceneError
 from raceway.plugins.executors.serial import Serial
 from raceway.studies.ross.coefficients import coefficients
 from raceway.studies.ross.file import NAMES, ross_file
 from raceway.studies.ross.reading import smoothed, through_points
 from raceway.studies.sweep import grid, prepare, sweep
 from raceway.studies.sweep.selection import select
+from raceway.testing import b7206c
 from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
-from validation.tables import b7206c
 
 SPEED, SPIN, DIRECTION = "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.direction_deg"
 RADIANS = np.pi / 30.0

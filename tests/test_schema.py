@@ -7,11 +7,10 @@ import tomllib
 import pytest
 from jsonschema import Draft202012Validator
 
-from raceway.framework.registry import Registry, default_registry
-from raceway.scene.file import load_scene
+from raceway import load_scene
 from raceway.scene.schema import scene_schema
+from raceway.testing import Registry, b7206c, default_registry
 from validation.command_line import EXAMPLES
-from validation.tables import b7206c
 
 SCHEMA = scene_schema(default_registry())
 CHECK = Draft202012Validator(SCHEMA)

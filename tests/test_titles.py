@@ -6,20 +6,17 @@ import json
 
 import pytest
 
+from raceway import load_scene, scene_from_dict
 from raceway.commands.inputs import slug
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
 from raceway.plugins.reports.pictures import ball_loads
 from raceway.scene.changes import parse_change, titled
-from raceway.scene.file import load_scene
-from raceway.scene.reading import scene_from_dict
 from raceway.studies.many.page import Page
 from raceway.studies.many.row_store import row_key
 from raceway.studies.sweep.selection import select
 from raceway.studies.sweep.store_command import head
+from raceway.testing import b7206c, default_registry, run
 from tests.stores import SPEEDS, made
 from validation.command_line import EXAMPLES, invoke
-from validation.tables import b7206c
 
 SCENE = EXAMPLES / "b7206.toml"
 FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"

@@ -10,13 +10,12 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import raceway as rw
-from raceway.errors import SceneError
-from raceway.framework.registry import default_registry
+from raceway import SceneError
 from raceway.scene.given import plain_tables
 from raceway.scene.schema import scene_schema
 from raceway.scene.units import number_in, unit_of
+from raceway.testing import b7206c, default_registry
 from validation.command_line import ARTICLE, invoke
-from validation.tables import b7206c
 
 #: Unit of the key, text, number: exactly the number that one types in the key's unit.
 SAME = {

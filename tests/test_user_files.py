@@ -12,8 +12,7 @@ import zlib
 import numpy as np
 import pytest
 
-from raceway import scene_from_dict
-from raceway.errors import MeshError, RacewayError, SceneError
+from raceway import MeshError, RacewayError, SceneError, scene_from_dict
 from raceway.framework import sources as plugin_sources
 from raceway.framework.sources import import_file
 from raceway.plugins.formats import _exchange
@@ -28,8 +27,8 @@ from raceway.storage.user_files import memory_for, told
 from raceway.studies.measured.recording import read_recording
 from raceway.studies.sweep import design
 from raceway.studies.sweep.design import point_list
+from raceway.testing import b7206c
 from validation.cubes import block
-from validation.tables import b7206c
 
 BEARING = scene_from_dict(b7206c()).bearing
 

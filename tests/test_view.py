@@ -10,7 +10,6 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.core.mesh.ring_shape import ring_shape
-from raceway.pipeline.run import run
 from raceway.plugins.formats.vtu import Vtu
 from raceway.plugins.reports.pictures import ball_loads
 from raceway.studies.view import surfaces
@@ -18,9 +17,9 @@ from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.contacts import contacts
 from raceway.studies.view.labels import LETTERS, ball_labels
 from raceway.studies.view.states import at_peak, at_rest
+from raceway.testing import b7206c, run
 from tests.test_commands import COARSE
 from validation.command_line import EXAMPLES, MINIMAL, invoke, python
-from validation.tables import b7206c
 
 
 def volume(surface):

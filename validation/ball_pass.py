@@ -6,9 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.bodies.model import Model
-from validation.scenes import model_of
-from validation.tables import b7206c
+from raceway.testing import Model, b7206c, model_of
 
 SPEED = 9000.0
 

@@ -15,8 +15,8 @@ from typing import Any
 
 from raceway.studies.many import work
 from raceway.studies.sweep import Store, Sweep, grid, prepare
+from raceway.testing import b7206c
 from validation.command_line import install
-from validation.tables import b7206c
 
 #: Of the steady orbit: some ten milliseconds a point here; on the workers it sleeps, so that they are killed at work.
 POINTS = 24

@@ -12,12 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from raceway import build_model, make_plan, scene_from_dict
 from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import build_model
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
 from raceway.storage import array_cache
+from raceway.testing import settle
 
 #: Units of displacements and of stiffness in ``quantities``.
 _DISPLACEMENT = {"x": (0, 1e6), "y": (1, 1e6), "tilt_z": (4, 1e3)}

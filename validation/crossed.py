@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from raceway import scene_from_dict
-from raceway.errors import RacewayError
-from raceway.pipeline.run import run
+from raceway import RacewayError, scene_from_dict
+from raceway.testing import run
 
 Tables = dict[str, Any]
 _METHODS = ("newmark", "generalized_alpha", "central_difference", "periodic")

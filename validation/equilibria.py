@@ -15,10 +15,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Model
-from raceway.errors import ConvergenceError
-from raceway.pipeline.settle import settle
-from validation.scenes import imbalance, model_of, random_tables
+from raceway import ConvergenceError
+from raceway.testing import Model, model_of, settle
+from validation.scenes import imbalance, random_tables
 
 #: Residual over the sum of the loads and of the inner races' forces that counts as solved; the program's own tolerance is
 #: 1e-11.  Among the extremes are loads of 1 mN under 20 kN of centrifugal force, of which rounding leaves 1e-15.

@@ -15,9 +15,8 @@ import numpy as np
 from raceway import scene_from_dict
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.signals.identification import stiffness
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from validation.scenes import model_of, rotating
+from raceway.testing import model_of, run, settle
+from validation.scenes import rotating
 
 #: An estimate is right within this factor, or when it and the error are below this size.  The factor is less than the 4 by which
 #: twice as many steps change an error of second order: nobody who chooses steps by the estimate is a halving off.

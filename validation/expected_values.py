@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.scenes import rig_force, settled, static
+from raceway.testing import settled
+from validation.scenes import rig_force, static
 
 #: Axial load [N]: axial displacement [um], contact angle [deg], ball load [N], p inner, outer [MPa], k axial, k radial
 #: with tilt locked, with tilt free [N/um].

@@ -13,10 +13,8 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import raceway as rw
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
-from raceway.planning.plan import make_plan
-from raceway.scene.scene import Scene
+from raceway import Scene, make_plan
+from raceway.testing import settle, simulate
 
 #: B7206C as the scenes here have it.
 BALLS, DIAMETER, PITCH, CONFORMITY, ANGLE = 12, 9.525e-3, 46e-3, 0.522, pi / 12.0

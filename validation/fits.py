@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from raceway import Scene
     from raceway.scene.bearing import Material
-    from raceway.scene.scene import Scene
 
 ALUMINIUM = {"young": 70e9, "poisson": 0.33, "density": 2700.0, "thermal_expansion": 23e-6}
 

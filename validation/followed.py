@@ -11,9 +11,9 @@ from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.direct import directly, highest_order
 from raceway.core.periodic.sampling import displacements
 from raceway.core.ring.system import System
-from raceway.framework.registry import default_registry
 from raceway.studies.follow.front import parameter_of
 from raceway.studies.follow.row import line
+from raceway.testing import default_registry
 from validation.reference.harmonic_balance import harmonic_balance
 from validation.reference.ring import Ring
 from validation.reference.shooting import swinging, trajectory

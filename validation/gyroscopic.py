@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq, root
 
-from raceway.bodies.model import Model
+from raceway.testing import Model
 
 #: Hypothesis -> shares of the moment's tangential forces at the inner and the outer race, in units of M / D.
 SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0)}

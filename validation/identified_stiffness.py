@@ -12,8 +12,8 @@ import attrs
 import numpy as np
 
 from raceway import scene_from_dict
-from raceway.pipeline.run import run
 from raceway.scene.inner_ring import ring_inertia
+from raceway.testing import run
 from validation.reference.ring import Ring
 from validation.reference.shooting import dynamic_stiffness, periodic
 from validation.reference.shooting import rotating as rotating_force

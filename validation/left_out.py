@@ -113,12 +113,9 @@ def compared(
 
 def answers(changes: tuple[str, ...], force: tuple[str, ...] = (), cage: float | None = None) -> Answer:
     """Dynamic stiffness (real, imaginary) of the example, from its scene on, with some parts forced in."""
-    from raceway import load_scene
-    from raceway.bodies.model import build_model
+    from raceway import build_model, load_scene, make_plan
     from raceway.core.ring.kernels.layout import CAGE
-    from raceway.pipeline.settle import settle
-    from raceway.pipeline.simulate import simulate
-    from raceway.planning.plan import make_plan
+    from raceway.testing import settle, simulate
 
     scene = load_scene(SCENE, changes)
     plan = make_plan(scene, force)
@@ -193,14 +190,12 @@ def integration() -> Rule:
 
 
 def history() -> Rule:
-    from raceway import load_scene
-    from raceway.bodies.model import build_model
+    from raceway import build_model, load_scene, make_plan
     from raceway.core.ring.start import at_rest
     from raceway.core.schemes.drivers import integrate
     from raceway.core.stepping.record import Schedule
-    from raceway.pipeline.settle import settle
-    from raceway.planning.plan import make_plan
     from raceway.planning.recording import recorded_per_turn
+    from raceway.testing import settle
 
     per_turn, many = 2880, 50
     scene = load_scene(SCENE, ("integrator.kind=central_difference",))
@@ -291,10 +286,8 @@ def stresses() -> Rule:
 
     Both give the same integral of the stress over each body, sum of x f^T: each checks the other.
     """
-    from raceway import load_scene
-    from raceway.bodies.model import build_model
+    from raceway import build_model, load_scene, make_plan
     from raceway.core.hexahedron.shape import mean_gradients
-    from raceway.planning.plan import make_plan
 
     changes = (
         "bodies.kind=elastic", "contact.discretisation=nodal", "mesh.kind=structured", "mesh.nodes_per_semi_axis=1",
@@ -402,8 +395,7 @@ RULES: dict[str, Callable[[], Rule]] = {
 
 def planning() -> float:
     """Processor time of a plan [s], of the kind of bodies that takes longest."""
-    from raceway import load_scene
-    from raceway.planning.plan import make_plan
+    from raceway import load_scene, make_plan
 
     worst = 0.0
     coarse = ("mesh.nodes_per_semi_axis=1", "mesh.element_size=3.2e-3", "mesh.growth=3.0")

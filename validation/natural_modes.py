@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
+from raceway import ConvergenceError
 from raceway.core.linear.rigid_motions import rigid_motions
 from raceway.core.linear.statics import DIRECT_UNKNOWNS, Preconditioner
-from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix

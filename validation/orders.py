@@ -12,17 +12,15 @@ import attrs
 import numpy as np
 
 from raceway import scene_from_dict
-from raceway.bodies.model import Model
 from raceway.core.ring.system import System
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
 from raceway.scene.inner_ring import ring_inertia
+from raceway.testing import Model, model_of, settle, simulate
 from validation.reference.ring import Ring
 from validation.reference.shooting import rotating as rotating_force
 from validation.reference.shooting import trajectory
-from validation.scenes import model_of, rig_force, rotating
+from validation.scenes import rig_force, rotating
 
 INTEGRATORS = ("newmark", "generalized_alpha", "central_difference")
 #: Deviation of the fitted slope from 2 that is put down to the range of steps.

@@ -14,13 +14,12 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 from scipy.special import beta
 
-from raceway.core.jit import jit
+from raceway import LAW, jit
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.symmetry import one_turn
 from raceway.core.ring.address import by_address
 from raceway.core.ring.system import System
-from raceway.core.signatures import LAW
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import contact_system
 

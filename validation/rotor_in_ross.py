@@ -11,8 +11,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.errors import RacewayError
-from raceway.scene.file import load_scene
+from raceway import RacewayError, load_scene
 from raceway.scene.reading import rig_of
 from raceway.studies.ross.installed import ross
 from raceway.studies.shaft.beam import Beam

@@ -6,10 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway import build_model, make_plan, scene_from_dict
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model
-from raceway.pipeline.settle import settle
+from raceway.testing import Model
 
 #: The rig's unbalance, 7.1 g at 90 mm; two bearings carry half of its force each.
 UNBALANCE = 7.1e-3 * 0.09
@@ -90,18 +87,6 @@ def random_tables(rng: np.random.Generator, law: str = "hertz") -> dict[str, Any
         },
         "contact": {"kind": law},
     }
-
-
-def model_of(tables: dict[str, Any]) -> Model:
-    """The built model of a scene's tables."""
-    scene = scene_from_dict(tables)
-    return build_model(scene, make_plan(scene))
-
-
-def settled(tables: dict[str, Any]) -> tuple[Model, Equilibrium]:
-    """Model and equilibrium."""
-    model = model_of(tables)
-    return model, settle(model)
 
 
 def imbalance(model: Model, q: np.ndarray, ball: np.ndarray | None = None) -> float:

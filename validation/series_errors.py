@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from raceway import scene_from_dict
-from raceway.pipeline.run import run
+from raceway.testing import run
 from validation.scenes import rotating
 
 _TRUE_STEPS = 4999

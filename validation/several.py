@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.pipeline.result import Result
+from raceway import Result
 from raceway.scene.inner_ring import ring_inertia
 from validation.reference.ring import Ring
 from validation.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory

@@ -12,15 +12,12 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway import scene_from_dict
+from raceway import ConvergenceError, RacewayError, Result, scene_from_dict
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.signals.identification import stiffness
-from raceway.errors import ConvergenceError, RacewayError
-from raceway.pipeline.result import Result
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
+from raceway.testing import model_of, run, settle
 from validation.error_estimate import SMALL
-from validation.scenes import model_of, rotating
+from validation.scenes import rotating
 
 _SEED = 1
 #: Largest difference of both ways to a steady motion, over the true error.

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from raceway.errors import RacewayError
+from raceway import RacewayError
 from raceway.plugins.system_libraries import refuse_pictures
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.bodies.model import Model
+from raceway.testing import Model
 
 SYMMETRY, DIFFERENCES = 1e-9, 1e-6
 

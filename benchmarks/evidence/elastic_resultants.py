@@ -13,13 +13,13 @@ import numpy as np
 
 from benchmarks.evidence import Row, below
 from benchmarks.evidence._kept import kept
-from validation.condensed import quantities, tables
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.reading import scene_from_dict
+from validation.condensed import quantities, tables
 
 TITLE = "Elastic bodies: coarse meshes with the calibrated law"
 COMMAND = "python -m benchmarks.evidence elastic_resultants"

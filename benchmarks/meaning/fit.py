@@ -12,8 +12,8 @@ from raceway.front.run import run
 from raceway.scene.catalogue import catalogue
 from raceway.studies.fit.fitted import Fitted
 from raceway.studies.fit.front import fit
+from raceway.testing import b7206c
 from validation.shaker import hammer_record, record
-from validation.tables import b7206c
 
 COMMAND = "python -m benchmarks.meaning fit"
 _SEEDS = 40

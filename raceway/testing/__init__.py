@@ -4,7 +4,7 @@ suite          what all suites share: duties, rows, expected failures, how they 
 contact_law, excitation, integrator, identifier, bodies, mesher, format, report, executor, study   one suite a file
 steady         duties of integrators that solve for the steady motion
 systems        small mechanical systems with known answers;  signals: records with a known stiffness
-scenes         a small scene and its result;  bearings: scenes and bearings that kinds of bodies are tried on
+scenes         scenes, models and results of a bearing;  bearings: scenes and bearings that kinds of bodies are tried on
 asked          what else a scene may ask of bodies, and how a bearing shows it
 drivers        one driver of a scheme by itself
 compiled       the few compiled loops that the suites need;  allocation: what they allocate
@@ -51,28 +51,16 @@ _PUBLIC = {
     "Suite": "raceway.testing.suite",
     "duty": "raceway.testing.suite",
     "require": "raceway.testing.suite",
+    # What tests of single steps need beside the public functions.
+    **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.scenes"),
+    "Model": "raceway.bodies.model",
+    "Registry": "raceway.framework.registry",
+    "default_registry": "raceway.framework.registry",
+    "run": "raceway.pipeline.run",
+    "settle": "raceway.pipeline.settle",
+    "simulate": "raceway.pipeline.simulate",
 }
-__all__ = [
-    "SUITES",
-    "BodiesSuite",
-    "Conformity",
-    "ContactLawSuite",
-    "ExcitationSuite",
-    "ExecutorSuite",
-    "FormatSuite",
-    "IdentifierSuite",
-    "IntegratorSuite",
-    "MesherSuite",
-    "ReportSuite",
-    "Row",
-    "StudySuite",
-    "Suite",
-    "check",
-    "check_named",
-    "duty",
-    "require",
-    "suite_of",
-]
+__all__ = sorted([*_PUBLIC, "SUITES", "check", "check_named", "suite_of"])
 
 
 def __getattr__(name: str) -> object:

@@ -1,13 +1,39 @@
-"""A small scene for the suites that need one, and its result."""
+"""Scenes, models and results that tests are made of; the tests of plug-ins of third parties as well as the program's own."""
 
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
     from raceway.pipeline.result import Result
     from raceway.scene.scene import Scene
+
+
+def b7206c(**tables: Any) -> dict[str, Any]:
+    """The tables of a B7206C under 1000 N; each keyword replaces or extends one table."""
+    scene: dict[str, Any] = {"title": "test", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+    for name, table in tables.items():
+        scene[name] = {**scene.get(name, {}), **table} if isinstance(table, dict) else table
+    return scene
+
+
+def model_of(tables: dict[str, Any]) -> Model:
+    """The built model of a scene's tables."""
+    from raceway import build_model, make_plan, scene_from_dict
+
+    scene = scene_from_dict(tables)
+    return build_model(scene, make_plan(scene))
+
+
+def settled(tables: dict[str, Any]) -> tuple[Model, Equilibrium]:
+    """Model and static equilibrium of a scene's tables."""
+    from raceway.pipeline.settle import settle
+
+    model = model_of(tables)
+    return model, settle(model)
 
 
 @cache
@@ -15,15 +41,10 @@ def example_scene() -> Scene:
     """A bearing of 30 mm bore under axial load and a turning force, two turns."""
     from raceway import scene_from_dict
 
+    turning = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
+    method = {"kind": "newmark", "turns": 2, "steps_per_turn": 90}
     return scene_from_dict(
-        {
-            "title": "conformance",
-            "bearing": {"preset": "B7206C"},
-            "load": {"axial": 1000.0},
-            "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4},
-            "integrator": {"kind": "newmark", "turns": 2, "steps_per_turn": 90},
-            "kinematics": {"ball_inertia": False},
-        }
+        b7206c(title="conformance", excitation=turning, integrator=method, kinematics={"ball_inertia": False})
     )
 
 

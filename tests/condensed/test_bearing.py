@@ -7,16 +7,12 @@ import json
 import numpy as np
 import pytest
 
+from raceway import SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.condensed import compliances
-from raceway.bodies.model import build_model
 from raceway.core.condensed import calibration
 from raceway.core.revolution.body import seat_areas
-from raceway.errors import SceneError
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
 from raceway.storage import array_cache
+from raceway.testing import run, settle
 from validation.command_line import EXAMPLES, invoke
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}

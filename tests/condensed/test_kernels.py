@@ -196,7 +196,7 @@ def test_structural_approach_has_a_rate(built):
 
 
 def test_a_contact_that_bodies_outdo_is_a_failure_and_no_number(built):
-    from raceway.errors import ConvergenceError
+    from raceway import ConvergenceError
 
     rigid = model(built)
     with pytest.raises(ConvergenceError):

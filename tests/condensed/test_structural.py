@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway import scene_from_dict
 from raceway.core.condensed.elastic_bodies import between_grooves
 from raceway.core.condensed.line_load import half_space, nodal_weights
 from raceway.core.condensed.modes import first_frequency
 from raceway.core.condensed.structural import reach, ring_compliance
 from raceway.core.contact.sphere import ball_compliance
 from raceway.core.mesh.ring_shape import ring_shape
-from raceway.scene.reading import scene_from_dict
 
 YOUNG, POISSON = 212e9, 0.29
 HALF = 0.82e-3  # semi-major axis of a contact of B7206C at some 300 N [m]

@@ -2,8 +2,7 @@
 
 import pytest
 
-from raceway.framework.registry import default_registry
-from raceway.testing import check
+from raceway.testing import check, default_registry
 
 ENTRIES = list(default_registry().all())
 MARKS = {"gmsh": pytest.mark.needs("gmsh"), "dask": pytest.mark.slow, "film": pytest.mark.slow, "elastic": pytest.mark.slow}

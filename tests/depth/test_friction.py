@@ -6,13 +6,10 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import scene_from_dict
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import FRICTION, STICK
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway.testing import b7206c, run, settle, simulate
 
 
 def rubbing(friction=0.03, turns=3, **tables):

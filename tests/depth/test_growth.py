@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from raceway import SceneError, make_plan
+from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core.ring.kernels.layout import REST_RADIAL
 from raceway.scene.inner_ring import radial_growth, shoulder_height
-from raceway.scene.reading import scene_from_dict
 from validation.reference.rotating_ring import growth_by_elements
 
 

@@ -6,12 +6,11 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import SceneError, make_plan
+from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
 from raceway.core.ring.system import System
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway.testing import b7206c
 
 #: Sizes of displacements [m, rad] over which contact forces change by some percent.
 STEP = np.array([1e-6, 1e-6, 1e-6, 3e-5, 3e-5])

@@ -6,11 +6,8 @@ import math
 
 import pytest
 
-from raceway import SceneError
-from raceway.pipeline.run import run
-from raceway.scene.file import load_scene
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway import SceneError, load_scene, scene_from_dict
+from raceway.testing import b7206c, run
 
 RPM = 12000.0
 FORCE = 300.0

@@ -10,16 +10,13 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import ConvergenceError, scene_from_dict
 from raceway.bodies import mounting
 from raceway.bodies.mounting import preload_table
 from raceway.core.ring.kernels.layout import SHIFT
-from raceway.errors import ConvergenceError
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.scene.reading import scene_from_dict
 from raceway.scene.unused import unused
+from raceway.testing import b7206c, run, settle
 from validation.reference.mounted import FORCE, approach, axial, row, secant
-from validation.tables import b7206c
 
 #: Of K, kxx and kyy: 0.1 % is asked for; what differs is the time step of newmark and the 1x line of the orbit.
 TOLERANCE = 1e-3

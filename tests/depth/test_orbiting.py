@@ -6,16 +6,13 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, place
 from raceway.core.signals.lines import phasors
 from raceway.core.signatures import Constants
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import b7206c, run, settle, simulate
 from validation.ball_pass import SPEED, passing_hz
 from validation.ball_pass import passing_scene as scene
-from validation.tables import b7206c
 
 
 def test_inertia_amplifies_the_ball_pass_line_as_a_linear_oscillator_would(built):

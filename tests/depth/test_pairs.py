@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway import SceneError
+from raceway import SceneError, scene_from_dict
 from raceway.core.ring.system import System
-from raceway.scene.reading import scene_from_dict
 
 DISTANCE = 16e-3
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.pipeline.run import run
+from raceway import scene_from_dict
 from raceway.scene.inner_ring import ring_inertia
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway.testing import b7206c, run
 
 #: Half the rig's disc [kg m2]: polar inertia about twice the transverse one.
 POLAR, TRANSVERSE = 8.05e-3, 4.1e-3

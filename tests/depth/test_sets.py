@@ -8,13 +8,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import SceneError, build_model, make_plan, scene_from_dict
+from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.errors import ConvergenceError
-from raceway.pipeline.settle import settle
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.sets import NAMES
 from raceway.studies.limits.study import axial_limits
+from raceway.testing import settle
 from validation.command_line import EXAMPLES, invoke
 from validation.reference.ring import Ring
 from validation.reference.row_set import RowSet, press, press_together

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from raceway import ConvergenceError
 from raceway.commands.screen.result_parts import _mounted
 from raceway.core.ring.kernels.layout import SHIFT
-from raceway.errors import ConvergenceError
 from raceway.studies.ross.node_bearing import node_bearing
+from raceway.testing import b7206c
 from validation.reference.mounted import approach, axial, row
-from validation.tables import b7206c
 
 #: Asked for: a stiffness against slopes of whole runs.  Differences of fourth order leave 1e-8, the spring's force 1e-9.
 SLOPE = 1e-6

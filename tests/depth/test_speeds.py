@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raceway import SceneError
+from raceway import SceneError, scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.core.ring.friction import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
@@ -16,12 +16,10 @@ from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
-from raceway.pipeline.run import run
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.run_up import RunUp
 from raceway.scene.inner_ring import ring_inertia
-from raceway.scene.reading import scene_from_dict
-from validation.tables import b7206c
+from raceway.testing import b7206c, run
 
 
 def steady(rpm=12000.0, **tables):

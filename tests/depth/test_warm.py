@@ -7,13 +7,11 @@ from math import radians
 import numpy as np
 import pytest
 
-from raceway import SceneError, build_model, make_plan, scene_from_dict
+from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.errors import ConvergenceError
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
 from raceway.scene.growth import ball_growth, grooves, inner_fit, outer_fit, running_interference, warm_interference
 from raceway.scene.unused import unused
+from raceway.testing import run, settle
 from validation.fits import ALUMINIUM, fits_by_hand
 from validation.reference.ring import Ring
 from validation.reference.row_set import RowSet, press, warmed

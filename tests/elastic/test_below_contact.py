@@ -9,7 +9,7 @@ from raceway import scene_from_dict
 from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.core.elastic.contacts.contact_axis import contact_axes
 from raceway.core.elastic.contacts.stress_profile import cells_near
-from raceway.pipeline.run import run
+from raceway.testing import run
 from validation.below_groove import below
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from raceway import ConvergenceError, MeshError
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body
 from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps, plane
 from raceway.core.elastic.contacts.nodal import NodalContact, Pair
 from raceway.core.elastic.system import ElasticSystem
-from raceway.errors import ConvergenceError, MeshError
 from validation.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model
 from validation.reference.contact import contact_forces, groove_gap
 

@@ -6,12 +6,12 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import scene_from_dict
 from raceway.bodies.meshing import mesh_scene
 from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.footprint import Footprint, ellipse, footprint
 from raceway.core.mesh.place import azimuth
 from raceway.core.mesh.ring_shape import ring_shape
-from raceway.scene.reading import scene_from_dict
 
 #: The coarsest meshes in use: a ball of 4 cells across, 36 cells around a ring.
 MESH = {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 36}

@@ -10,12 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from raceway.bodies.model import build_model
-from raceway.errors import RacewayError, SceneError
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
+from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
+from raceway.testing import run, settle
 
 #: Three balls on 864 hexahedra: every path, some accuracy.
 TINY: dict[str, Any] = {

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from raceway.bodies.model import build_model
+from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.elastic.statics import settle
-from raceway.pipeline.settle import settle as settle_model
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import settle as settle_model
 from tests.test_elastic_scene import TINY
 
 COARSE = {key: TINY[key] for key in ("bearing", "bodies", "mesh")} | {

@@ -20,9 +20,10 @@ from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.start import from_orbit
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
+from raceway.testing import model_of, settled
 from tests.revolution.sections import STEEL, shape
 from validation.condensed import cost, largest, quantities, tables
-from validation.scenes import model_of, rotating, settled
+from validation.scenes import rotating
 
 pytestmark = pytest.mark.night
 

@@ -14,13 +14,11 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import RacewayError, load_scene
 from raceway.core.jit import working_process_time
-from raceway.errors import RacewayError
-from raceway.framework.registry import default_registry
 from raceway.front.evolve import evolve
 from raceway.front.run import run
 from raceway.scene.continuous import with_number
-from raceway.scene.file import load_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
 from raceway.studies.fit.front import fit
@@ -37,8 +35,8 @@ from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.beam import beam
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor, shaft
+from raceway.testing import b7206c, default_registry
 from validation.shaker import record as record_of_shaker
-from validation.tables import b7206c
 
 pytestmark = pytest.mark.night
 

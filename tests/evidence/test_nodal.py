@@ -11,14 +11,11 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import scene_from_dict
 from raceway.core.patches.friction import Friction
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import model_of, run, settle, settled, simulate
 from validation.condensed import largest, quantities, tables
 from validation.reference.mindlin import Mindlin
-from validation.scenes import model_of, settled
 from validation.single import single
 
 pytestmark = pytest.mark.night

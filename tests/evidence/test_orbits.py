@@ -23,10 +23,8 @@ from raceway.core.signals.identification import stiffness
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
 from raceway.scene.inner_ring import ring_inertia
+from raceway.testing import model_of, run, settle, simulate
 from raceway.testing.systems import SPEED, linear_system, motion
 from validation import followed, several
 from validation.crossed import compared, crossed
@@ -35,7 +33,7 @@ from validation.reference.ring import Ring
 from validation.reference.shooting import periodic as shooting
 from validation.reference.shooting import rotating as turning
 from validation.reference.shooting import swinging
-from validation.scenes import model_of, rig_force, rotating
+from validation.scenes import rig_force, rotating
 
 pytestmark = pytest.mark.night
 

@@ -11,19 +11,17 @@ from itertools import product
 import numpy as np
 import pytest
 
+from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.friction import friction_energy
 from raceway.core.signals.lines import phasors, sharpest
-from raceway.errors import RacewayError
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import simulate
 from raceway.studies.article.expected import SPEEDS, TRENDS
+from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
 from validation.expected_values import TABLE, axial_row, secant
 from validation.gyroscopic import SHARES, axial_displacement, harris_ball
-from validation.scenes import model_of, random_tables, settled
-from validation.tables import b7206c
+from validation.scenes import random_tables
 from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 
 SOLVER = "another rigid-ring solver (validation/expected_values.py)"

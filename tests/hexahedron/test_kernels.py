@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway import MeshError
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
-from raceway.errors import MeshError
 from validation.hexahedron.blocks import block, distorted
 from validation.reference import hexahedron as reference
 

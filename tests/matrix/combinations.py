@@ -11,10 +11,8 @@ from typing import Any
 import attrs
 import pytest
 
-from raceway.errors import RacewayError, SceneError
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
+from raceway import RacewayError, SceneError, scene_from_dict
+from raceway.testing import default_registry, run
 
 DISCRETISATIONS = ("resultant", "nodal")
 TILTS: tuple[str | float, ...] = ("locked", "free", 3e4)

@@ -17,10 +17,8 @@ from __future__ import annotations
 
 import pytest
 
-from raceway.errors import SceneError
-from raceway.framework.registry import default_registry
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
+from raceway import SceneError, make_plan, scene_from_dict
+from raceway.testing import default_registry
 from tests.matrix.combinations import (
     Combination,
     NeedsOptions,

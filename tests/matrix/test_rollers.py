@@ -13,10 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from raceway.errors import SceneError
-from raceway.framework.registry import Registry, default_registry
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
+from raceway import SceneError, scene_from_dict
+from raceway.testing import Registry, default_registry, run
 from tests.matrix.combinations import crossed, options
 
 PACKAGE = Path(__file__).parents[2] / "examples" / "cylindrical_rollers"

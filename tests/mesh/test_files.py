@@ -8,10 +8,9 @@ import meshio
 import numpy as np
 import pytest
 
-from raceway import load_scene, scene_from_dict
+from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.bodies.mesh_fit import check_sets
 from raceway.bodies.meshing import mesh_scene
-from raceway.errors import MeshError, SceneError
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.formats.msh import Msh
 from raceway.plugins.formats.vtu import Vtu

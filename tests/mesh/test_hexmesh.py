@@ -4,10 +4,10 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import MeshError
 from raceway.core.mesh.hex_mesh import HexMesh, merged
 from raceway.core.mesh.quality import quality, refuse_bad_cells
 from raceway.core.mesh.summary import summary
-from raceway.errors import MeshError
 from validation.cubes import block
 
 #: Sums of a few hundred terms in double precision.

@@ -9,18 +9,15 @@ from typing import ClassVar
 import attrs
 import pytest
 
-from raceway import load_scene, scene_from_dict
+from raceway import MeshError, PluginError, SceneError, hookimpl, load_scene, make_plan, scene_from_dict
 from raceway.bodies.mesh_plan import predicted_mesh
 from raceway.bodies.meshing import mesh_scene
 from raceway.bodies.rigid.kind import Rigid
 from raceway.commands.screen import plan_screen
-from raceway.errors import MeshError, PluginError, SceneError
-from raceway.framework.hookspecs import hookimpl
-from raceway.framework.registry import Registry
-from raceway.planning.plan import make_plan
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.plugins.meshers.structured import Structured
+from raceway.testing import Registry
 from tests.mesh import solids
 from validation.command_line import EXAMPLES, MINIMAL, invoke
 

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import load_scene, scene_from_dict
+from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.bodies.meshing import mesh_scene, scene_mesher
 from raceway.core.mesh import ball_mesh as sphere
 from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
@@ -16,7 +16,6 @@ from raceway.core.mesh.ring_mesh import ring_mesh
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.mesh.spacing import graded, growing, halved
 from raceway.core.mesh.summary import summary
-from raceway.errors import MeshError, SceneError
 from raceway.plugins.meshers.structured import Structured
 from validation.command_line import EXAMPLES
 from validation.quarter import quarter_groove

@@ -8,15 +8,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import build_model, make_plan, scene_from_dict
+from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.core.patches.balls import Balls
 from raceway.core.patches.pool import Pool
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
 from raceway.core.ring.surrogate import compiled, surrogate
-from raceway.errors import ConvergenceError, SceneError
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from validation.tables import b7206c
+from raceway.testing import b7206c, run, settle
 
 NODAL = {
     "bodies": {"kind": "condensed"},

@@ -6,15 +6,13 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import LAW, ConvergenceError, MeshError, jit
 from raceway.core.contact_laws.hertz import three_halves_or_linear
-from raceway.core.jit import jit
 from raceway.core.patches.contact import BeyondPatch, Contact
 from raceway.core.patches.factor import Factor
 from raceway.core.patches.field import pressure_field
 from raceway.core.patches.nodal_law import PointLaw
 from raceway.core.patches.patch import Spacing
-from raceway.core.signatures import LAW
-from raceway.errors import ConvergenceError, MeshError
 from validation.single import Single, single
 
 

@@ -16,9 +16,8 @@ from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.gyroscopic import Gyroscopic
 from raceway.core.patches.history import History
 from raceway.core.ring.increment import Increment
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
 from raceway.scene.unused import unused
+from raceway.testing import run, settle
 from tests.patches.test_bearing import model, scene
 from validation.reference.mindlin import Mindlin
 from validation.single import single

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway import MeshError
 from raceway.core.revolution.body import Revolution, seat_areas
 from raceway.core.revolution.harmonics import solved_harmonics
 from raceway.core.revolution.profile import dofs
-from raceway.errors import MeshError
 from tests.revolution.sections import STEEL, ball, ring
 from validation.reference.swept import Swept
 

@@ -6,14 +6,13 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import scene_from_dict
+from raceway import MeshError, SceneError, scene_from_dict
 from raceway.core.mesh.quality import refuse_bad_cells
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.revolution.ball import free_ball
 from raceway.core.revolution.body import Revolution
 from raceway.core.revolution.profile import Profile, dofs
 from raceway.core.revolution.ring_profile import coarse_profile, graded_profile
-from raceway.errors import MeshError, SceneError
 from raceway.plugins.meshers.structured import Structured
 from raceway.scene.inner_ring import ring_inertia
 from tests.revolution.sections import BEARING, RADIUS, STEEL, ball

@@ -6,12 +6,12 @@ from math import pi
 
 import pytest
 
-from raceway.framework.registry import default_registry
-from raceway.scene.file import load_scene
+from raceway import load_scene
 from raceway.scene.rig import Rig
 from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor
+from raceway.testing import default_registry
 from validation.command_line import EXAMPLES
 
 SPEED = 13000.0 * pi / 30.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.errors import SceneError
+from raceway import SceneError
 from raceway.storage.number_table import read_numbers
 from raceway.studies.measured.heads import columns_of
 from raceway.studies.measured.recording import read_recording

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.errors import RacewayError
+from raceway import RacewayError
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.marks import marks_of
 from raceway.studies.measured.orders import order

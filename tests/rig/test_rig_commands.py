@@ -9,9 +9,7 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.errors import ConvergenceError, RacewayError
-from raceway.framework.registry import default_registry
-from raceway.scene.file import load_scene
+from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.scene.rig import Signals
 from raceway.studies.measured.identify import identify
 from raceway.studies.measured.recording import read_recording, write_recording
@@ -20,6 +18,7 @@ from raceway.studies.rig.sensors import record, response
 from raceway.studies.shaft.balance import balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor
+from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES, invoke
 

@@ -8,15 +8,15 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import StabilityError
 from raceway.core.ring.start import at_rest, static_orbit
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import Drivers, integrate
 from raceway.core.stepping.record import Schedule
-from raceway.errors import StabilityError
 from raceway.integrators import raceway_integrators
-from raceway.pipeline.settle import settle
+from raceway.testing import model_of, settle
 from raceway.testing.integrator import IntegratorSuite
-from validation.scenes import model_of, rotating
+from validation.scenes import rotating
 
 #: Those that march in time.
 METHODS = [m for m in raceway_integrators() if not m.steady]

@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 
+from raceway import ConvergenceError, MeshError, StabilityError
 from raceway.core.contact_laws.power import linear
 from raceway.core.elastic.assembly import Assembly
 from raceway.core.elastic.body import Body
@@ -21,7 +22,6 @@ from raceway.core.mesh.hex_mesh import FACES, boundary
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.energy import drift
 from raceway.core.stepping.record import Schedule
-from raceway.errors import ConvergenceError, MeshError, StabilityError
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
 from validation.reference import elastic

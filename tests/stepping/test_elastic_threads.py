@@ -9,17 +9,14 @@ from functools import cache
 import numpy as np
 import pytest
 
-from raceway.bodies.model import build_model
+from raceway import StabilityError, build_model, make_plan, scene_from_dict
 from raceway.core.elastic.body_forces import fitting_threads
 from raceway.core.elastic.start import at_rest
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.core.threads import ThreadPool
-from raceway.errors import StabilityError
 from raceway.integrators.central_difference import CentralDifference
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import settle
 from tests.test_elastic_scene import EXCITED, TINY
 
 #: Friction on rigid seats; dashpots, a shaft and elastic seats, whose ring rides on its bed, with the other element.

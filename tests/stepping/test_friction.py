@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway import ConvergenceError
 from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.energy import drift
 from raceway.core.stepping.record import Schedule
-from raceway.errors import ConvergenceError
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
 from validation.block import POISSON, YOUNG, Block

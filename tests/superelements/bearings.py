@@ -7,11 +7,9 @@ import copy
 import attrs
 import numpy as np
 
-from raceway.bodies.model import build_model
+from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.system import ElasticSystem
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
 from tests.test_elastic_scene import TINY
 
 

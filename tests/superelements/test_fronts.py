@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway import ConvergenceError
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear.dissection import dissect
 from raceway.core.linear.fronts import Fronts, factored
 from raceway.core.linear.rigid_motions import rigid_motions
-from raceway.errors import ConvergenceError
 from tests.superelements.dense import assembled, schur, unknowns
 from validation.reference import elastic
 

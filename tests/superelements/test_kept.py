@@ -6,11 +6,11 @@ import attrs
 import numpy as np
 import pytest
 
+from raceway import MeshError
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.superelements import kept
 from raceway.core.elastic.superelements.bearing import touchable
 from raceway.core.elastic.superelements.part import Part
-from raceway.errors import MeshError
 from raceway.storage import array_cache
 from tests.superelements.bearings import built, start_of, with_node_moved
 

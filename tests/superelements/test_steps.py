@@ -12,7 +12,7 @@ from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark
-from raceway.pipeline.settle import settle
+from raceway.testing import settle
 from tests.superelements.bearings import built
 
 #: 15 000 r/min: a turn of 4 ms.  A force of a tenth of the load that acts at once.

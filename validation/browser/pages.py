@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from raceway.framework.registry import Registry
+from raceway.testing import Registry
 from validation.command_line import ARTICLE, EXAMPLES, invoke
 
 

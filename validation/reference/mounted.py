@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from raceway.scene.reading import scene_from_dict
+from raceway import scene_from_dict
 from validation.reference.ring import Ring
 
 #: Turning force of ``secant`` [N].
