@@ -322,6 +322,6 @@ def test_consoles_that_are_closed_or_know_ascii_only(tmp_path):
     command = f'"{sys.executable}" -m raceway check "{MINIMAL}" >&-'
     closed = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
     assert closed.returncode == 0 and closed.stderr == ""
-    found = raceway("run", MINIMAL, "--out", tmp_path, LC_ALL="C", PYTHONIOENCODING="ascii", PYTHONUTF8=0)
+    found = raceway("run", MINIMAL, "--out", tmp_path, LC_ALL="C", COLUMNS=0, PYTHONIOENCODING="ascii", PYTHONUTF8=0)
     assert found.returncode == 0, found.stderr
     assert "N/um" in found.stdout and found.stderr == ""

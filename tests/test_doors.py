@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import inspect
 import itertools
-import os
 import pickle
+import runpy
 import sqlite3
-import subprocess
-import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -16,10 +14,13 @@ import numpy as np
 import pytest
 
 import raceway as rw
+import raceway.core
 from raceway.framework.doors import door
 from raceway.storage.files import write_whole
+from raceway.studies.sweep import open_store
 
 SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+SOFT = {"preset": "B7206C", "balls": {"young": 1e6}}
 
 
 @door
@@ -66,21 +67,6 @@ def test_iterators_and_ranges_are_values_of_an_axis():
         rw.compare(SCENE, {"load.axial": itertools.count(1)})
 
 
-@pytest.mark.parametrize(
-    ("call", "rule"),
-    [
-        (lambda: rw.run({**SCENE, "load": {"axial": (x for x in (1.0,))}}), "no generator"),
-        (lambda: rw.sweep(SCENE, 3), "`axes` = 3: must be a mapping"),
-        (lambda: rw.fit({}, SCENE, "load.axial", run_out=iter((1e-6, "x"))), "`run_out`.*two finite numbers"),
-        (lambda: rw.fit({}, SCENE, "load.axial", columns={"x": 3}), "`columns`.*text both"),
-        (lambda: write_whole(b"", Path("")), "it is a folder"),
-    ],
-)
-def test_what_no_argument_can_be_is_refused_in_words(call, rule):
-    with pytest.raises(rw.RacewayError, match=rule):
-        call()
-
-
 def test_a_door_stays_the_function_that_it_is():
     assert pickle.loads(pickle.dumps(rw.run)) is rw.run
     assert "patience" in inspect.signature(rw.run).parameters and "Parameters" in rw.run.__doc__
@@ -98,77 +84,43 @@ def test_results_take_folders_as_text(tmp_path):
         result.gradient(3)
 
 
-def test_tables_that_are_nested_without_end_are_no_scene(tmp_path):
-    deep = {}
-    for _ in range(3000):
-        deep = {"a": deep}
-    for source in (deep, f"[{'.'.join(['a'] * 3000)}]\nb = 1\n"):
-        with pytest.raises(rw.SceneError, match="nested more than 32 deep"):
-            rw.run(source)
-
-
-def test_what_ends_a_generator_does_not_end_the_loading_of_a_plugin(tmp_path):
-    file = tmp_path / "ends.py"
-    file.write_text("raise GeneratorExit('here')\n")
-    with pytest.raises(rw.PluginError, match="line 1: GeneratorExit: here"):
-        rw.check(SCENE, plugins=file)
-
-
 @pytest.mark.parametrize("threads", ["0", "-1", "many"])
-def test_a_number_of_threads_that_numba_cannot_take(threads):
-    code = "import raceway as rw\ntry: rw.run({})\nexcept rw.RacewayError as why: print(why)"
-    found = subprocess.run(
-        [sys.executable, "-c", code], env={**os.environ, "NUMBA_NUM_THREADS": threads}, capture_output=True, text=True
-    )
-    assert f"`NUMBA_NUM_THREADS` = '{threads}': must be a whole number from 1" in found.stdout and not found.stderr
+def test_a_number_of_threads_that_numba_cannot_take(threads, monkeypatch):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", threads)
+    with pytest.raises(rw.RacewayError, match=f"`NUMBA_NUM_THREADS` = '{threads}': must be a whole number from 1"):
+        runpy.run_path(raceway.core.__file__)
 
 
-def test_a_terminal_without_columns_has_those_of_any():
-    words = [sys.executable, "-m", "raceway", "plan", "examples/minimal.toml"]
-    found = subprocess.run(words, env={**os.environ, "COLUMNS": "0"}, capture_output=True, text=True)
-    assert found.returncode == 0 and "Kept" in found.stdout
+#: What is done to the rows 0, 1, 2 of a store, and their states afterwards.  A digest knows its row's number and numbers.
+DAMAGES = {
+    "numbers": (("UPDATE points SET content = replace(content, '1', '2') WHERE number = 1", "DELETE FROM points WHERE number = 2"),
+                ["done", "waiting", "waiting"]),
+    "another's": ([f"UPDATE points SET number = {new} WHERE number = {old}" for old, new in ((0, 9), (2, 0), (9, 2))],
+                  ["waiting", "done", "waiting"]),
+}  # fmt: skip
 
 
-def test_damaged_rows_of_a_store_are_counted(tmp_path):
-    store = tmp_path / "store"
-    whole = rw.sweep(SCENE, {"load.axial": [400.0, 600.0, 800.0]}, store=store)
-    assert whole.attrs["damaged_rows"] == 0
-    with closing(sqlite3.connect(store / "points.sqlite")) as connection, connection:
-        connection.execute("UPDATE points SET content = replace(content, '1', '2') WHERE number = 1")
-        connection.execute("DELETE FROM points WHERE number = 2")
-    from raceway.studies.sweep.store import open_store
-
-    with open_store(store) as there, pytest.warns(UserWarning, match="2 of 3 rows are damaged"):
+@pytest.mark.parametrize("case", DAMAGES)
+def test_damaged_rows_of_a_store_are_counted(case, tmp_path):
+    assert rw.sweep(SCENE, {"load.axial": [400.0, 600.0, 800.0]}, store=tmp_path / "store").attrs["damaged_rows"] == 0
+    changes, states = DAMAGES[case]
+    with closing(sqlite3.connect(tmp_path / "store" / "points.sqlite")) as connection, connection:
+        for change in changes:
+            connection.execute(change)
+    with open_store(tmp_path / "store") as there, pytest.warns(UserWarning, match="2 of 3 rows are damaged"):
         found = there.to_xarray()
-    assert found.attrs["damaged_rows"] == 2 and found.status.values.tolist() == ["done", "waiting", "waiting"]
+    assert found.attrs["damaged_rows"] == 2 and found.status.values.tolist() == states
 
 
-def test_a_row_under_another_number_is_damaged(tmp_path):
-    """Its text and its digest are whole: they are another point's."""
-    store = tmp_path / "store"
-    rw.sweep(SCENE, {"load.axial": [400.0, 600.0, 800.0]}, store=store)
-    with closing(sqlite3.connect(store / "points.sqlite")) as connection, connection:
-        for before, after in ((0, 9), (2, 0), (9, 2)):
-            connection.execute("UPDATE points SET number = ? WHERE number = ?", (after, before))
-    from raceway.studies.sweep.store import open_store
-
-    with open_store(store) as there, pytest.warns(UserWarning, match="2 of 3 rows are damaged"):
-        assert there.to_xarray().status.values.tolist() == ["waiting", "done", "waiting"]
-
-
-def test_text_of_a_store_that_is_no_text_is_told(tmp_path):
-    store = tmp_path / "store"
-    rw.sweep(SCENE, {"load.axial": [400.0, 600.0]}, store=store)
-    file = store / "points.sqlite"
+def test_a_file_that_is_no_longer_text_or_ends_what_reads_it_is_named(tmp_path):
+    rw.sweep(SCENE, {"load.axial": [400.0, 600.0]}, store=tmp_path / "store")
+    file = tmp_path / "store" / "points.sqlite"
     file.write_bytes(file.read_bytes().replace(b"CREATE TABLE points", b"CREATE TABLE poi\xff\xfe\xff"))
     with pytest.raises(rw.RacewayError, match="points.sqlite"):
-        rw.export_ross(store)
-
-
-def test_soft_balls_are_told_by_their_key():
-    scene = SCENE | {"bodies": {"kind": "condensed"}, "bearing": {"preset": "B7206C", "balls": {"young": 1e6}}}
-    with pytest.raises(rw.SceneError, match=r"bearing.balls.young` = 1000000.0: is too soft"):
-        rw.run(scene)
+        rw.export_ross(tmp_path / "store")
+    (tmp_path / "ends.py").write_text("raise GeneratorExit('here')\n")
+    with pytest.raises(rw.PluginError, match="line 1: GeneratorExit: here"):
+        rw.check(SCENE, plugins=tmp_path / "ends.py")
 
 
 def test_what_runs_away_is_not_meshed():
@@ -234,6 +186,13 @@ class Unlucky:
         raise OSError("closed")
 
 
+def nested(depth):
+    found = {}
+    for _ in range(depth):
+        found = {"a": found}
+    return found
+
+
 class BytesPath:
     def __fspath__(self):
         return b"missing.toml"
@@ -242,6 +201,14 @@ class BytesPath:
 @pytest.mark.parametrize(
     ("call", "rule"),
     [
+        (lambda: rw.run({**SCENE, "load": {"axial": (x for x in (1.0,))}}), "no generator"),
+        (lambda: rw.run(nested(3000)), "nested more than 32 deep"),
+        (lambda: rw.run(f"[{'.'.join(['a'] * 3000)}]\nb = 1\n"), "nested more than 32 deep"),
+        (lambda: rw.run(SCENE | {"bodies": {"kind": "condensed"}, "bearing": SOFT}), r"bearing.balls.young` = 1000000.0: is too soft"),
+        (lambda: rw.sweep(SCENE, 3), "`axes` = 3: must be a mapping"),
+        (lambda: rw.fit({}, SCENE, "load.axial", run_out=iter((1e-6, "x"))), "`run_out`.*two finite numbers"),
+        (lambda: rw.fit({}, SCENE, "load.axial", columns={"x": 3}), "`columns`.*text both"),
+        (lambda: write_whole(b"", Path("")), "it is a folder"),
         (lambda: rw.compare(SCENE, Unlucky()), "`vary`"),
         (lambda: rw.run(SCENE, out=Unlucky()), "`out`"),
         (lambda: rw.run(BytesPath()), "no such file"),
@@ -252,8 +219,8 @@ class BytesPath:
         (lambda: rw.fit({"axial [N]": [400.0, 1000.0], "kxx [N/um]": [39.4, 67.4]}, SCENE, "bearing.contact_angle_deg")["K"], "must be one of"),
     ],
 )  # fmt: skip
-def test_what_has_no_answer_is_told_all_the_same(call, rule):
-    with pytest.raises(rw.SceneError, match=rule):
+def test_what_no_argument_can_be_is_refused_in_words(call, rule):
+    with pytest.raises(rw.RacewayError, match=rule):
         call()
 
 
