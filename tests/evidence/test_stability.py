@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 
 from raceway.framework.registry import registry_with
+from raceway.studies.many.row_store import RowStore
 from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.study import PROCESSES, measured, stability
 
 pytestmark = pytest.mark.night
-#: Finished cases are kept here, as the command does.
+#: Finished cases are kept here and beside it, as the command keeps them.
 KEPT = Path("raceway-out") / "stability" / "stability-rows.jsonl"
 FOREIGN = [Path(__file__).parents[1] / f"{name}.py" for name in ("cubic_law", "hunt_crossley")]
 #: Rows that are not as expected.
@@ -122,7 +123,7 @@ def _energy(claim, rows):
 def test_a_third_partys_law(claim, law):
     registry = registry_with(FOREIGN)
     cases = [one for one in catalogue(registry) if one.setting.get("law") == law]
-    rows, _ = measured(cases, PROCESSES, registry, FOREIGN)
+    rows, _ = measured(cases, PROCESSES, registry, FOREIGN, RowStore(KEPT.with_name(f"{law}-rows.jsonl")))
     failed = [row for row in rows if row.verdict == "failed"]
     assert not failed, failed[:5]
     quantity = f"tests/{law}.py, {len(cases)} cases: rows that are not as expected"
