@@ -1,6 +1,6 @@
 """Checks of robustness that take minutes: ``python -m benchmarks.checks [NAME...]`` prints their rows; CONTRIBUTING keeps a number of each.
 
-random_scenes, fuzz   scenes that nobody would write, through check, plan and run
+fuzz                  scenes that nobody would write, made from the schema, and calls with wrong arguments
 damage                stores and caches that were damaged
 signals               commands that are asked to end, or killed
 dask                  workers that are killed, unfit or silent

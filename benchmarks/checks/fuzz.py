@@ -1,4 +1,4 @@
-"""Ten thousand random scenes through check and plan, and fifteen hundred of them through run, each watched."""
+"""Ten thousand random scenes through check and plan, fifteen hundred of them through run, and calls of all fronts, each watched."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks.checks._fuzz import ASLEEP_S, CHECK_S, RUN_S
+from benchmarks.checks._doors import fronts
+from benchmarks.checks._fuzz import ASLEEP_S, CALLS, CHECK_S, RUN_S
+from benchmarks.checks._scenes import scene_keys
 from benchmarks.evidence import Row
 
-TITLE = "Fuzz: random scenes through check, plan and run"
+TITLE = "Fuzz: random scenes and calls"
 COMMAND = "python -m benchmarks.checks fuzz"
 #: Scenes, runs and processes of a whole report; the environment may ask for fewer scenes, and the report says how many there were.
 SCENES = int(os.environ.get("RACEWAY_FUZZ_SCENES", "10000"))
@@ -84,17 +86,25 @@ def _word(code: int) -> str:
 
 def rows() -> list[Row]:
     found = tries()
-    ends = Counter(f"check: {one['check']}" for one in found if "check" in one)
-    ends += Counter(f"run, {one['bodies']} bodies: {one['run']}" for one in found if "run" in one)
-    ran = sum("run" in one for one in found)
+    checked, ran, called = (Counter(one[word] for one in found if word in one) for word in ("check", "run", "called"))
+    fronts_met = {one["front"] for one in found if one.get("called") == "answered"}
+    bodies = sorted({one["bodies"] for one in found if one.get("run") == "finished"})
     out = [
-        Row("scenes through check and plan", len(found), f"at least {WANTED_SCENES}", len(found) >= WANTED_SCENES, COMMAND),
-        Row("scenes through run", ran, f"at least {WANTED_RUNS}", ran >= WANTED_RUNS, COMMAND),
+        _at_least("scenes through check and plan", len(found), WANTED_SCENES),
+        _at_least("scenes through run", ran.total(), WANTED_RUNS),
+        _at_least("calls of Python fronts, some with wrong types", called.total(), WANTED_SCENES // CALLS),
+        _at_least("keys of the schema that are drawn", min(len(found), len(scene_keys())), len(scene_keys())),
+        _at_least("share of scenes that are planned", checked["planned"] / max(checked.total(), 1), 0.2),
+        _at_least("share of runs that finish", ran["finished"] / max(ran.total(), 1), 0.5, f"bodies: {', '.join(bodies)}"),
+        _at_least("fronts that answered at least once", len(fronts_met), len(fronts())),
     ]
     for word, quantity in _FAULTS.items():
         bad = [(one["seed"], fault) for one in found for fault in one["faults"] if fault[0] == word]
         told = [(seed, " ".join(fault[2].split())[-300:]) for seed, fault in bad[:3]]
         note = "; ".join(f"scene {seed}: {words}" for seed, words in told)
         out.append(Row(quantity, len(bad), "0", not bad, COMMAND, note))
-    out += [Row(f"scenes, {word}", count, "reported", True, COMMAND) for word, count in sorted(ends.items())]
     return out
+
+
+def _at_least(quantity: str, value: float, least: float, note: str = "") -> Row:
+    return Row(quantity, value, f"at least {least:g}", value >= least, COMMAND, note)

@@ -10,7 +10,7 @@ from itertools import islice
 
 from rich.console import Console
 
-from benchmarks.checks._random_scenes import Chance, Tables
+from benchmarks.checks._scenes import Chance, Tables
 from benchmarks.evidence import Row, below, near
 from raceway.commands.screen.result import run_screen
 from raceway.errors import RacewayError

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from math import pi
 
-from benchmarks.checks._random_scenes import Tables
+from benchmarks.checks._scenes import Tables
 from benchmarks.evidence import Row, below, near
 from raceway import run
 from raceway.errors import SceneError

@@ -12,25 +12,63 @@ import numpy as np
 import pytest
 
 from benchmarks.checks import _fuzz, fuzz
-from benchmarks.checks._fuzz import Watch, check, ran
-from benchmarks.checks._fuzz_scenes import fill, wild
-from benchmarks.checks._random_scenes import Chance
+from benchmarks.checks._doors import GOOD, called, fronts
+from benchmarks.checks._fuzz import Watch, cheap, check, ran
+from benchmarks.checks._scenes import fill, scene, scene_keys
 from raceway import load_scene
 from raceway.errors import ConvergenceError
 from validation.command_line import MINIMAL
 
+KEYS = len(scene_keys())
+
+
+def test_every_key_of_the_schema_is_drawn(tmp_path):
+    fill(tmp_path)
+    drawn: set[str] = set()
+    for seed in range(KEYS):
+        scene(seed, tmp_path, drawn)
+    assert drawn == {key.name for key in scene_keys()}
+    # The schema was walked to its ends.
+    assert {"contact[film].oil", "mounting.shaft_material", "bearing.rings.young", "bearing.row", "tolerances"} <= drawn
+
 
 def test_checked_scenes_end_in_a_plan_or_a_message(tmp_path):
+    """Each key alone, and as many scenes with several."""
     fill(tmp_path)
-    ends = Counter(check(wild(Chance(seed), tmp_path))[2] for seed in range(200))
+    ends = Counter(check(scene(seed, tmp_path))[2] for seed in range(2 * KEYS))
     # All ends are met, so that none of them is the test's own doing.
-    assert min(ends[word] for word in ("planned", "refused", "foreseen")) >= 5, ends
+    assert ends["planned"] > 0.2 * ends.total() and min(ends["refused"], ends["foreseen"]) >= 1, ends
     assert not (tmp_path / "PWNED").exists()
+
+
+def test_runs_end_in_numbers_or_a_message(tmp_path):
+    """Rigid bodies only; ``python -m benchmarks.checks fuzz`` runs 1500 scenes of all bodies."""
+    fill(tmp_path)
+    ends: Counter[str] = Counter()
+    for seed in range(0, 2 * KEYS, 3):
+        good, plan, _ = check(scene(seed, tmp_path))
+        if good is not None and good.bodies.name == "rigid" and cheap(good, plan):
+            end, faults = ran(good)
+            assert not faults, (seed, faults)
+            ends[end] += 1
+    assert ends["finished"] >= 30, ends
+
+
+def test_fronts_end_in_an_answer_or_a_message(tmp_path):
+    assert set(fronts()) == set(GOOD), "give it arguments in benchmarks/checks/_doors.py"
+    fill(tmp_path)
+    ends: Counter[str] = Counter()
+    for seed in range(2 * len(GOOD)):
+        _, end, faults = called(seed, tmp_path)
+        assert not faults, (seed, faults)
+        ends[end] += 1
+    assert min(ends["answered"], ends["refused"]) >= len(GOOD) // 2, ends
 
 
 def test_a_scene_is_the_same_in_every_process(tmp_path):
     fill(tmp_path)
-    assert [repr(wild(Chance(k), tmp_path)) for k in range(20)] == [repr(wild(Chance(k), tmp_path)) for k in range(20)]
+    seeds = range(KEYS, KEYS + 20)
+    assert [repr(scene(k, tmp_path)) for k in seeds] == [repr(scene(k, tmp_path)) for k in seeds]
 
 
 @pytest.mark.parametrize(("raised", "word"), [(KeyError("x"), "traceback"), (ConvergenceError("residual nan N"), "nan"),
