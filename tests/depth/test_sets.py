@@ -166,10 +166,7 @@ def test_a_row_that_repeats_its_bearing_changes_no_digit():
 
 def test_two_bearings_on_a_shaft():
     """Far apart and different: each row as a bearing by itself, the shaft's tilt held; the first row's preset is the set's."""
-    rows = [
-        {"direction": "+", "position": -0.1, "preset": "B7206C"},
-        {"direction": "-", "position": 0.1, "preset": "7206A"},
-    ]
+    rows = [{"direction": "+", "position": -0.1, "preset": "B7206C"}, {"direction": "-", "position": 0.1, "preset": "7206A"}]
     one = scene_from_dict({"bearing": {"row": rows, "preload": 250.0}, "kinematics": {"ball_inertia": False}})
     assert one.bearing.preset == "B7206C"
     model = build_model(one, make_plan(one))

@@ -362,10 +362,7 @@ def test_bodies_whose_forces_do_not_follow_are_refused(tables):
     from raceway import make_plan
 
     nodal = {"contact": {"kind": "unilateral", "discretisation": "nodal"}, "bodies": {"kind": "condensed"}}
-    whole = {
-        "bodies": {"kind": "elastic"},
-        "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0},
-    }
+    whole = {"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0}}
     more = whole if "bodies" in tables else nodal
     with pytest.raises(SceneError, match=r"kinematics\.spin_speed_rpm"):
         make_plan(scene_from_dict(turning(6000.0, 15000.0, **more)))

@@ -136,10 +136,7 @@ def test_a_shaker_s_record_is_read_and_told_what_is_missing(tmp_path):
     np.testing.assert_allclose(columns["y"], 1e-6 * Y, atol=1e-9)
     found = invoke("identify", path, "--scene", SCENE, "--out", tmp_path / "out")
     assert found.exit_code == 2 and not (tmp_path / "out").exists()
-    for words in (
-        "400 samples over 0.0399 s of force (+- 20 N), y (+- 15 µm)",
-        "raceway fit FILE.csv",
-    ):
+    for words in ("400 samples over 0.0399 s of force (+- 20 N), y (+- 15 µm)", "raceway fit FILE.csv"):
         assert words in found.stderr
 
 
