@@ -12,8 +12,7 @@ from raceway import load_scene
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
 from raceway.plugins.meshers.structured import Structured
-from validation.hexahedron.blocks import distorted
-from validation.hexahedron.manufactured import errors
+from validation.hexahedra import distorted, errors
 
 TITLE = "Hexahedra: correctness and speed"
 COMMAND = "pytest tests/hexahedron"

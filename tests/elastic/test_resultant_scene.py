@@ -214,11 +214,7 @@ def test_the_plan_leaves_the_surface_points_out():
 
 REFUSED = [
     ({"contact": {"friction": 0.1}}, "contact.friction", "set it 0, use 'nodal'"),
-    (
-        {"contact": {"kind": "penalty", "discretisation": "nodal"}},
-        "mesh.nodes_per_semi_axis",
-        "take at least 1, or",
-    ),
+    ({"contact": {"kind": "penalty", "discretisation": "nodal"}}, "mesh.nodes_per_semi_axis", "take at least 1, or"),
     ({"bodies": {"kind": "condensed"}}, "mesh.nodes_per_semi_axis", "sections of condensed bodies need cells"),
     ({"contact": {"kind": "unilateral"}}, "contact.discretisation", "law 'unilateral' supports 'nodal'"),
     ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "kinematics.orbiting", "azimuth"),

@@ -14,10 +14,7 @@ from tests.superelements.dense import assembled, schur, unknowns
 from validation.reference import elastic
 
 STEEL = 212e9, 0.29, 7810.0
-MESHES = {
-    "ball": elastic.ball(3e-3, 8),
-    "ring": elastic.ring(0.015, 0.02, 0.008, (4, 3, 40)),
-}
+MESHES = {"ball": elastic.ball(3e-3, 8), "ring": elastic.ring(0.015, 0.02, 0.008, (4, 3, 40))}
 
 
 def operator_of(name, formulation="one_point"):

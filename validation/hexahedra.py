@@ -1,4 +1,4 @@
-"""A manufactured solution on a smoothly distorted cube, and how far the elements are from it."""
+"""Distorted boxes of hexahedra, and a manufactured solution with the elements' errors from it."""
 
 from __future__ import annotations
 
@@ -7,10 +7,28 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg
 
 from raceway.core.hexahedron.operator import HexOperator
-from validation.hexahedron.blocks import warped
+from validation.reference.elastic import block
 from validation.reference.hexahedron import gauss, slopes, values
 
 DIRECTION = np.array([1.0, -0.5, 0.7])
+
+
+def distorted(
+    counts: tuple[int, int, int], share: float = 0.25, seed: int = 0, sides: tuple[float, float, float] = (1.0, 1.0, 1.0)
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A box with every node moved at random by up to ``share`` of an element: points, cells, which nodes are inner ones."""
+    points, cells = block(sides, counts)
+    inner = np.all((points > 1e-12) & (points < np.array(sides) - 1e-12), axis=1)
+    size = np.array(sides) / np.array(counts)
+    return points + np.random.default_rng(seed).uniform(-share, share, points.shape) * size, cells, inner
+
+
+def warped(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A smoothly distorted unit cube, faces kept: its elements become parallelepipeds only slowly as ``count`` grows."""
+    points, cells = block((1.0, 1.0, 1.0), (count, count, count))
+    inner = np.all((points > 1e-12) & (points < 1.0 - 1e-12), axis=1)
+    bump = np.prod(np.sin(np.pi * points), axis=1)
+    return points + bump[:, None] * np.array([0.10, -0.08, 0.06]), cells, inner
 
 
 def _field(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
