@@ -33,6 +33,7 @@ FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"
         ("T", ["kinematics.orbiting=true", "load.radial=[0, 1.5]"], "T\nkinematics.orbiting = true, load.radial = [0, 1.5]"),
         ("T\nrotor.mass = 1", ["load.axial=2"], "T\nrotor.mass = 1, load.axial = 2"),  # the scene of a result, changed again
         ("own", ["title=own"], "own"),
+        (" ", ["load.axial=1"], " "),  # an empty title stays a mistake
     ],
 )
 def test_the_second_line_says_what_was_changed(title, changes, expected):
@@ -40,8 +41,8 @@ def test_the_second_line_says_what_was_changed(title, changes, expected):
     assert titled(tables, "file", map(parse_change, changes))["title"] == expected
 
 
-def test_other_changes_make_another_folder():
-    lines = [
+def test_other_titles_and_changes_make_other_folders():
+    changes = [
         "",
         "a = 5",
         "a = -5",
@@ -53,10 +54,21 @@ def test_other_changes_make_another_folder():
         "k = " + "1, " * 60,
         "k = " + "1, " * 61,
     ]
-    names = [slug(f"T\n{line}") for line in lines]
+    names = [slug(f"T\n{line}") for line in changes]
     assert names[:3] == ["T", "T-a=5", "T-a=-5"]
-    assert len(set(names)) == len(names)
-    assert max(map(len, names)) < 200 and not any(set(name) & set('/\\ \n:*?"<>|') for name in names)
+    titles = [
+        "Подшипник 7206",
+        "Шпиндель 7206",
+        "Ρουλεμάν",
+        "Άξονας",
+        "轴承",
+        "主轴",
+        *("x" * 80 + end for end in ("", "a", "b", "a" * 300)),
+    ]
+    names += map(slug, titles)
+    assert len(set(names)) == len(names) and max(map(len, names)) < 200
+    assert all(name.isascii() for name in names) and not any(set(name) & set('/\\ \n:*?"<>|') for name in names)
+    assert slug("Bearing of the spindle, café") == "Bearing-of-the-spindle-cafe" and slug("../..") == "scene"
 
 
 def test_a_changed_run_overwrites_no_other(tmp_path, monkeypatch):
@@ -80,17 +92,10 @@ def test_a_changed_run_overwrites_no_other(tmp_path, monkeypatch):
 def test_pictures_pages_and_tables_for_rotor_programs_say_it():
     figure = ball_loads(run(scene_from_dict(b7206c(title="T\nload.axial = 1000"))))
     assert figure.axes[0].get_title().splitlines()[1:] == ["T", "load.axial = 1000"]
+    keys = {row_key(scene_from_dict(b7206c(title=title)), default_registry()) for title in ("one", "two\nload.axial = 1000")}
+    assert len(keys) == 1, "a title decides no number"
     page = Page("T\nload.axial = 400", "below")
     assert page.title == "T" and '<p class="subtitle">load.axial = 400<br>below</p>' in page.html()
     data = made({"excitation.speed_rpm": SPEEDS})
     data.attrs["scene"] = json.dumps({**json.loads(data.attrs["scene"]), "title": "T\nload.axial = 400"})
     assert head(select(data, {}))[0].endswith(": T; load.axial = 400")
-
-
-def test_a_title_decides_no_number():
-    keys = {row_key(scene_from_dict(b7206c(title=title)), default_registry()) for title in ("one", "two\nload.axial = 1000")}
-    assert len(keys) == 1
-
-
-def test_an_empty_title_stays_a_mistake():
-    assert titled({"title": " "}, "file", [("load.axial", 1)])["title"] == " "
