@@ -1,3 +1,11 @@
-"""For all tests of the repository: those that need what pip does not install are skipped loudly, or fail."""
+"""For all tests of the repository: those that need what pip does not install are skipped loudly, or fail.
+
+One thread of linear algebra, as the commands take: two processes of tests with two threads each wait for each other, three times as
+long.  It is read when numpy is imported, which the plug-ins below do.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 pytest_plugins = ["validation.system_libraries", "benchmarks.claims"]

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from itertools import combinations
 from typing import Any
-
-# As the commands do: two processes of tests with two threads each of linear algebra wait for each other, three times as long.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when numpy is imported
 
 import attrs
 import pytest
