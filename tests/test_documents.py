@@ -52,14 +52,14 @@ NOT_RUN = {
     "--grid load.axial=400:2000:17 --executor dask --scheduler tcp://127.0.0.1:8786 --out raceway-out/map": _THREE,
     "cd raceway-power && pip install -e . && pytest": "tests/test_scaffold.py does it",
     "python -m benchmarks.against_calculix --scene benchmarks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
+    "python -m benchmarks.against_calculix --json": "a minute; tests/evidence/test_elastic.py does it",
+    "raceway run benchmarks/b7206_elastic_60k.toml": "a minute; tests/evidence/test_elastic.py does it",
 }
 #: Commands of many minutes whose answer is a report, which names them: run by make evidence.
 BY_EVIDENCE = {
     "raceway study article": "article",
     "raceway study article --bodies rigid --friction 0": "article",
     "raceway stability --all": "stability",
-    "python -m benchmarks.against_calculix --json": "elastic",
-    "raceway run benchmarks/b7206_elastic_60k.toml": "elastic",
 }
 #: Pages of more than some seconds; their commands run with the slow tests.
 SLOW = {
