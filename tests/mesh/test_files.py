@@ -26,50 +26,39 @@ BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 FORMATS = [Vtu(), Abaqus(), Msh()]
 
 
-def path_of(folder, form, name="body"):
-    return folder / f"{name}{form.suffixes[0]}"
-
-
 @pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
-def test_a_mesh_survives_a_file(form, tmp_path):
-    rng = np.random.default_rng(2)
-    mesh = block()
-    mesh = attrs.evolve(mesh, points=mesh.points + 1e-3 * rng.standard_normal(mesh.points.shape))
-    form.write(path_of(tmp_path, form), mesh)
-    back = form.read(path_of(tmp_path, form))
+def test_a_format_keeps_a_mesh_and_names_files_of_no_use(form, tmp_path):
+    mesh, path = block(), tmp_path / f"body{form.suffixes[0]}"
+    mesh = attrs.evolve(mesh, points=mesh.points + 1e-3 * np.random.default_rng(2).standard_normal(mesh.points.shape))
+    form.write(path, mesh)
+    back = form.read(path)
     # VTU and gmsh keep every bit; CalculiX reads 20 characters of a number, which hold eleven figures.
     np.testing.assert_allclose(back.points, mesh.points, rtol=5e-11 if form.name == "abaqus" else 0.0, atol=0.0)
     assert np.array_equal(back.cells, mesh.cells)
     assert np.array_equal(back.facets("outside"), mesh.facets("outside"))
     assert np.array_equal(back.nodes("corner"), mesh.nodes("corner"))
-
-
-@pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
-def test_tetrahedra_are_refused_with_their_number(form, tmp_path):
-    path = path_of(tmp_path, form)
-    meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]).write(
-        path, **({"file_format": "gmsh22"} if form.name == "msh" else {})
-    )
-    with pytest.raises(MeshError, match=r"not hexahedra of 8 nodes: 1 of type tetra.*subdivision") as told:
+    kind = {"file_format": "gmsh22"} if form.name == "msh" else {}
+    meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]).write(path, **kind)
+    with pytest.raises(MeshError, match=rf"{path.name}.*not hexahedra of 8 nodes: 1 of type tetra.*subdivision"):
         form.read(path)
-    assert path.name in str(told.value)
+    for content in (b"", b"\x00\xff nothing of the kind \xfe" * 9, None):
+        path.unlink() if content is None else path.write_bytes(content)
+        with pytest.raises(MeshError, match=path.name) as told:
+            form.read(path)
+        assert not str(told.value).endswith(": ")
 
 
-@pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
-@pytest.mark.parametrize("content", [None, b"", b"\x00\xff nothing of the kind \xfe" * 9])
-def test_unreadable_files_are_named(form, content, tmp_path):
-    path = path_of(tmp_path, form)
-    if content is not None:
-        path.write_bytes(content)
-    with pytest.raises(MeshError, match=path.name) as told:
-        form.read(path)
-    assert not str(told.value).endswith(": ")
-
-
-def test_formats_without_meshio_name_the_extra(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "meshio", None)
-    with pytest.raises(MeshError, match=r"pip install '.\[mesh\]'"):
-        Vtu().write(tmp_path / "x.vtu", block())
+@pytest.mark.needs("gmsh")
+def test_without_its_package_a_mesh_names_the_extra(tmp_path, monkeypatch):
+    box = write(tmp_path / "box.step", "box")
+    for package, extra, call in (
+        ("meshio", "mesh", lambda: Vtu().write(tmp_path / "x.vtu", block())),
+        ("gmsh", "gmsh", lambda: Gmsh(inner_ring=box).mesh(BEARING)),
+    ):
+        with monkeypatch.context() as without:
+            without.setitem(sys.modules, package, None)
+            with pytest.raises(MeshError, match=rf"pip install '.\[{extra}\]'"):
+                call()
 
 
 @pytest.mark.needs("ccx")
@@ -94,25 +83,21 @@ def test_an_abaqus_file_names_elements_of_steel_and_numbers_of_twenty_characters
 
 
 def test_an_abaqus_file_written_by_hand(tmp_path):
+    path = tmp_path / "hand.inp"
     nodes = "\n".join(f"{10 + i}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(block(1, 1, 1).points))
     order = ", ".join(str(10 + n) for n in block(1, 1, 1).cells[0])
     text = f"*Heading\n*NODE\n{nodes}\n*ELEMENT, TYPE=C3D8R, ELSET=All\n7, {order}\n*NSET, NSET=Fixed\n10, 11\n"
     text += "*SURFACE, NAME=Race, TYPE=ELEMENT\nALL, S2\n*STEP\n"
-    (tmp_path / "hand.inp").write_text(text)
-    mesh = Abaqus().read(tmp_path / "hand.inp")
+    path.write_text(text)
+    mesh = Abaqus().read(path)
     assert mesh.nodes("Fixed").tolist() == [0, 1] and mesh.facets("Race").tolist() == [[0, 1]]
-    (tmp_path / "hand.inp").write_text(text.replace("ALL, S2", "Alll, S2"))
+    path.write_text(text.replace("ALL, S2", "Alll, S2"))
     with pytest.raises(MeshError, match="surface 'Race' has the line 'Alll, S2'.*Known element sets: all"):
-        Abaqus().read(tmp_path / "hand.inp")
-
-
-def test_element_sets_that_are_not_taken_over_are_told(tmp_path):
-    mesh = block()
-    Abaqus().write(tmp_path / "body.inp", mesh)
-    with (tmp_path / "body.inp").open("a") as file:
-        file.write("*ELSET, ELSET=Fixed_end\n1, 2, 3\n")
-    with pytest.warns(UserWarning, match=r"body.inp': element sets fixed_end are not taken over"):
-        Abaqus().read(tmp_path / "body.inp")
+        Abaqus().read(path)
+    Abaqus().write(path, block())
+    path.write_text(path.read_text() + "*ELSET, ELSET=Fixed_end\n1, 2, 3\n")
+    with pytest.warns(UserWarning, match=r"hand.inp': element sets fixed_end are not taken over"):
+        Abaqus().read(path)
 
 
 @pytest.fixture
@@ -132,55 +117,58 @@ def test_sets_are_mapped_and_the_ball_is_placed(given):
     assert corner == pytest.approx([0.0, 0.0, 0.5 * BEARING.pitch_diameter], abs=1e-12)
 
 
+APART = np.concatenate([block().points, block().points + [0.1, 0.0, 0.0]])
+#: Meshes that a body's file must not hold: body, changes of a block, sets of the scene, words.
+UNUSABLE = {
+    "no such set": ("inner_ring", {}, {"raceway": "outsid"}, r"`mesh.sets.inner_ring.raceway`: .*no facet set 'outsid' \(did you mean 'outside'\?\)"),
+    "empty set": ("inner_ring", {"facet_sets": {"hollow": []}}, {"raceway": "hollow"}, "facet set 'hollow' is empty"),
+    "inside out": ("inner_ring", {"points": block().points * [1, 1, -1]}, {}, r"inner_ring \(body.vtu\).*60 of 60 cells.*inverted"),
+    "all balls": ("ball", {"points": APART, "cells": np.concatenate([block().cells, block().cells + len(APART) // 2])}, {},
+                  r"`mesh.ball` = .*2 parts.* file of one ball about its centre: x rolling"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", UNUSABLE)
+def test_meshes_that_are_no_body(case, tmp_path):
+    body, change, sets, words = UNUSABLE[case]
+    path = str(tmp_path / "body.vtu")
+    Vtu().write(path, attrs.evolve(block(), **change))
+    with pytest.raises(MeshError, match=words):
+        File(**{body: path}, sets={body: sets} if sets else {}).mesh(BEARING)
+
+
 @pytest.mark.parametrize(
-    ("sets", "words"),
+    ("mesher", "name", "words"),
     [
-        ({"raceway": "outsid"}, r"`mesh.sets.inner_ring.raceway`: .*no facet set 'outsid' \(did you mean 'outside'\?\)"),
-        ({"raceway": "hollow"}, "facet set 'hollow' is empty"),
+        (File, "body.obj", "no format has the ending '.obj'"),
+        (File, "gone.vtu", "does not exist"),
+        *(
+            pytest.param(Gmsh, name, words, marks=pytest.mark.needs("gmsh"))
+            for name, words in (
+                ("bad.step", "not a STEP file"),
+                ("gone.step", "does not exist"),
+                ("x.iges", "reads .step"),
+                ("cut.step", "cut.step' cannot be meshed: Could not read"),
+            )
+        ),
     ],
 )
-def test_missing_and_empty_sets_of_a_file(tmp_path, sets, words):
-    mesh = block()
-    Vtu().write(tmp_path / "body.vtu", attrs.evolve(mesh, facet_sets={**mesh.facet_sets, "hollow": []}))
+def test_files_of_no_use(mesher, name, words, tmp_path, capfd):
+    (tmp_path / "bad.step").write_text("nothing of the kind")
+    (tmp_path / "cut.step").write_text("ISO-10303-21; nothing more")
     with pytest.raises(MeshError, match=words):
-        File(inner_ring=str(tmp_path / "body.vtu"), sets={"inner_ring": sets}).mesh(BEARING)
-
-
-def test_inverted_cells_of_a_file_are_refused(tmp_path):
-    mesh = block()
-    Vtu().write(tmp_path / "body.vtu", attrs.evolve(mesh, points=mesh.points * [1, 1, -1]))
-    with pytest.raises(MeshError, match=r"inner_ring \(body.vtu\).*60 of 60 cells.*inverted"):
-        File(inner_ring=str(tmp_path / "body.vtu")).mesh(BEARING)
-
-
-@pytest.mark.parametrize(
-    ("path", "words"), [("body.obj", "no format has the ending '.obj'"), ("gone.vtu", "does not exist")]
-)
-def test_files_of_no_use(tmp_path, path, words):
-    with pytest.raises(MeshError, match=words):
-        File(ball=str(tmp_path / path)).mesh(BEARING)
+        mesher(ball=str(tmp_path / name)).mesh(BEARING)
+    said = capfd.readouterr()
+    assert said.out == "" and said.err == ""  # a reader's own complaints would spoil --json
 
 
 def test_scenes_name_files_beside_them(given, tmp_path):
-    text = '[bearing]\npreset = "B7206C"\n[mesh]\nkind = "file"\nscale = 1e-2\ninner_ring = "body.inp"\n[mesh.sets.inner_ring]\nraceway = "outside"\n'
-    (tmp_path / "scene.toml").write_text(text)
+    mesh = 'kind = "file"\nscale = 1e-2\ninner_ring = "body.inp"\nsets = {inner_ring = {raceway = "outside"}}\n'
+    (tmp_path / "scene.toml").write_text(f'[bearing]\npreset = "B7206C"\n[mesh]\n{mesh}')
     assert mesh_scene(load_scene(tmp_path / "scene.toml"))["inner_ring"].volume() == pytest.approx(6e-6)
-    for mesh, words in (
-        ({"kind": "file"}, "names no body"),
-        ({"kind": "file", "ball": "b.inp", "sets": {"bal": {}}}, r"did you mean 'ball'"),
-    ):
+    for more, words in (({}, "names no body"), ({"ball": "b.inp", "sets": {"bal": {}}}, r"did you mean 'ball'")):
         with pytest.raises(SceneError, match=words):
-            scene_from_dict({"bearing": {"preset": "B7206C"}, "mesh": mesh})
-
-
-def test_the_file_of_all_balls_is_no_ball(tmp_path):
-    one = block()
-    apart = np.concatenate([one.points, one.points + [0.1, 0.0, 0.0]])
-    both = attrs.evolve(one, points=apart, cells=np.concatenate([one.cells, one.cells + len(one.points)]))
-    Vtu().write(tmp_path / "balls.vtu", both)
-    with pytest.raises(MeshError, match=r"`mesh.ball` = .*2 parts.* file of one ball about its centre: x rolling") as told:
-        File(ball=str(tmp_path / "balls.vtu")).mesh(BEARING)
-    assert told.value.mistake.path == "mesh.ball"
+            scene_from_dict({"bearing": {"preset": "B7206C"}, "mesh": {"kind": "file", **more}})
 
 
 def test_elastic_bodies_name_the_file_and_the_set_that_it_lacks(given):
@@ -239,27 +227,3 @@ def test_a_step_ball_needs_subdivision(solids):
 def test_sizes_that_gmsh_shall_not_try(solids, size, words):
     with pytest.raises(MeshError, match=words):
         Gmsh(inner_ring=str(solids / "box.step"), element_size=size).mesh(BEARING)
-
-
-@pytest.mark.needs("gmsh")
-def test_step_files_that_are_none(solids, tmp_path):
-    (tmp_path / "bad.step").write_text("nothing of the kind")
-    for name, words in (("bad.step", "not a STEP file"), ("gone.step", "does not exist"), ("x.iges", "reads .step")):
-        with pytest.raises(MeshError, match=words):
-            Gmsh(ball=str(tmp_path / name)).mesh(BEARING)
-
-
-@pytest.mark.needs("gmsh")
-def test_damaged_step_files_are_told_in_one_message(tmp_path, capfd):
-    (tmp_path / "cut.step").write_text("ISO-10303-21; nothing more")
-    with pytest.raises(MeshError, match=r"cut.step' cannot be meshed: Could not read"):
-        Gmsh(ball=str(tmp_path / "cut.step")).mesh(BEARING)
-    said = capfd.readouterr()
-    assert said.out == "" and said.err == ""  # the reader's own complaints would spoil --json
-
-
-@pytest.mark.needs("gmsh")
-def test_without_gmsh_the_extra_is_named(solids, monkeypatch):
-    monkeypatch.setitem(sys.modules, "gmsh", None)
-    with pytest.raises(MeshError, match=r"pip install '.\[gmsh\]'"):
-        Gmsh(inner_ring=str(solids / "box.step")).mesh(BEARING)
