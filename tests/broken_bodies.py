@@ -5,10 +5,10 @@ from itertools import count
 import attrs
 import numpy as np
 
+from raceway import ConvergenceError, Mistake, make_plan
 from raceway.bodies.rigid.build import RigidBearing
 from raceway.bodies.rigid.kind import Rigid
 from raceway.core.ring.system import System
-from raceway.errors import ConvergenceError, Mistake
 from raceway.framework.contracts import Cost, Traits
 
 TIMES = count(1)
@@ -117,7 +117,6 @@ def single(self, scene, plan):
 
 
 def builds(self, scene):
-    from raceway.planning.plan import make_plan
 
     Rigid.build(self, scene, make_plan(attrs.evolve(scene, bodies=Rigid())))
     return []

@@ -6,10 +6,8 @@ import attrs
 import numpy as np
 from numba import float64, njit, void
 
-from raceway import option
+from raceway import LAW, jit, option
 from raceway.contact_laws.hertz import Hertz
-from raceway.core.jit import jit
-from raceway.core.signatures import LAW
 
 
 @jit(LAW)

@@ -5,9 +5,7 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from raceway import hookimpl, option, positive
-from raceway.core.jit import jit
-from raceway.core.signatures import LAW
+from raceway import LAW, hookimpl, jit, option, positive
 
 
 @jit(LAW)

@@ -11,8 +11,7 @@ import tomllib
 import pytest
 
 import raceway as rw
-from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.registry import default_registry
+from raceway import ConvergenceError, SceneError
 from raceway.scene.file import read_toml
 from raceway.studies.article.elastic import design as designs
 from raceway.studies.article.elastic import deviations, run_one
@@ -21,6 +20,7 @@ from raceway.studies.article.elastic.design import SCENE, Design, Run, design
 from raceway.studies.article.elastic.figures import pictures
 from raceway.studies.article.elastic.report import page
 from raceway.studies.article.elastic.told import Told
+from raceway.testing import default_registry
 from validation.article_study import elastic_rows, elastic_study
 from validation.command_line import EXAMPLES, invoke
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.bodies.model import build_model
+from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
 from raceway.pipeline.ball_pass import ball_pass, ball_pass_table
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import run, settle
 
 
 def test_a_bearing_of_a_public_data_set_has_the_printed_frequencies():

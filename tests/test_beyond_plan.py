@@ -8,11 +8,10 @@ import json
 import numpy as np
 import pytest
 
-from raceway import SceneError, check, load_scene, make_plan, plan, scene_from_dict
+from raceway import BeyondPlanError, SceneError, check, load_scene, make_plan, plan, scene_from_dict
 from raceway.cli import main
-from raceway.errors import BeyondPlanError
 from raceway.pipeline.allowance import PATIENCE, Allowance
-from raceway.pipeline.run import run
+from raceway.testing import run
 from tests.test_elastic_scene import QUICK
 from tests.test_elastic_scene import scene as elastic_scene
 from validation.command_line import ARTICLE, invoke

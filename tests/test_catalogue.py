@@ -8,13 +8,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.errors import SceneError
-from raceway.pipeline.run import run
+from raceway import SceneError, scene_from_dict
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
 from raceway.scene.growth import grooves
-from raceway.scene.reading import scene_from_dict
 from raceway.studies.infer.printed import printed_by
+from raceway.testing import run
 
 POUND = 4.4482216152605
 #: What no document states of each preset: makers print neither conformities nor, for most bearings, balls.

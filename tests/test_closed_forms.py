@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from raceway.pipeline.settle import settle
 from raceway.planning.closed_form import axial_approach, series_factor
+from raceway.testing import settle
 
 
 @pytest.mark.parametrize("axial", [50.0, 400.0, 1000.0, 4000.0])

@@ -9,16 +9,13 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
+from raceway import Comparison, ConvergenceError, SceneError, scene_from_dict
 from raceway.studies.compare import study
-from raceway.studies.compare.comparison import Comparison
 from raceway.studies.compare.explain import percent
 from raceway.studies.compare.findings import Row
 from raceway.studies.compare.study import StudyInterrupt, compare, tables_at
 from raceway.studies.many.axes import MOST_POINTS, parse_axes, points
+from raceway.testing import default_registry, run
 
 SCENE = {
     "title": "test",

@@ -8,7 +8,7 @@ import warnings
 import attrs
 import pytest
 
-from raceway.errors import PluginError
+from raceway import PluginError
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.serial import Serial
 from raceway.studies.sweep import sweep

@@ -9,18 +9,14 @@ import json
 import numpy as np
 import pytest
 
+from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.elastic.plan import allowed_bytes
-from raceway.bodies.model import build_model
 from raceway.core.elastic.solver import LinearSolver
 from raceway.core.elastic.start import from_orbit
 from raceway.core.ring.orbit import steady_orbit
-from raceway.errors import RacewayError, SceneError
 from raceway.pipeline.allowance import Allowance
-from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
 from raceway.scene.unused import unused
+from raceway.testing import run, settle
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.
 TINY = {

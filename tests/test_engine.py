@@ -4,13 +4,12 @@ import os
 
 import pytest
 
-from raceway import scene_from_dict
-from raceway.errors import RacewayError, SceneError
-from raceway.framework.registry import Registry, default_registry
+from raceway import RacewayError, SceneError, scene_from_dict
 from raceway.plugins.executors.processes import Processes
 from raceway.plugins.executors.serial import Serial
 from raceway.studies.many.engine import Item, work_through
 from raceway.studies.many.row_store import RowStore
+from raceway.testing import Registry, default_registry
 
 REGISTRY = default_registry()
 ITEMS = [Item(f"key {number}", f"number {number}", number) for number in range(6)]

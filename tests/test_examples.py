@@ -8,11 +8,9 @@ from pathlib import Path
 import attrs
 import pytest
 
-from raceway import load_scene
+from raceway import SceneError, load_scene, make_plan
 from raceway.bodies.condensed.kind import Condensed
-from raceway.errors import SceneError
-from raceway.pipeline.run import run
-from raceway.planning.plan import make_plan
+from raceway.testing import run
 from validation.command_line import invoke
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from raceway import ConvergenceError, SceneError
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.direct import directly
 from raceway.core.periodic.doubling import doubled
 from raceway.core.periodic.sampling import displacements
 from raceway.core.periodic.special import DOUBLING, FOLD, PAIR, special_points
-from raceway.errors import ConvergenceError, SceneError
 from raceway.studies.follow.instead import QUASI, REPEATS, WANDERS, judged
 from raceway.studies.follow.study import FollowInterrupt
 from validation.command_line import invoke

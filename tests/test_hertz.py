@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway import RacewayError
 from raceway.core.contact.hertz import contact_modulus, ellipse, ellipticity
-from raceway.errors import RacewayError
 from validation.reference.hertz import contact
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)

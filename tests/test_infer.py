@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
-from raceway.errors import SceneError
 from raceway.studies.infer.grooves import pair_stiffness
 from raceway.studies.infer.infer import STIFFNESS_90, infer_printed
 from raceway.studies.infer.practices import CONFORMITY, LIMITS

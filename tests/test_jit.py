@@ -16,9 +16,8 @@ import pytest
 from numba.core.caching import IndexDataCacheFile
 
 import raceway
-from raceway.core.jit import clock, jit
-from raceway.core.signatures import LAW
-from raceway.errors import PluginError
+from raceway import LAW, PluginError, jit
+from raceway.core.jit import clock
 from raceway.storage.cache_folder import current_folder, make, refusal
 from raceway.storage.kernel_files import opened
 from validation.command_line import python

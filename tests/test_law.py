@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 import raceway as rw
-from raceway.errors import RacewayError, SceneError
+from raceway import RacewayError, SceneError
 from validation.command_line import EXAMPLES, invoke
 
 CUBIC = EXAMPLES.parent / "tests" / "cubic_law.py"

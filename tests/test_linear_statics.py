@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from raceway import ConvergenceError
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear.statics import solve_static
-from raceway.errors import ConvergenceError
 from validation.natural_modes import natural_modes
 from validation.reference import annulus, elastic
 

@@ -6,16 +6,14 @@ import json
 
 import pytest
 
-from raceway import scene_from_dict
-from raceway.errors import SceneError
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
+from raceway import SceneError, scene_from_dict
 from raceway.scene.file import read_toml
 from raceway.studies.map import study as study_module
 from raceway.studies.map.curves import SATURATED, curves, trend, words
 from raceway.studies.map.design import ANGLE, AXIAL, METHODS, SPEED, TILT, design
 from raceway.studies.map.point import small_signal
 from raceway.studies.map.study import study_map
+from raceway.testing import default_registry, run
 from validation.command_line import EXAMPLES, invoke, raceway
 
 REGISTRY = default_registry()

@@ -8,13 +8,11 @@ from types import SimpleNamespace
 import attrs
 import pytest
 
-from raceway import scene_from_dict
-from raceway.errors import ConvergenceError
+from raceway import ConvergenceError, make_plan, scene_from_dict
 from raceway.pipeline.error import other_start
 from raceway.pipeline.error.estimate import _unresolved
 from raceway.pipeline.error.free_vibration import Clean
-from raceway.pipeline.run import run
-from raceway.planning.plan import make_plan
+from raceway.testing import run
 
 
 def rubbing(start="ramp", friction=0.3, kind="newmark", **tables):

@@ -8,19 +8,17 @@ import math
 import numpy as np
 import pytest
 
-from raceway.errors import RacewayError, SceneError
-from raceway.framework.registry import default_registry
+from raceway import RacewayError, SceneError, scene_from_dict
 from raceway.pipeline.error.free_vibration import hann_line
 from raceway.pipeline.motion import peak
-from raceway.pipeline.run import run
 from raceway.scene.file import read_toml
-from raceway.scene.reading import scene_from_dict
 from raceway.studies.many.measured_run import measured
 from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.precision import study as module
 from raceway.studies.precision.design import make_design
 from raceway.studies.precision.result import THRESHOLDS
 from raceway.studies.precision.study import precision
+from raceway.testing import default_registry, run
 from validation import error_estimate as evidence
 from validation.command_line import ARTICLE, invoke
 
@@ -140,7 +138,6 @@ def test_a_disk_that_takes_no_more_rows_does_not_stop_the_study(tmp_path):
 
 def test_a_run_that_compiled_is_not_among_the_repeats(monkeypatch):
     from raceway.core.jit import clock
-    from raceway.pipeline.run import run
 
     done = []
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from raceway import scene_from_dict
 from raceway.bodies.pressure import approach_at
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import run
 
 STIFFNESS = 1e15
 

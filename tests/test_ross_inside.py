@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.errors import RacewayError, SceneError
+from raceway import RacewayError, SceneError
 from raceway.studies.ross.harmonic_load import harmonic_load
 from raceway.studies.ross.installed import ross
 from raceway.studies.ross.node_bearing import node_bearing

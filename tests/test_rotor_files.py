@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.errors import RacewayError, SceneError
+from raceway import RacewayError, SceneError
 from tests.stores import SPEEDS, damping, made, scene, stiffness
 from validation.command_line import invoke
 from validation.rotor_files import COMBI214, DIGITS, apdl, by_direction, constants, entries, read_csv, tables

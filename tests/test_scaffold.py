@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from raceway.errors import PluginError
+from raceway import PluginError
 from raceway.framework.contracts import KINDS
 from raceway.testing.scaffold import new_plugin
 

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raceway import scene_from_dict
+from raceway import ConvergenceError, scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.core.periodic import beginning, direct
 from raceway.core.ring.orbit import differentiation
-from raceway.errors import ConvergenceError
-from raceway.pipeline.run import run
+from raceway.testing import run
 from validation.several import article, by_integration, heavy
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 import raceway as rw
-from raceway.scene.reading import scene_from_dict
+from raceway import scene_from_dict
 
 SPEED = 12000.0
 

@@ -10,18 +10,15 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.bodies.model import build_model
+from raceway import PluginError, build_model, make_plan, scene_from_dict
 from raceway.core.ring.increment import Increment
 from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
-from raceway.errors import PluginError
 from raceway.integrators.newmark import Newmark
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
 from raceway.studies.stability.systems import BASE
+from raceway.testing import settle
 
 SIX = np.zeros((6, 2))
 NARROW = np.zeros((12, 1))

@@ -2,10 +2,9 @@
 
 import pytest
 
-from raceway import hookimpl
-from raceway.errors import PluginError
-from raceway.framework.registry import Registry
+from raceway import PluginError, hookimpl
 from raceway.studies import command
+from raceway.testing import Registry
 from validation.command_line import invoke, raceway
 
 STUDY = """

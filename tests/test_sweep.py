@@ -17,14 +17,11 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.errors import PluginError, RacewayError, SceneError
+from raceway import PluginError, RacewayError, SceneError, scene_from_dict
 from raceway.framework.contracts import Lost, Refused
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.joblib import Joblib
 from raceway.plugins.executors.serial import Serial
-from raceway.scene.reading import scene_from_dict
 from raceway.studies.many.axes import parse_axes, points
 from raceway.studies.many.points import tables_at
 from raceway.studies.many.work import Work
@@ -33,6 +30,7 @@ from raceway.studies.sweep import sweep as study
 from raceway.studies.sweep.store import facts_digest, written
 from raceway.studies.sweep.variables import values_of
 from raceway.studies.sweep.work import Chain
+from raceway.testing import default_registry, run
 from tests.deadly_work import Deadly
 from validation.command_line import ARTICLE, invoke
 

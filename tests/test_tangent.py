@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.core.ring.kernels.layout import DAMPING
-from raceway.testing import settled
+from raceway.testing import settle, settled
 from validation.tangent import cases
 
 CASES = cases()
@@ -43,7 +43,6 @@ def test_damping_tangent_is_the_derivative_by_velocity(inertia):
 def test_two_balls_in_line_with_the_load_share_it(built):
     """Tangent of the axial direction equals the closed form of equally loaded balls in series."""
     model = built(load={"axial": 1000.0})
-    from raceway.testing import settle
 
     now = settle(model)
     z, load, angle = 12, now.contact_force[0], now.angle_inner[0]

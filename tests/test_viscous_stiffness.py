@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.bodies.model import build_model
+from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.ring.kernels.layout import DAMPING, LEVER, SIDE, TILT_ARM, TIME_CONSTANT
-from raceway.pipeline.settle import settle
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
+from raceway.testing import settle
 
 SPEED = 24000.0
 #: Force of whole runs over the axial load: Z of an orbit is off by its square, 6e-8, and by what the run claims, 1e-8.

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import scene_from_dict
+from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, place
 from raceway.core.signals.lines import phasors
 from raceway.core.signatures import Constants
@@ -103,7 +103,6 @@ def test_lines_above_half_the_sampling_rate_are_left_out():
 
 
 def test_orbiting_without_speed_is_refused():
-    from raceway import SceneError, make_plan
 
     with pytest.raises(SceneError, match=r"kinematics\.orbiting.*spin speed"):
         make_plan(scene_from_dict(b7206c(kinematics={"orbiting": True})))

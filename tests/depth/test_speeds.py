@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raceway import SceneError, scene_from_dict
+from raceway import ConvergenceError, SceneError, make_plan, scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.core.ring.friction import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
@@ -244,7 +244,6 @@ def test_run_up_force_is_the_reaction_of_the_centre_of_mass():
 
 @pytest.mark.parametrize("identifier", ["fft_1x", "sine_fit", "tangent", "impedance_fit"])
 def test_identifiers_of_one_speed_are_refused(identifier):
-    from raceway import make_plan
 
     tables = rising()
     tables["identifier"] = {"kind": identifier, **({"speeds_rpm": [8e3, 9e3]} if identifier == "impedance_fit" else {})}
@@ -253,7 +252,6 @@ def test_identifiers_of_one_speed_are_refused(identifier):
 
 
 def test_short_run_up_is_refused_with_the_remedy():
-    from raceway import ConvergenceError
 
     with pytest.raises(ConvergenceError, match="less than 4 turns.*window_turns"):
         run(scene_from_dict(rising(duration=0.02)))
@@ -359,7 +357,6 @@ def test_a_changing_speed_is_not_told_as_damping(damping, tilt):
 @pytest.mark.parametrize("tables", [{"bodies": {"kind": "elastic"}}, {"contact": {"discretisation": "nodal"}}])
 def test_bodies_whose_forces_do_not_follow_are_refused(tables):
     """With a speed of their own they run."""
-    from raceway import make_plan
 
     nodal = {"contact": {"kind": "unilateral", "discretisation": "nodal"}, "bodies": {"kind": "condensed"}}
     whole = {"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0}}
