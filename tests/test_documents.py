@@ -50,7 +50,7 @@ NOT_RUN = {
     "OMP_NUM_THREADS=1 dask worker tcp://127.0.0.1:8786 --nworkers 2 --nthreads 1": _THREE,
     "raceway sweep examples/b7206.toml --set integrator.kind=periodic --grid excitation.speed_rpm=10980:15000:41 "
     "--grid load.axial=400:2000:17 --executor dask --scheduler tcp://127.0.0.1:8786 --out raceway-out/map": _THREE,
-    "cd raceway-power && pip install -e . && pytest": "tests/test_scaffold.py does it",
+    "cd raceway-power && pip install -e . && pytest": "tests/test_third_party.py does it",
     "python -m benchmarks.against_calculix --scene benchmarks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
     "python -m benchmarks.against_calculix --json": "a minute; tests/evidence/test_elastic.py does it",
     "raceway run benchmarks/b7206_elastic_60k.toml": "a minute; tests/evidence/test_elastic.py does it",

@@ -13,7 +13,7 @@ from raceway.pipeline.error import estimate as error_estimate
 from raceway.pipeline.error.finer_series import more_equilibria
 from raceway.pipeline.error.steady_motion import _at_speed, settles_elsewhere
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
-from raceway.testing import run
+from raceway.testing import b7206c, run
 from validation.error_estimate import judge, named, right
 from validation.scenes import rotating
 from validation.series_errors import SERIES, series
@@ -157,3 +157,25 @@ def test_a_second_run_that_vibrates_by_more_than_its_steps_change_is_made_with_c
     estimate, true, _ = judge(case)
     assert right(estimate, true), (estimate, true)
     assert "240 instead of 360 steps" in run(scene_from_dict(case.tables)).error["how"]["time_step"]
+
+
+def motion(tolerance: float, axial: float):
+    tables = b7206c(
+        load={"axial": axial},
+        rotor={"mass": 2.0},
+        excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5},
+        supports={"tilt": "free"},
+        integrator={"kind": "periodic", "tolerance": tolerance, "symmetry": "none"},
+    )
+    return run(scene_from_dict(tables))
+
+
+@pytest.mark.parametrize("axial", [400.0, 1000.0])
+def test_the_stated_error_is_neither_far_below_nor_far_above_the_true_one(axial):
+    loose, tight = motion(1e-3, axial), motion(1e-11, axial)
+    stated = loose.simulation.whole.counts["error"]
+    change = (loose.simulation.record.displacement - tight.simulation.record.displacement)[:, :3]
+    size = np.abs(tight.simulation.record.displacement[:, 1:3]).max()
+    true = np.abs(change).max() / size
+    assert true <= 3.0 * stated
+    assert stated <= 30.0 * true

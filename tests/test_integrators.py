@@ -1,4 +1,4 @@
-"""Agreement, restart and failure of the time integrators; their order: evidence/test_integrators.py."""
+"""Time integrators: agreement, restart, failure, those of third parties, states of another shape; order: evidence/test_integrators.py."""
 
 from __future__ import annotations
 
@@ -8,15 +8,19 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
+from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
 from raceway.core.ring.address import by_address
+from raceway.core.ring.increment import Increment
 from raceway.core.ring.start import at_rest
+from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.compiled import outer_force
 from raceway.core.schemes.drivers import Drivers, integrate
 from raceway.core.schemes.one_step.scheme import OneStep
 from raceway.core.signatures import Outer
 from raceway.core.stepping.protocol import State
 from raceway.core.stepping.record import Schedule
+from raceway.integrators.newmark import Newmark
+from raceway.studies.stability.systems import BASE
 from raceway.testing import Registry, model_of, settle, simulate
 from validation import orders
 from validation.scenes import rotating
@@ -241,3 +245,50 @@ def test_a_method_without_the_driver_is_refused_by_the_plan(bodies):
     with pytest.raises(SceneError, match=r"`integrator.kind` = 'compiled': has no driver `stepped`"):
         make_plan(scene(bodies, "compiled"))
     make_plan(scene("condensed", "compiled"))
+
+
+SIX = np.zeros((6, 2))
+NARROW = np.zeros((12, 1))
+
+
+@pytest.fixture(scope="module")
+def bearing():
+    scene = scene_from_dict(BASE)
+    model = build_model(scene, make_plan(scene))
+    return model.system, settle(model)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"ball": SIX}, r"`ball` has the shape \(6, 2\); that of this system is \(12, 2\): a row for each ball"),
+        ({"ball": NARROW}, r"`ball` has the shape \(12, 1\)"),
+        ({"ball_rate": SIX}, r"`ball_rate` has the shape \(6, 2\)"),
+        (
+            {"step": Increment(memory=np.zeros((12, 1)))},
+            r"`memory` has the shape \(12, 1\); that of this system is \(24, 0\)",
+        ),
+        ({"v": np.zeros(3)}, r"`v` has the shape \(3,\)"),
+    ],
+)
+def test_evaluate_refuses_states_of_another_shape(bearing, arguments, words):
+    system, still = bearing
+    with pytest.raises(PluginError, match=words):
+        system.evaluate(still.displacement, **arguments)
+
+
+def test_an_equilibrium_refuses_balls_of_another_bearing(bearing):
+    system, still = bearing
+    with pytest.raises(PluginError, match=r"settle\(\): `ball` has the shape \(6, 2\)"):
+        system.settle(still.displacement, SIX)
+
+
+@pytest.mark.parametrize("name", ["ball", "ball_before"])
+def test_a_start_of_another_bearing_is_refused_by_both_loops(bearing, name):
+    system, still = bearing
+    start = attrs.evolve(at_rest(system, still.displacement, still.ball, False), **{name: SIX})
+    words = rf"the motion that an integration starts from: `{name}` has the shape \(6, 2\)"
+    with pytest.raises(PluginError, match=words):
+        integrate(Newmark(), system, start, Schedule(1e-6, 10, 1))
+    with pytest.raises(PluginError, match=words):
+        SteppedBearing(system).begin(start)

@@ -13,7 +13,7 @@ import pytest
 
 from raceway import RacewayError, SceneError
 from raceway.plugins.executors.serial import Serial
-from raceway.studies.ross.coefficients import coefficients
+from raceway.studies.ross.coefficients import Coefficients, coefficients
 from raceway.studies.ross.file import NAMES, ross_file
 from raceway.studies.ross.reading import smoothed, through_points
 from raceway.studies.sweep import grid, prepare, sweep
@@ -299,3 +299,21 @@ def test_another_ending_is_refused(tmp_path):
     with pytest.raises(RacewayError, match="ROSS reads .toml and .json"):
         ross_file(table(made({SPEED: SPEEDS})), 3, "t", 0, ()).write(tmp_path / "bearing.xls")
     assert issubclass(SceneError, RacewayError)
+
+
+SPINS = np.linspace(100.0, 900.0, 5)
+#: ROSS' axes (X, Y) are (y, z) of the bearing: row, then column.
+PLACES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1)}
+
+
+def test_no_two_entries_are_swapped():
+    stiffness = 1e8 * np.array([[1.0, 2.0], [3.0, 4.0]]) + np.zeros((5, 1, 1))
+    damping = np.array([[10.0, 20.0], [30.0, 40.0]]) + SPINS[:, None, None]
+    still = np.zeros((5, 5, 5))
+    table = Coefficients(SPINS, None, stiffness, damping, np.full(5, 7e7), "tangent", "made up", (), still, still, "locked")
+    for generation in (2, 3):
+        content = ross_file(table, generation, "made_up", 1, ()).content
+        for name, (row, column) in PLACES.items():
+            np.testing.assert_array_equal(content[f"k{name}"], stiffness[:, row, column])
+            np.testing.assert_array_equal(content[f"c{name}"], damping[:, row, column])
+        np.testing.assert_array_equal(content["kzz"], 7e7)

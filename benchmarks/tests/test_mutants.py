@@ -54,7 +54,7 @@ def test_there_are_enough_and_no_two_are_the_same():
 
 
 def test_a_text_that_does_not_occur_once_is_refused():
-    fault = Fault("some.py", "a + b", "a - b", ("tests/test_geometry.py",), "a sign")
+    fault = Fault("some.py", "a + b", "a - b", ("tests/test_contact.py",), "a sign")
     assert fault.put("c = a + b\n") == "c = a - b\n"
     for source in ("c = b + a\n", "c = a + b\nd = a + b\n"):
         with pytest.raises(ValueError, match="must be once"):

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from cmath import exp
+from math import pi
+
 import numpy as np
 import pytest
 
 from raceway import RacewayError
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.marks import marks_of
-from raceway.studies.measured.orders import order
+from raceway.studies.measured.orders import Order, order
 from raceway.studies.measured.recording import Recording
+from raceway.studies.measured.run_out import less_response
+from raceway.studies.shaft.rotor import rotor
 
 LINE = 3e-6 * np.exp(0.7j)
 HZ = 183.3
@@ -154,3 +159,27 @@ def test_angles_of_noisy_marks_grow_from_sample_to_sample():
         found = turning(noisy(made(rate=100e3, duration=0.06), 0.05, seed))
         assert np.diff(found.angle).min() > 0.0
         assert found.angle[0] >= 0.0 and found.angle[-1] < 2.0 * np.pi * found.turns
+
+
+#: Of the unbalance from the mark [rad].
+ANGLE = 0.6
+
+
+def rolled(line: complex, speed: float) -> Order:
+    return Order(line, 0.0, 0.0, speed, speed, speed, line, 0.0, 0.0, 40, 16, True)
+
+
+@pytest.mark.parametrize("rpm", [600.0, 3000.0])
+@pytest.mark.parametrize("true", [0.0, 5e-6 * exp(1.1j)])
+def test_the_response_is_taken_out(rig, held, rpm, true):
+    """The response from the whole rotor on the bearings' springs: load and deflection in one system, not by compliances."""
+    line = rotor(rig, rpm * pi / 30.0)
+    # Unknowns: deflection and slope of the ring, force and moment on the bearing.
+    stiffness = np.linalg.inv(held.compliance)
+    system = np.block([[np.eye(2), -line.ring[:, 1:].astype(complex)], [stiffness, -np.eye(2)]])
+    load = np.concatenate([line.ring[:, 0] * line.unbalance_force, np.zeros(2)])
+    force, moment = np.linalg.solve(system, load)[2:]
+    response = line.at_sensor(force, moment) * exp(1j * ANGLE)
+    assert abs(response) > 1e-9  # there is something to take out
+    found = less_response(rolled(true + response, line.speed), held, line, ANGLE)
+    assert found.vector == pytest.approx(true, abs=1e-6 * abs(response))
