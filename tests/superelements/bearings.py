@@ -1,26 +1,22 @@
-"""A tiny bearing whose rings are equal sectors, solved by superelements and, unreduced, by conjugate gradients."""
+"""A tiny bearing whose rings are equal sectors, also without superelements; elimination of a dense matrix, written to be read."""
 
 from __future__ import annotations
-
-import copy
 
 import attrs
 import numpy as np
 
-from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.elastic.bearing import ElasticBearing
 from raceway.core.elastic.system import ElasticSystem
+from raceway.testing import model_of
 from tests.test_elastic_scene import TINY
+
+STEEL = 212e9, 0.29, 7810.0
 
 
 def built(**tables):
     """A model of three balls, eight cells around the rings for each: none that a contact may touch lies on a cut plane."""
-    merged = copy.deepcopy(TINY)
     tables = {"mesh": {"azimuth_cells": 24}, "load": {"radial": [200.0, 100.0]}} | tables
-    for name, table in tables.items():
-        merged[name] = {**merged.get(name, {}), **table}
-    found = scene_from_dict(merged)
-    return build_model(found, make_plan(found))
+    return model_of(TINY | {name: TINY.get(name, {}) | table for name, table in tables.items()})
 
 
 def with_node_moved(model, bodies, part):
@@ -46,3 +42,19 @@ def start_of(model):
     """(size,) undeformed bodies where rigid ones are in balance."""
     ring = model.system
     return ring._undeformed(ring.surrogate, np.zeros(5))
+
+
+def assembled(operator, mass: float = 0.0) -> np.ndarray:
+    """(3 n, 3 n) K + mass * M of a mesh."""
+    return operator.stiffness().toarray() + mass * np.diag(np.repeat(operator.lumped_mass(), 3))
+
+
+def schur(matrix: np.ndarray, kept: np.ndarray, inner: np.ndarray) -> np.ndarray:
+    """A_kk - A_ki A_ii^-1 A_ik: what forces on the kept unknowns find with none on the inner ones."""
+    return matrix[np.ix_(kept, kept)] - matrix[np.ix_(kept, inner)] @ np.linalg.solve(
+        matrix[np.ix_(inner, inner)], matrix[np.ix_(inner, kept)]
+    )
+
+
+def unknowns(nodes: np.ndarray) -> np.ndarray:
+    return (3 * np.asarray(nodes)[:, None] + np.arange(3)).ravel()

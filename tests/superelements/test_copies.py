@@ -1,11 +1,17 @@
-"""Balls and sectors that are the same mesh, turned; those that are not, by the tenth digit of one node, are told."""
+"""Balls and sectors that are the same mesh, turned, or not by the tenth digit of one node; forces of equal parts by one matrix."""
 
 from __future__ import annotations
+
+from functools import cache
 
 import numpy as np
 import pytest
 
+from raceway.core.elastic.body_forces import BodyForces
+from raceway.core.elastic.copied_stiffness import CopiedStiffness
 from raceway.core.elastic.copies import Copies, same_bodies, sectors, turn
+from raceway.core.hexahedron.block_rows import BlockRows
+from raceway.core.threads import ThreadPool
 from tests.superelements.bearings import built
 from validation.reference import elastic
 
@@ -37,18 +43,18 @@ def test_a_ball_with_a_node_moved_in_the_tenth_digit_is_a_group_of_its_own():
     bodies, starts = balls()
     bodies[2][0][7] *= 1.0 + 1e-10
     assert [members for _, members in same_bodies(bodies, AZIMUTH, starts)] == [[0, 1, 3, 4], [2]]
-
-
-def test_balls_of_other_cells_are_other_balls():
-    bodies, starts = balls()
+    bodies, starts = balls()  # of other cells
     bodies[1] = bodies[1][0], np.roll(bodies[1][1], 1, axis=0)
     bodies[3] = bodies[3][0][:-1], bodies[3][1]
     assert [members for _, members in same_bodies(bodies, AZIMUTH, starts)] == [[0, 2, 4], [1], [3]]
 
 
+tiny = cache(built)
+
+
 def ring_parts(index):
     """Points, cells, marks and azimuths of a ring of the tiny bearing: its seat is marked."""
-    bearing = built().bearing.bearing
+    bearing = tiny().bearing.bearing
     body = bearing.system.assembly.bodies[index]
     marks = np.zeros((len(body.points), 1), dtype=bool)
     marks[bearing._meshes[index].nodes("seat")] = True
@@ -73,49 +79,109 @@ def test_both_structured_rings_are_sectors(index):
     assert (np.sort(found.nodes[:, own].ravel()) == 100 + np.arange(len(points))).all()
     made = np.sort(found.nodes[:, found.cells].reshape(-1, 8) - 100, axis=1)
     assert set(map(tuple, made)) == set(map(tuple, np.sort(cells, axis=1)))
-
-
-@pytest.mark.parametrize("index", [0, 1])
-def test_balls_are_in_the_middle_of_their_sectors(index):
-    points, cells, marks, azimuth = ring_parts(index)
-    found = sectors(points, cells, azimuth, marks, 0)
+    # Balls are in the middle of their sectors.
     centre = found.points[found.cells].mean(axis=1)
     along = np.arctan2(centre[:, 2], centre[:, 1]) - azimuth[0]
     along = np.abs(np.mod(along + np.pi, 2.0 * np.pi) - np.pi)
     assert along.max() < np.pi / len(azimuth)
 
 
-def no_sectors(**changes):
-    points, cells, marks, azimuth = ring_parts(0)
-    parts = {"points": points, "cells": cells, "azimuth": azimuth, "marks": marks} | changes
-    return sectors(**parts, first=0) is None
+def moved(points, node):
+    points[node] *= 1.0 + 1e-10
+    return points
 
 
-def test_a_ring_with_a_node_moved_in_the_tenth_digit_is_none():
-    points = ring_parts(0)[0]
-    assert not no_sectors()
-    for node in (0, 17, len(points) - 1):
-        moved = points.copy()
-        moved[node] *= 1.0 + 1e-10
-        assert no_sectors(points=moved)
+#: Parts of a ring that is none of equal sectors, from those of one that is.
+UNEQUAL = {
+    "first node moved in the tenth digit": lambda points, **_: {"points": moved(points, 0)},
+    "a node moved": lambda points, **_: {"points": moved(points, 17)},
+    "last node moved": lambda points, **_: {"points": moved(points, -1)},
+    "held in one sector alone": lambda marks, **_: {"marks": marks ^ (np.arange(len(marks)) == 3)[:, None]},
+    "a cell of one sector missing": lambda cells, **_: {"cells": cells[1:]},
+    "a cell of each sector missing": lambda cells, **_: {"cells": cells[3:]},
+    "balls at uneven azimuths": lambda azimuth, **_: {"azimuth": azimuth + [0.0, 1e-10, 0.0]},
+    "two balls": lambda azimuth, **_: {"azimuth": azimuth[0] + np.pi * np.arange(2)},
+    "seven balls over 24 cells around": lambda **_: {"azimuth": 2.0 * np.pi / 7 * np.arange(7)},
+}
 
 
-def test_a_ring_that_is_held_in_one_sector_alone_is_none():
-    marks = ring_parts(0)[2]
-    marks[3] = ~marks[3]
-    assert no_sectors(marks=marks)
+@pytest.mark.parametrize("case", UNEQUAL)
+def test_a_ring_of_unequal_parts_is_no_sectors(case):
+    parts = dict(zip(("points", "cells", "marks", "azimuth"), ring_parts(0), strict=True))
+    assert sectors(**parts | UNEQUAL[case](**parts), first=0) is None
 
 
-def test_a_ring_whose_cells_do_not_repeat_is_none():
-    """A cell taken out of one sector, and one of three."""
-    cells = ring_parts(0)[1]
-    assert no_sectors(cells=cells[1:])
-    assert no_sectors(cells=cells[3:])
+FORMULATIONS = ("one_point", "full", "incompatible")
+#: Sums of some hundred products.
+ROUNDING = 1e-13
 
 
-def test_balls_at_uneven_azimuths_or_two_of_them_have_none():
-    azimuth = ring_parts(0)[3]
-    assert no_sectors(azimuth=azimuth + [0.0, 1e-10, 0.0])
-    assert no_sectors(azimuth=azimuth[0] + np.pi * np.arange(2))
-    # Seven sectors of 24 cells around: no seventh of the cells.
-    assert no_sectors(azimuth=2.0 * np.pi / 7 * np.arange(7))
+def assembly_of(formulation):
+    return built(bodies={"formulation": formulation}).bearing.bearing.system.assembly
+
+
+def moved_by_chance(assembly, seed=0):
+    return np.random.default_rng(seed).standard_normal(3 * assembly.nodes)
+
+
+def element_by_element(assembly, u):
+    return np.concatenate(
+        [body.operator.internal_force(u[assembly.part(k)]).ravel() for k, body in enumerate(assembly.bodies)]
+    )
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+def test_forces_of_all_bodies_are_those_of_their_elements(formulation):
+    assembly = assembly_of(formulation)
+    u = moved_by_chance(assembly)
+    wanted = element_by_element(assembly, u)
+    found = np.zeros_like(u)
+    for group in assembly.groups:
+        assert len(group.copies.turns) == 3
+        part = CopiedStiffness(group.copies, assembly.bodies[group.members[0]].operator).apply(u)
+        assert not (found.any() and (found * part).any()), "a node is written twice"
+        found += part
+    assert np.abs(found - wanted).max() < ROUNDING * np.abs(wanted).max()
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_bodies_in_groups_and_others_stand_side_by_side(threads):
+    """One ring and all balls by matrices, the other ring by its elements: to the last bit the same for all threads."""
+    assembly = assembly_of("incompatible")
+    u = moved_by_chance(assembly)
+    forces = BodyForces([body.operator for body in assembly.bodies], assembly.starts, assembly.groups[1:])
+    seen = np.zeros(len(u), dtype=int)
+
+    def also(force, begin, end):
+        seen[begin:end] += 1
+
+    def found(pool):
+        forces.compute(u, pool, [])
+        return forces.sum(pool, also).copy()
+
+    with ThreadPool(1) as one, ThreadPool(threads) as several:
+        alone = found(one)
+        assert (found(several) == alone).all()
+    assert (seen == 2).all()
+    wanted = element_by_element(assembly, u)
+    assert np.abs(alone - wanted).max() < ROUNDING * np.abs(wanted).max()
+
+
+def test_forces_of_one_body_at_many_displacements():
+    assembly = assembly_of("incompatible")
+    rows = assembly.part(2)
+    columns = np.random.default_rng(2).standard_normal((rows.stop - rows.start, 3))
+    wanted = np.stack([assembly.bodies[2].operator.internal_force(u).ravel() for u in columns.T], axis=1)
+    assert np.abs(assembly.mesh_force(2, columns) - wanted).max() < ROUNDING * np.abs(wanted).max()
+    u = moved_by_chance(assembly)
+    ring = assembly.bodies[1].operator.internal_force(u[assembly.part(1)]).ravel()
+    assert np.abs(assembly.body_force(1, u) - ring).max() < ROUNDING * np.abs(ring).max()
+
+
+def test_rows_are_those_of_the_sparse_matrix():
+    body = assembly_of("incompatible").bodies[0].operator
+    rows = BlockRows.assemble(body.cells, len(body.points), body.element_stiffness)
+    moved = np.random.default_rng(1).standard_normal((len(body.points), 3, 2))
+    some = np.array([3, 0, 17])
+    wanted = (body.stiffness() @ moved.reshape(-1, 2)).reshape(-1, 3, 2)[some]
+    assert np.abs(rows.times(some, moved) - wanted).max() < ROUNDING * np.abs(wanted).max()

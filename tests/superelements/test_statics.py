@@ -1,12 +1,16 @@
-"""Equilibria by superelements against the unreduced system: every node of every body, iterated to eleven digits."""
+"""Equilibria by superelements against the unreduced system: every node, iterated to eleven digits; linearised, put back into its equations."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from raceway.core.elastic.superelements import linearised
 from raceway.core.elastic.superelements.closed import Closed
+from raceway.core.elastic.superelements.interface import Motions
+from raceway.core.elastic.superelements.linearised import Linearised
 from raceway.core.elastic.superelements.loose import Loose
+from raceway.core.elastic.superelements.tangent import BallTangent
 from tests.superelements.bearings import built, start_of, unreduced, with_node_moved
 
 #: Of Newton's residual over the forces that balance; the iterated solver needs some ten iterations to it.
@@ -98,25 +102,60 @@ def test_the_stiffness_of_the_ring_is_that_of_equilibria_nearby(settled):
     assert np.abs(compliance - compliance.T).max() < 1e-9 * np.abs(compliance).max()
 
 
-@pytest.mark.parametrize("name", ["one_point", "on beds"])
-def test_a_ring_that_is_no_sectors_by_the_tenth_digit_gives_the_same_answer(name):
-    """One node of either ring moved: a strain of 1e-10 of what a cell takes."""
-    found = []
+@pytest.mark.parametrize(
+    ("name", "bodies", "groups"),
+    [("one_point", (0, 1), [[0, 1, 2]]), ("on beds", (0, 1), [[0, 1, 2]]), ("one_point", (3,), [[0, 2], [1]])],
+    ids=["rings", "rings on beds", "ball"],
+)
+def test_bodies_that_differ_in_the_tenth_digit_are_factored_by_themselves_and_give_the_same_answer(name, bodies, groups):
+    """One node moved: a strain of 1e-10 of what a cell takes."""
+    model, found = built(**SCENES[name]), []
     for part in (0.0, 1e-10):
-        model = built(**SCENES[name])
-        system = with_node_moved(model, (0, 1), part)
+        system = with_node_moved(model, bodies, part)
         found.append(system.settle(start_of(model), TIGHT).y)
-        elements = {type(ring.element) for ring in system.solver.interface(0.0).rings}
-        assert elements == {Loose if part else Closed}
+        face = system.solver.interface(0.0)
+        assert {type(ring.element) for ring in face.rings} == {Loose if part and 0 in bodies else Closed}
+        assert [members for _, members in face.groups] == (groups if part else [[0, 1, 2]])
     assert np.abs(found[1] - found[0]).max() < 1e-8 * np.abs(found[0]).max()
 
 
-def test_a_ball_that_differs_in_the_tenth_digit_is_factored_by_itself_and_gives_the_same_answer():
-    found = []
-    for part in (0.0, 1e-10):
-        model = built()
-        system = with_node_moved(model, (3,), part)
-        found.append(system.settle(start_of(model), TIGHT).y)
-        groups = [members for _, members in system.solver.interface(0.0).groups]
-        assert groups == ([[0, 2], [1]] if part else [[0, 1, 2]])
-    assert np.abs(found[1] - found[0]).max() < 1e-8 * np.abs(found[0]).max()
+#: Of springs of some 1e8 N/m on bodies of 1e-8 m/N: condition 1e4.
+ROUNDING = 1e-9
+
+
+@pytest.mark.parametrize("way", ["factored", "iterated"])
+@pytest.mark.parametrize("held", [(), (3, 4), (1,)])
+def test_forces_balance(way, held, monkeypatch):
+    monkeypatch.setattr(linearised, "_FACTORED", 10**6 if way == "factored" else 0)
+    system = built().bearing.bearing.system
+    contact, assembly = system.contact, system.assembly
+    face = system.condensed.interface(0.0)
+    rng = np.random.default_rng(5)
+    chosen = rng.permutation(len(contact.nodes))[: len(contact.nodes) // 3]
+    nodes, weights = face.place[contact.nodes[chosen]], contact.weights[chosen]
+    some = rng.standard_normal((len(chosen), 3, 3))
+    blocks = 1e7 * (some @ some.transpose(0, 2, 1)) + 2e6 * rng.standard_normal((len(chosen), 3, 3))  # not symmetric
+    ball = contact.pair[chosen] % face.ball_count
+    tangents = {k: BallTangent.of(nodes[ball == k], weights[ball == k], blocks[ball == k]) for k in range(face.ball_count)}
+    m = assembly.frame_size
+    unknown = ~np.isin(np.arange(m), held)
+    frame = 1e3 * np.eye(m)
+    driver = Motions(
+        1e-6 * rng.standard_normal((len(face.numbers), 3)), 1e-6 * rng.standard_normal((face.ball_count, face.extra)),
+        rng.standard_normal(m),
+    )  # fmt: skip
+    force, q = Linearised(face, tangents, frame, unknown).forces(driver)
+    back = face.moved(Motions(-force.nodes, -force.balls, q), q)
+    x, mean = driver.nodes + back.nodes, driver.balls + back.balls
+    wanted = np.zeros_like(x)
+    moved = np.einsum("pa,pac->pc", weights, x[nodes])
+    pressed = np.einsum("pcd,pd->pc", blocks, moved)
+    for a in range(8):
+        np.add.at(wanted, nodes[:, a], weights[:, a, None] * pressed)
+    assert np.abs(force.nodes - wanted).max() < ROUNDING * np.abs(wanted).max()
+    for k in range(face.ball_count):
+        springs = face.springs(k, True)
+        assert np.abs(force.balls[k] - springs * mean[k]).max() < ROUNDING * np.abs(springs * mean[k]).max()
+    rest = (driver.frame - frame @ q - face.on_frame(wanted))[unknown]
+    assert np.abs(rest).max(initial=0.0) < ROUNDING * np.abs(wanted).sum()
+    assert not q[~unknown].any()
