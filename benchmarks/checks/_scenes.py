@@ -41,6 +41,30 @@ _DECADES = {
     "m": (-6.0, -1.0), "N": (-1.0, 5.0), "Pa": (6.0, 12.0), "kg": (-2.0, 4.0), "r/min": (1.0, 5.3), "N s/m": (-3.0, 4.0),
     "kg m2": (-6.0, 1.0), "kg m": (-9.0, -2.0), "deg": (-1.0, 2.0), "C": (0.0, 2.3), "s": (-5.0, 0.0), "": (-3.0, 2.0),
 }  # fmt: skip
+#: What an option of a plug-in stands in, by table and kind: tables of a scene that is planned, one of them.
+_TURNING: Tables = {"speed_rpm": 12000.0, "unbalance": 3.2e-4}
+_RUN_UP: Tables = {
+    "excitation": {"kind": "run_up", "first_speed_rpm": 3000.0, "duration_s": 0.02, **_TURNING}, "identifier": {"kind": "order_tracking"},
+}  # fmt: skip
+_CONDENSED: Tables = {"bodies": {"kind": "condensed"}, "mesh": {"kind": "structured", "element_size": 1.5e-3}}
+_ELASTIC = copy.deepcopy(TINY) | {"excitation": {key.partition(".")[2]: value for key, value in EXCITED.items()}}
+_GROUND: dict[tuple[str, str], tuple[Tables, ...]] = {
+    ("contact", "film"): (
+        {"contact": {"kind": "film", "oil": "VG 46", "temperature_c": 60.0}},
+        {"contact": {"kind": "film", "viscosity_40": 46e-6, "viscosity_100": 7e-6, "temperature_c": 60.0}},
+        {"contact": {"kind": "film", "viscosity": 0.02}},
+    ),
+    ("contact", "unilateral"): ({**_CONDENSED, "contact": {"kind": "unilateral", "discretisation": "nodal"}},),
+    ("excitation", "bidirectional"): ({"excitation": {"kind": "bidirectional", **_TURNING}},),
+    ("excitation", "unidirectional"): ({"excitation": {"kind": "unidirectional", **_TURNING}},),
+    ("excitation", "measured"): ({"excitation": {"kind": "measured", "file": "good.csv", "speed_rpm": 12000.0}},),
+    ("excitation", "run_up"): (_RUN_UP,),
+    ("identifier", "order_tracking"): (_RUN_UP,),
+    ("identifier", "impedance_fit"): ({"identifier": {"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0]}},),
+    ("bodies", "condensed"): (_CONDENSED,),
+    ("bodies", "elastic"): (_ELASTIC,),
+    ("mesh", "structured"): (_CONDENSED, _ELASTIC),
+}
 
 
 class Chance:
@@ -115,7 +139,7 @@ def scene(seed: int, folder: Path, drawn: set[str] | None = None) -> Tables:
     else:
         tables = example(chance.one(*_names()))
         if chance.happens(0.02):
-            tables = copy.deepcopy(TINY) | {"excitation": {key.partition(".")[2]: value for key, value in EXCITED.items()}}
+            tables = copy.deepcopy(_ELASTIC)
         several = [chance.one(*keys) for _ in range(chance.one(0, 1, 1, 2, 3, 6))]
     if tables.get("integrator", {}).get("kind") != "periodic":
         short = {"turns": chance.whole(1, 3), "steps_per_turn": chance.one(8, 24, 48, 96)}
@@ -151,12 +175,12 @@ def _put(chance: Chance, tables: Tables, key: Key, folder: Path) -> None:
         return
     table = tables.setdefault(key.table, {})
     if key.kind and table.get("kind") != key.kind:
-        branch = next(
-            b for b in scene_schema()["properties"][key.table]["oneOf"] if b["properties"]["kind"]["const"] == key.kind
-        )
-        names = ({"speed_rpm"} & set(branch["properties"])) | set(branch["required"])
-        table = tables[key.table] = {name: value(chance, branch["properties"][name], folder) for name in sorted(names)}
-        table["kind"] = key.kind
+        known = _GROUND.get((key.table, key.kind), ({key.table: {"kind": key.kind}},))
+        fitting = [one for one in known if key.path[0] in one[key.table]]
+        tables |= copy.deepcopy(chance.one(*(fitting or known)))
+        table = tables[key.table]
+        if "file" in table:
+            table["file"] = str(folder / table["file"])
     for name in key.path[:-1]:
         table = table.setdefault(name, {})
     table[key.path[-1]] = value(chance, key.schema, folder)

@@ -21,17 +21,11 @@ def draw_stability(report: dict[str, Any], path: Path) -> None:
         for axes, (start, label, title) in zip(figure.subplots(1, 2), panels, strict=True):
             rows = [row for row in report["rows"] if row["quantity"].startswith(start)][::-1]
             for place, row in enumerate(rows):
-                loses = row["value"] < 0.0
-                axes.barh(place, abs(row["value"]), color=_BAD if not row["ok"] else _WITHOUT if loses else _GOOD)
-                sign, limit = row["limit"].rsplit(" ", 1)
-                axes.plot([float(limit)] * 2, [place - 0.4, place + 0.4], color=_LIMIT)
-                axes.annotate(
-                    "\u2265" if "least" in sign else "\u2264",
-                    (float(limit), place),
-                    (3, 0),
-                    textcoords="offset points",
-                    va="center",
-                )
+                color = _BAD if row["misses"] else _WITHOUT if row["value"] < 0.0 else _GOOD
+                axes.barh(place, abs(row["value"]), color=color)
+                limit, sign = (row["low"], "\u2265") if row["high"] is None else (row["high"], "\u2264")
+                axes.plot([limit] * 2, [place - 0.4, place + 0.4], color=_LIMIT)
+                axes.annotate(sign, (limit, place), (3, 0), textcoords="offset points", va="center")
             axes.set_yticks(range(len(rows)), [row["quantity"].removeprefix(start) for row in rows], fontsize=8)
             axes.set(xscale="log", xlabel=label, title=title)
         words = "Black lines: limits, set before. Pale: energy is lost, as that integrator is made to. Red would be: not as expected."

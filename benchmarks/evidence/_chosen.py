@@ -33,19 +33,6 @@ CHOSEN = {
             "extreme scenes without an answer, of 2900",
         ),
     ),
-    "promise_stability": (
-        ("stability", "rows that are not as expected", "expectations that are not met"),
-        (
-            "stability",
-            "observed over predicted stable step, less 1: small motions of the bearing",
-            "stable step of the bearing, observed over predicted, less 1",
-        ),
-        (
-            "stability",
-            "energy's trend in a million steps, newmark, hertz, all contacts stay closed",
-            "trend of the energy in a million undamped steps",
-        ),
-    ),
 }
 
 
