@@ -134,7 +134,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class _Reports:
-    """Gathers rows by module, also from worker processes, and writes the reports of modules without a failure."""
+    """Gathers rows by module, also from worker processes, and writes the reports of modules without a failure or a skipped test."""
 
     def __init__(self) -> None:
         self.rows: dict[str, list[tuple[int, str, int, dict[str, Any]]]] = {}
@@ -142,7 +142,7 @@ class _Reports:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         module = Path(report.nodeid.partition("::")[0])
-        if report.failed:
+        if report.failed or report.skipped:
             self.failed.add(module.stem)
         if report.when == "call":
             rows = [row for key, row in report.user_properties if key == "claim"]

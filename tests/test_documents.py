@@ -39,7 +39,7 @@ NOT_RUN = {
     ".venv/bin/pip install '.[sweep]'": _ENVIRONMENT,
     ".venv/bin/pip install '.[all]'": _ENVIRONMENT,
     "python -m venv .venv-ross && .venv-ross/bin/pip install -e '.[sweep,ross]'": _ENVIRONMENT,
-    "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m benchmarks.evidence ross": "writes a report of this checkout",
+    "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m pytest --evidence tests/evidence/test_ross.py": "writes a report of this checkout",
     ".venv/bin/python -m benchmarks.documents": "writes documents of this checkout; benchmarks/tests compare them",
     ".venv/bin/python -m pytest --evidence tests/evidence/test_NAME.py": "writes a report of this checkout",
     "raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000 --bodies rigid --friction 0": "more than "

@@ -17,8 +17,8 @@ from benchmarks.evidence._kept import EARLIER
 
 _EPILOG = """\
 examples:
-  python -m benchmarks.evidence film periodic         compute and write two reports, of a clean commit
-  python -m benchmarks.evidence --check periodic      does each row hold as it did when the report was made?
+  python -m benchmarks.evidence article article_mesh  compute and write two reports, of a clean commit
+  python -m benchmarks.evidence --check article      does each row hold as it did when the report was made?
   pytest --evidence tests/evidence/test_rigid.py      of reports that are tests
 
 exit code: 1 when a row does not hold, or when --check finds another verdict; 2 for a name that does not exist, or uncommitted changes.

@@ -112,47 +112,71 @@ def test_static_derivatives(claim, bodies, wanted, seed):
 
 
 def test_derivatives_of_steady_orbits(claim):
-    rng, worst, count, scenes, wanted = np.random.default_rng(25), 0.0, 0, 0, 12
-    while scenes < wanted:
+    rng, errors, count, wanted = np.random.default_rng(23), [], 0, 12
+    for bodies in 150 * ["rigid"] + 50 * ["condensed"]:  # scenes of their own
+        drawn(rng, bodies)
+    while len(errors) < wanted:
         tables = drawn(rng, "rigid")
         tables.pop("kinematics", None)
-        tables |= {
-            "rotor": {"mass": 2.0, "transverse_inertia": 1e-3},
-            "contact": {"damping": float(rng.choice([1e-3, 50.0]))},
-            "excitation": {
-                "kind": str(rng.choice(["unidirectional", "bidirectional"])),
-                "speed_rpm": float(rng.uniform(3000.0, 12000.0)),
-                "amplitude": "constant",
-                "force": 0.1 * tables["load"]["axial"],
-            },
-            "integrator": {"kind": "periodic", "tolerance": 1e-10},
-        }
+        damping, speed = float(rng.choice([1e-3, 50.0])), float(rng.uniform(3000.0, 12000.0))
+        kind = str(rng.choice(["unidirectional", "bidirectional"]))
+        tables |= moving(kind, damping, speed, 0.1 * tables["load"]["axial"])
         try:
-            model = model_of(scene_from_dict(tables))
-            still = settle(model)
-            orbit = SteadyOrbit.of(model, still)
-            keys = [key for key in continuous_keys(model.scene) if key.path in OF_ORBITS and key.value]
-            errors = [one for one in (orbit_error(model, still, orbit, key) for key in keys) if one]
+            error, keys = error_of_orbit(tables, 1e-4)
         except (ConvergenceError, SceneError):
             continue
-        worst = max(worst, max(off for off, _ in errors) / max(size for _, size in errors))
-        scenes, count = scenes + 1, count + len(errors)
+        errors.append(error)
+        count += keys
     quantity = f"Z of the steady orbit of {wanted} random scenes: largest error over the largest"
-    claim(quantity, worst, **LIMIT, source=f"differences of complete searches to 1e-10, {count} derivatives")
+    claim(quantity, max(errors), **LIMIT, source=f"differences of complete searches to 1e-10, {count} derivatives")
 
 
-def orbit_error(model, still, orbit, key):
-    try:
-        gradient = orbit.gradient(static_gradient(model, still, key))
-    except NoDerivative:
-        return None
-    step, lines = 1e-4 * abs(key.value), {}
-    for k, one in moved(model, key, step).items():
-        there = SteadyOrbit.of(one, settle(one))
-        real, damping, _, _ = there.line
-        lines[k] = np.array([real, damping * there.solved.problem.speed])
-    other = complex(*derivative(lines, step))
-    return abs(gradient.dynamic_stiffness - other) * abs(key.value), abs(other) * abs(key.value)
+def test_derivatives_beside_a_resonance(claim):
+    """The ring's lateral motion at three times the speed: Z is no cubic within 1e-4 of the speed."""
+    tables = {
+        "bearing": {"preset": "7206A-NSK"},
+        "load": {"axial": 123.5909851483739, "radial": [24.9558737565642, 15.70969487048965]},
+        "supports": {"tilt": "free"},
+        "mounting": {"inner_temperature": 3.267315162923901},
+        **moving("bidirectional", 0.001, 7478.364624826643, 12.359098514837392),
+    }
+    error, _ = error_of_orbit(tables, 2.5e-5)
+    quantity = "Z of a steady orbit beside a superharmonic resonance: largest error over the largest derivative"
+    source = "differences of complete searches to 1e-10, whose steps change no digit of this"
+    misses = "the derivative by the speed rests on differences itself, over steps that are long beside the resonance"
+    claim(quantity, error, **LIMIT, source=source, misses=misses)
+
+
+def moving(kind, damping, speed, force):
+    return {
+        "rotor": {"mass": 2.0, "transverse_inertia": 1e-3},
+        "contact": {"damping": damping},
+        "excitation": {"kind": kind, "speed_rpm": speed, "amplitude": "constant", "force": force},
+        "integrator": {"kind": "periodic", "tolerance": 1e-10},
+    }
+
+
+def error_of_orbit(tables, step):
+    """Largest error of a derivative over the largest derivative, both times the numbers at the keys, and how many keys there are."""
+    model = model_of(scene_from_dict(tables))
+    still = settle(model)
+    orbit, off, size = SteadyOrbit.of(model, still), [], []
+    for key in continuous_keys(model.scene):
+        if key.path not in OF_ORBITS or not key.value:
+            continue
+        try:
+            gradient = orbit.gradient(static_gradient(model, still, key))
+        except NoDerivative:
+            continue
+        lines = {}
+        for k, one in moved(model, key, step * abs(key.value)).items():
+            there = SteadyOrbit.of(one, settle(one))
+            real, damping, _, _ = there.line
+            lines[k] = np.array([real, damping * there.solved.problem.speed])
+        other = complex(*derivative(lines, step * abs(key.value)))
+        off.append(abs(gradient.dynamic_stiffness - other) * abs(key.value))
+        size.append(abs(other) * abs(key.value))
+    return max(off) / max(size), len(off)
 
 
 def seconds(work) -> float:

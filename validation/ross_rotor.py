@@ -1,34 +1,33 @@
-"""Rotors in ROSS on coefficients and bearings from Raceway, for the report ``ross``: run by an interpreter that has ROSS.
+"""Rotors in ROSS on coefficients and bearings from Raceway, each computed by the interpreters that have ROSS.
 
-    python -m benchmarks.evidence._ross_rotor --out FILE.json
+``python -m validation.ross_rotor NAME [JSON]`` prints what a function here returns of a JSON list of arguments.
 
 1. Raceway sweeps a B7206C under 1 kN over speed, writes the coefficients, and ROSS reads them.
 2. A rigid rotor on two of them: its critical speed against w = sqrt(2 K(w) / M).
-3. A 30 mm shaft with a disc: its unbalance response against that with ROSS's closed formula for ball bearings.
-4. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: iterated step by step, and by
+3. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: iterated step by step, and by
    ``raceway.ross``; its time response against both.
-5. The test rig's rotor by our own beam.
-
-Where ROSS is missing, it says so and ends with exit code 2.
+4. The test rig's rotor by our own beam.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import io
 import json
+import os
+import subprocess
 import sys
 import tempfile
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 
 import raceway as rw
-from raceway.studies.ross.installed import ross
 
 AXIAL = 1000.0  # N
 #: Of the sweep [N]: small, so that the coefficients are those of small motions.
@@ -136,30 +135,6 @@ def force_on(rotor: Any, motion: np.ndarray, speed: float) -> float:
     return float(np.max(np.abs(dynamic @ motion)))
 
 
-def compared(ross: Any, found: Any, speeds: np.ndarray) -> list[dict[str, float]]:
-    """Unbalance response with our table and with ROSS's closed formula for ball bearings."""
-    element, ours = found.element(), rig_rotor(ross, found.element)
-    formula = rig_rotor(
-        ross, lambda node: ross.BallBearingElement(n=node, n_balls=12, d_balls=9.525e-3, fs=AXIAL, alpha=np.radians(15.0))
-    )
-    rows = []
-    disc, seat = respond(ours, speeds)
-    disc_f, seat_f = respond(formula, speeds)
-    for k, w in enumerate(speeds):
-        rows.append(
-            {
-                "speed_rpm": float(w * 30.0 / np.pi),
-                "k": float(element.K(w)[0, 0]),
-                "k_formula": float(formula.bearing_elements[0].K(w)[1, 1]),
-                "disc": float(np.max(np.abs(disc[:, k]))),
-                "disc_formula": float(np.max(np.abs(disc_f[:, k]))),
-                "force": force_on(ours, seat[:, k], w),
-                "force_formula": force_on(formula, seat_f[:, k], w),
-            }
-        )
-    return rows
-
-
 def fixed_point(ross: Any, axial: float, most: int = 60, tolerance: float = 1e-9) -> list[dict[str, float]]:
     """Force on the bearing -> its stiffness -> response of the rotor -> force on the bearing, until nothing changes.
 
@@ -230,54 +205,56 @@ def in_time(ross: Any, axial: float = 400.0, steps: int = 128, turns: int = 40) 
     }
 
 
-def beam() -> dict[str, float]:
-    """Our beam against ROSS's on the test rig's rotor: largest relative differences."""
+def beam(ross: Any) -> list[float]:
+    """Our beam against ROSS's on the test rig's rotor: largest relative difference of frequencies, of responses."""
     from validation.rotor_in_ross import compared
 
     found = compared()
-    return {"frequencies": found.difference(found.frequencies), "responses": found.difference(found.responses)}
+    return [found.difference(found.frequencies), found.difference(found.responses)]
 
 
-def study(ross: Any, folder: Path) -> dict[str, Any]:
-    """All numbers."""
+def table(ross: Any) -> dict[str, Any]:
+    """Differences at the points, of our element and of the file read by ROSS alone (3), and the critical speed with its closed form."""
     generation = 3 if int(ross.__version__.partition(".")[0]) >= 3 else 2
-    table = swept(generation)
-    by_itself = ross.BearingElement.load(table.write(folder / "bearing.toml"))
-    critical, closed = rigid_rotor(ross, table)
-    return {
-        "ross": ross.__version__,
-        "notes": list(table.notes),
-        "at_points": at_points(table.element(), table),
-        "at_points_by_itself": at_points(by_itself, table),
-        "grid_at_points": grid_at_points() if generation == 3 else None,
-        "critical": critical,
-        "critical_closed": closed,
-        "response": compared(ross, table, table.coefficients.speed[1:8]),
-        "fixed_point": {str(axial): fixed_point(ross, axial) for axial in (1000.0, 400.0)},
-        "inside": {str(axial): inside(ross, axial) for axial in (1000.0, 400.0)},
-        "in_time": in_time(ross),
-        "beam": beam(),
-    }
-
-
-def main(words: list[str]) -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--out", type=Path, help="write all numbers as JSON")
-    given = parser.parse_args(words)
-    try:
-        program = ross("this study")
-    except rw.RacewayError as why:
-        sys.stderr.write(f"{why}\n")
-        return 2
+    found = swept(generation)
+    critical, closed = rigid_rotor(ross, found)
+    own = max(at_points(found.element(), found).values())
+    if generation < 3:  # its smoothing spline allows 1 N/m or 1 N s/m a point; the exporter says so
+        return {"points": [own], "critical": critical / closed - 1.0}
     with tempfile.TemporaryDirectory() as folder:
-        found = study(program, Path(folder))
-    text = json.dumps(found, indent=1) + "\n"
-    if given.out is None:
-        sys.stdout.write(text)
-    else:
-        given.out.write_text(text, encoding="utf-8")
-    return 0
+        alone = ross.BearingElement.load(found.write(Path(folder) / "bearing.toml"))
+    return {"points": [own, max(at_points(alone, found).values()), grid_at_points()], "critical": critical / closed - 1.0}
+
+
+def decrements(ross: Any, ends: list[list[float]]) -> list[float]:
+    """Logarithmic decrements of the rig's rotor on bearings of K [N/m] and C [N s/m], backward and forward whirl."""
+    rotors = (rig_rotor(ross, lambda node, k=k, c=c: ross.BearingElement(n=node, kxx=k, cxx=c, kzz=1e8)) for k, c in ends)
+    return [float(one) for rotor in rotors for one in rotor.run_modal(SPEED_RPM * np.pi / 30.0).log_dec[:2]]
+
+
+def interpreters() -> list[str]:
+    """With ROSS and Raceway: named in RACEWAY_ROSS_PYTHON, this one, or that of the documents beside it."""
+    named = os.environ.get("RACEWAY_ROSS_PYTHON", "")
+    beside = Path(f"{sys.prefix}-docs") / "bin" / "python"
+    own = [sys.executable] if find_spec("ross") else [str(beside)] if beside.exists() else []
+    return [os.path.abspath(path) for path in named.split(os.pathsep) if path] or own
+
+
+def in_ross(name: str, *given: Any) -> list[Any]:
+    """What a function here returns, of each interpreter that has ROSS; skips a test where there is none."""
+    if not interpreters():
+        pytest.skip("no ROSS: make ross installs it, or name an interpreter in RACEWAY_ROSS_PYTHON")
+    found, environment = [], {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[1])}
+    for path in interpreters():
+        command = [path, "-m", "validation.ross_rotor", name, json.dumps(given)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=1800, check=False)
+        assert done.returncode == 0, done.stderr[-2000:]
+        found.append(json.loads(done.stdout.strip().splitlines()[-1]))
+    return found
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    from raceway.studies.ross.installed import ross
+
+    given = json.loads(sys.argv[2]) if len(sys.argv) > 2 else []
+    sys.stdout.write("\n" + json.dumps(globals()[sys.argv[1]](ross("this study"), *given)) + "\n")

@@ -1,0 +1,181 @@
+"""Oil films and damping: formulas and numbers by hand, their effect on a bearing, and what they cost."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from raceway import build_model, make_plan
+from raceway.core.contact.film import REGIMES, film, thermal_reduction
+from raceway.pipeline.run import run
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import simulate
+from raceway.scene.tables import TIME_CONSTANTS
+from validation.film import OIL, ROLLED, inlet_film, motion, pair, preload_by_hand, regimes, rolled, scene, springs
+from validation.ross_rotor import in_ross
+
+pytestmark = pytest.mark.night
+
+HERTZ = {"kind": "hertz"}
+INTEGRATORS = ("newmark", "generalized_alpha", "central_difference")
+
+
+def test_formulas(claim):
+    rng, n, alpha = np.random.default_rng(22), 1000, 2e-8
+    along, across = 10.0 ** rng.uniform(-3.0, -1.0, n), 10.0 ** rng.uniform(-2.0, 0.0, n)
+    modulus, load, k = 10.0 ** rng.uniform(7.0, 11.5, n), 10.0 ** rng.uniform(-1.0, 4.0, n), rng.uniform(1.0, 10.0, n)
+    viscous = 10.0 ** rng.uniform(-4.0, 1.0, n)
+    found = film(viscous, alpha, modulus, along, across, load, k)
+    off, met = 0.0, set()
+    for i in range(n):
+        size = modulus[i] * along[i]
+        each = regimes(viscous[i] / size, alpha * modulus[i], load[i] / (size * along[i]), k[i], across[i] / along[i])
+        best = max(range(4), key=lambda one: each[one][1])
+        met.add(REGIMES[best])
+        for value, formula in zip((found.central[i], found.minimum[i]), each[best], strict=True):
+            off = max(off, abs(value / (formula * along[i]) - 1.0))
+    assert met == set(REGIMES)
+    quantity = f"h_c and h_min of {n} random contacts in all four regimes: largest relative error"
+    claim(
+        quantity,
+        off,
+        at_most=1e-12,
+        basis="published",
+        source="the regimes' formulas, written out again (validation/film.py)",
+    )
+
+
+@pytest.mark.parametrize(
+    ("path", "printed", "misses"),
+    [
+        (*ROLLED[0], ""),
+        (
+            *ROLLED[1],
+            "the exercise takes every contact for piezoviscous-elastic; this one is light and fast, isoviscous-rigid",
+        ),
+    ],
+)
+def test_ball_on_a_plate(claim, path, printed, misses):
+    value = 1e6 * float(film(**rolled(path)).minimum[0])
+    quantity = f"h_min of a ball rolling down a plate, after {path:g} m"
+    source = "printed exercise in the notation of Stachowiak and Batchelor; three decimals"
+    within = 5e-4 / float(printed)
+    claim(quantity, value, near=float(printed), within=within, unit="um", basis="published", source=source, misses=misses)
+
+
+def test_heat_of_the_inlet(claim):
+    off = max(abs(float(thermal_reduction(np.array(one))) / inlet_film(one) - 1.0) for one in (0.1, 1.0, 10.0, 100.0))
+    quantity = "thermal reduction at loading 0.1 to 100: largest relative difference"
+    source = "Grubin's inlet with the heat of shear, integrated; Murch and Wilson's fit, both of Wilson and Sheu's print"
+    claim(quantity, off, at_most=0.15, basis="own other method", source=source)
+
+
+def test_no_film(claim):
+    """Without viscosity, or without speed."""
+    moved, stiffness = [], []
+    for viscosity, spin in ((1e-30, 12000.0), (0.03, 1e-15)):
+        tables = {"kinematics": {"spin_speed_rpm": spin}, "load": {"radial": [200.0, 0.0]}}
+        wet, dry = (run(scene(law, **tables)) for law in ({"kind": "film", "viscosity": viscosity}, HERTZ))
+        moved.append(np.abs(wet.displacement - dry.displacement).max() / np.abs(dry.displacement).max())
+        stiffness.append(abs(wet.equivalent_stiffness / dry.equivalent_stiffness - 1.0))
+    where, source = "viscosity 1e-30 Pa s, and 1e-15 r/min", "law hertz"
+    claim(f"{where}: displacement, relative difference", max(moved), at_most=1e-12, basis="closed form", source=source)
+    claim(f"{where}: K, relative difference", max(stiffness), at_most=1e-9, basis="closed form", source=source)
+
+
+def test_gain_of_preload(claim):
+    off, held = [], []
+    for speed in (1000.0, 5000.0, 10000.0, 15000.0):
+        wet = run(pair(OIL, "rigid", speed))
+        content, basis = wet.to_dict()["equilibrium"], wet.model.basis
+        films = tuple(content["balls"][0][f"{race}_film_central_m"] for race in ("inner", "outer"))
+        hand = preload_by_hand(1000.0, (basis.inner.factor, basis.outer.factor), films)
+        off.append(abs((content["preload"]["running_n"] - 1000.0) / (hand - 1000.0) - 1.0))
+        held.append(abs(run(pair(OIL, "spring", speed)).to_dict()["equilibrium"]["preload"]["running_n"] / 1000.0 - 1.0))
+    where = "DB pair of B7206C, 1 kN, VG 32 at 40 C, 1000 to 15 000 r/min"
+    quantity = f"{where}: gain of a rigid preload, largest relative error"
+    claim(
+        quantity,
+        max(off),
+        at_most=0.02,
+        basis="own other method",
+        source="films in series with Hertz by hand, balls without mass",
+    )
+    quantity = f"{where}: change of a spring's preload, relative"
+    claim(quantity, max(held), at_most=1e-6, basis="closed form", source="a spring keeps its force")
+
+
+def test_damping(claim):
+    off = []
+    for law, tau in [(law, tau) for law in (HERTZ, OIL) for tau in TIME_CONSTANTS]:
+        found = run(scene({**law, "time_constant": tau}, kinematics={"ball_inertia": False}))
+        off.append(abs(found.equivalent_damping / (tau * springs(found.model, found.equilibrium)) - 1.0))
+    found = run(scene({**HERTZ, "loss_factor": 0.01}, kinematics={"ball_inertia": False}))
+    off.append(abs(found.dynamic_stiffness.imag / springs(found.model, found.equilibrium) / 0.01 - 1.0))
+    quantity = "C of tau = 2.5 and 25 us and of a loss factor of 0.01, laws hertz and film: largest relative error"
+    claim(
+        quantity,
+        max(off),
+        at_most=0.01,
+        basis="closed form",
+        source="tau k of the springs; a small force that turns, tilt locked",
+    )
+
+
+def test_decrement_of_a_rotor(claim):
+    band = run(scene({**HERTZ, "damping": "band"})).band
+    ends = list(zip(band["equivalent_stiffness"], band["equivalent_damping"], strict=True))
+    values = [value for one in in_ross("decrements", ends) for value in one]
+    quantity = "logarithmic decrement of the rig's rotor in ROSS, damping = 'band'"
+    source = "c = tau k of rolling bearings on ROSS's closed formula, 87 and 136 N/um: 8e-4 to 1.3e-2"
+    misses = "K of 235 N/um, tilt locked, is stiffer: it takes a smaller part of the motion, and damps less at the same tau"
+    claim(f"{quantity}: least", min(values), at_least=8e-4, basis="other program", source=source, misses=misses)
+    claim(f"{quantity}: largest", max(values), at_most=1.3e-2, basis="other program", source=source)
+
+
+def test_energy(claim):
+    drifts = []
+    for kind in INTEGRATORS:
+        method = {"kind": kind, "steps_per_turn": 2000, "turns": 6}
+        for tau in TIME_CONSTANTS:
+            tables = {"integrator": method, "rotor": {"mass": 2.0}, "excitation": {"force": 200.0}}
+            found = run(scene({**HERTZ, "time_constant": tau}, kinematics={"ball_inertia": False}, **tables))
+            drifts.append(found.stability["energy_drift"])
+    quantity = "drift of the energy balance with c = tau k, three integrators: largest"
+    source = "losses integrated from 2000 samples a turn: quadrature of second order"
+    claim(quantity, max(drifts), at_most=1e-4, basis="closed form", source=source)
+
+
+def test_order(claim):
+    """Over four halvings of the step, against sixteen times finer steps of the same method."""
+    counts, orders = [360, 720, 1440, 2880], []
+    for law, kind in [(law, kind) for law in (HERTZ, OIL) for kind in INTEGRATORS]:
+        contact = {**law, "time_constant": TIME_CONSTANTS[0]}
+        finest = motion(kind, contact, 16 * counts[-1], 90)
+        errors = [np.abs(motion(kind, contact, count, 90) - finest).max() for count in counts]
+        orders.append(-float(np.polyfit(np.log(counts), np.log(errors), 1)[0]))
+    furthest = max(orders, key=lambda order: abs(order - 2.0))
+    quantity = "order with c = tau k, laws hertz and film, three integrators, furthest from 2"
+    claim(quantity, furthest, near=2.0, within=0.05, basis="closed form", source="order 2 of the methods")
+
+
+def test_cost(claim):
+    """By turns in one run, the least of each."""
+    ratios, laws = [], (HERTZ, OIL, {**OIL, "time_constant": 1.25e-5})
+    for inertia in (False, True):
+        ready, spent = [], [[], [], []]
+        for law in laws:
+            one = scene(law, integrator={"turns": 40, "steps_per_turn": 360}, kinematics={"ball_inertia": inertia})
+            model = build_model(one, make_plan(one))
+            ready.append((model, settle(model)))
+        for _ in range(9):
+            for (model, still), times in zip(ready, spent, strict=True):
+                begun = time.process_time()
+                simulate(model, still)
+                times.append(time.process_time() - begun)
+        dry, *wet = map(min, spent)
+        ratios += [one / dry for one in wet]
+    quantity = "processor time of steps with a film, with and without c = tau k, over that of law hertz: largest"
+    claim(quantity, max(ratios), at_most=1.5, basis="regression", source="a film is a power of the load, taken once a step")
