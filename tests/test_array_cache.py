@@ -49,12 +49,9 @@ def test_a_second_use_reads_what_the_first_made(folder):
 
 
 CHANGES = {
-    "points": INPUTS["points"] + 1e-16 * np.arange(6).reshape(3, 2),
-    "count": 3.0,
-    "seat": 5e11,
-    "ratio": 0.29 + 1e-16,
+    "points": INPUTS["points"] + 1e-16 * np.arange(6).reshape(3, 2), "count": 3.0, "seat": 5e11, "ratio": 0.29 + 1e-16,
     "offsets": [0, 1],
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", CHANGES)

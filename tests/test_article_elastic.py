@@ -26,18 +26,10 @@ from validation.command_line import EXAMPLES, invoke
 
 #: Three balls under a penalty so soft that every load case has an equilibrium: every path, no accuracy.
 CHANGES = {
-    "bearing.ball_count": 3,
-    "bodies.formulation": "one_point",
-    "mesh.element_size": 3.2e-3,
-    "mesh.nodes_per_semi_axis": 1,
-    "mesh.azimuth_cells": 24,
-    "mesh.growth": 3.0,
-    "mesh.patch": 0.5,
-    "mesh.ball_load": 3e3,
-    "contact.stiffness": 3e13,
-    "rotor.mass": 0.5,
-    "excitation.unbalance": 6.39e-5,
-}
+    "bearing.ball_count": 3, "bodies.formulation": "one_point", "mesh.element_size": 3.2e-3, "mesh.nodes_per_semi_axis": 1,
+    "mesh.azimuth_cells": 24, "mesh.growth": 3.0, "mesh.patch": 0.5, "mesh.ball_load": 3e3, "contact.stiffness": 3e13,
+    "rotor.mass": 0.5, "excitation.unbalance": 6.39e-5,
+}  # fmt: skip
 WORDS = ("study", "article", "--bodies", "elastic", *(w for k, v in CHANGES.items() for w in ("--set", f"{k}={v}")))
 
 

@@ -147,12 +147,9 @@ def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
     }  # fmt: skip
     assert found.to_dict()["geometry"] == found.geometry
     own = {
-        "ball_count": 20,
-        "ball_diameter": 0.0119,
-        "pitch_diameter": 0.09,
-        "conformity_inner": 0.52,
+        "ball_count": 20, "ball_diameter": 0.0119, "pitch_diameter": 0.09, "conformity_inner": 0.52,
         "conformity_outer": 0.53,
-    }
+    }  # fmt: skip
     assert run(scene_from_dict({**static, "bearing": {"preset": "7014C", **own}})).geometry is None
     assert run(scene_from_dict({**static, "bearing": {"preset": "DGB7-MASTA"}})).geometry is None
     assert run(scene_from_dict({**static, "bearing": {"preset": "B7206C"}})).geometry["stiffness_error"] == 0.036
@@ -167,11 +164,8 @@ def test_presets_of_rows_are_spoken_of_too():
     assert "preset" not in found and found["words"].startswith("geometry inferred")
     # One row has a preset of its own, the other is the table's; numbers that a row gives are no inferred ones.
     mixed = {
-        "preset": "B7206C",
-        "arrangement": "DB",
-        "row_distance": 0.02,
-        "row": [{"preset": "7206A5", "ball_count": 12}, {}],
-    }
+        "preset": "B7206C", "arrangement": "DB", "row_distance": 0.02, "row": [{"preset": "7206A5", "ball_count": 12}, {}],
+    }  # fmt: skip
     found = run(scene_from_dict({**base, "bearing": mixed})).geometry
     assert found["preset"] == "B7206C" and [one["preset"] for one in found["rows"]] == ["7206A5"]
     assert "ball_count" not in found["rows"][0]["inferred"] and "ball_count" in found["inferred"]

@@ -23,15 +23,11 @@ SCENE = {
     "rotor": {"mass": 2.0},
     "load": {"axial": 1000.0},
     "excitation": {
-        "kind": "bidirectional",
-        "speed_rpm": 12000.0,
-        "amplitude": "constant",
-        "force": 300.0,
-        "unbalance": 6.39e-4,
+        "kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0, "unbalance": 6.39e-4,
         "load_share": 0.5,
     },
     "integrator": {"turns": 2, "steps_per_turn": 120},
-}
+}  # fmt: skip
 
 
 def test_lists_and_ranges():
@@ -249,15 +245,10 @@ def _synthetic(k_of) -> Comparison:
         frequency = point["excitation.speed_rpm"] / 60
         z = k - 2.0 * (2 * math.pi * frequency) ** 2
         found = {
-            "equivalent_stiffness": k,
-            "dynamic_stiffness": {"real": z, "imag": 0.0, "abs": abs(z)},
-            "mass_used_kg": 2.0,
-            "frequency_hz": frequency,
-            "equivalent_damping": 0.0,
-            "phase_lag_deg": 0.0,
-            "force_amplitude_n": 1.0,
+            "equivalent_stiffness": k, "dynamic_stiffness": {"real": z, "imag": 0.0, "abs": abs(z)}, "mass_used_kg": 2.0,
+            "frequency_hz": frequency, "equivalent_damping": 0.0, "phase_lag_deg": 0.0, "force_amplitude_n": 1.0,
             "residual": 0.0,
-        }
+        }  # fmt: skip
         rows.append(Row(point, {"identification": found, "error": {"total": 1e-6}}))
     return Comparison("made up", axes, tuple(rows))
 

@@ -24,18 +24,13 @@ TINY = {
     "bearing": {"preset": "B7206C", "ball_count": 3},
     "bodies": {"kind": "elastic", "formulation": "one_point"},
     "mesh": {
-        "kind": "structured",
-        "element_size": 3.2e-3,
-        "nodes_per_semi_axis": 1,
-        "azimuth_cells": 12,
-        "growth": 3.0,
-        "patch": 0.5,
-        "ball_load": 3e4,
+        "kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 12, "growth": 3.0,
+        "patch": 0.5, "ball_load": 3e4,
     },
     "load": {"axial": 2500.0},
     "rotor": {"mass": 0.5},
     "contact": {"kind": "penalty", "discretisation": "nodal", "stiffness": 3e14},
-}
+}  # fmt: skip
 #: 15 000 r/min: a turn of 4 ms.  QUICK: a turn of 6 us, some 430 explicit steps; balls without centrifugal force.
 EXCITED = {"excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0}}
 

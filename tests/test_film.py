@@ -177,11 +177,8 @@ def test_the_film_follows_a_speed_that_changes():
     """A run-up's system at a speed is that of a steady scene, but for loads and angles, which move films by 1e-3 or less."""
     up = {"kind": "run_up", "first_speed_rpm": 6000.0, "speed_rpm": 12000.0, "unbalance": 1e-6}
     tables = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 1000.0},
-        "contact": OIL,
-        "kinematics": {"ball_inertia": False},
-    }
+        "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "contact": OIL, "kinematics": {"ball_inertia": False},
+    }  # fmt: skip
     changing = rw.Scene.from_dict(
         {**tables, "excitation": {**up, "duration_s": 1.0}, "identifier": {"kind": "order_tracking"}}
     )

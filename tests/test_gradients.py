@@ -101,13 +101,10 @@ def test_a_held_displacement_moves_with_what_holds_it():
 
 
 ORBIT = b7206c(
-    load={"axial": 400.0, "radial": [60.0, 0.0]},
-    supports={"tilt": "free"},
-    rotor={"mass": 2.0},
-    contact={"damping": 200.0},
-    excitation={"kind": "unidirectional", "speed_rpm": 9000.0, "unbalance": 2e-5},
+    load={"axial": 400.0, "radial": [60.0, 0.0]}, supports={"tilt": "free"}, rotor={"mass": 2.0},
+    contact={"damping": 200.0}, excitation={"kind": "unidirectional", "speed_rpm": 9000.0, "unbalance": 2e-5},
     integrator={"kind": "periodic", "tolerance": 1e-10},
-)
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(

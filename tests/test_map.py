@@ -24,14 +24,9 @@ TINY = (f"{AXIAL}=400,2000", f"{SPEED}=10980,15000", f"{ANGLE}=15")
 def rows(law, speeds=(1e3, 1e4, 2e4, 4e4, 6e4)):
     """Rows of one curve with a given k(speed)."""
     common = {
-        "status": "completed",
-        "reason": "",
-        "small_signal": 1.0,
-        "lost": 0,
-        "unseats": False,
-        "reach_inner": 0.5,
+        "status": "completed", "reason": "", "small_signal": 1.0, "lost": 0, "unseats": False, "reach_inner": 0.5,
         "reach_outer": 0.5,
-    }
+    }  # fmt: skip
     return [{"point": {ANGLE: 15.0, TILT: "free", AXIAL: 100.0, SPEED: s}, "stiffness": law(s), **common} for s in speeds]
 
 
@@ -194,11 +189,5 @@ def test_the_command_writes_tables_and_a_page(tmp_path):
     assert len(content["rows"]) == 8 and content["definitions"]["exponent"].startswith("d ln k")
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {
-        "map.json",
-        "map.csv",
-        "map.html",
-        "map-change.png",
-        "map-exponent.png",
-        "map-curves.png",
-        "map-rows.jsonl",
-    }
+        "map.json", "map.csv", "map.html", "map-change.png", "map-exponent.png", "map-curves.png", "map-rows.jsonl",
+    }  # fmt: skip

@@ -154,12 +154,9 @@ def test_a_row_that_the_radial_load_unseats_is_told(axial, angle):
 
 def test_rows_that_run_at_a_low_angle_by_their_make_or_growth_are_no_unseated_ones():
     own = {
-        "ball_diameter": 9.525e-3,
-        "pitch_diameter": 46e-3,
-        "ball_count": 9,
-        "conformity_inner": 0.52,
+        "ball_diameter": 9.525e-3, "pitch_diameter": 46e-3, "ball_count": 9, "conformity_inner": 0.52,
         "conformity_outer": 0.52,
-    }
+    }  # fmt: skip
     assert not static(bearing={**own, "radial_clearance": 10e-6}, load={"radial": [2000.0, 0.0]})
     assert not static(load={"axial": 600.0, "radial": [2000.0, 0.0]})
     # Without loads a raceway wider by 12 um leaves 5 deg of 15.

@@ -47,24 +47,18 @@ def test_a_third_party_plug_in_appears(tmp_path, monkeypatch):
 
 
 WRONG = {
-    "unknown table": {"beering": {}},
-    "unknown key": {"load": {"axail": 3.0}},
+    "unknown table": {"beering": {}}, "unknown key": {"load": {"axail": 3.0}},
     "unknown kind": {"contact": {"kind": "hrtz"}},
     "option of another kind": {"contact": {"kind": "hertz", "stiffness": 1e15}},
-    "fraction for an integer": {"bearing": {"ball_count": 12.7}},
-    "negative": {"rotor": {"mass": -1.0}},
-    "string for a number": {"load": {"axial": "much"}},
-    "conformity at its limit": {"bearing": {"conformity_inner": 0.5}},
-    "word": {"supports": {"tilt": "looked"}},
-    "negative stiffness beside words": {"supports": {"tilt": -3.0}},
-    "length of a list": {"load": {"radial": [1.0]}},
-    "preset": {"bearing": {"preset": "B7206G"}},
-    "no kind": {"excitation": {"speed_rpm": 3.0}},
-    "steps below the rule": {"integrator": {"steps_per_turn": 3}},
+    "fraction for an integer": {"bearing": {"ball_count": 12.7}}, "negative": {"rotor": {"mass": -1.0}},
+    "string for a number": {"load": {"axial": "much"}}, "conformity at its limit": {"bearing": {"conformity_inner": 0.5}},
+    "word": {"supports": {"tilt": "looked"}}, "negative stiffness beside words": {"supports": {"tilt": -3.0}},
+    "length of a list": {"load": {"radial": [1.0]}}, "preset": {"bearing": {"preset": "B7206G"}},
+    "no kind": {"excitation": {"speed_rpm": 3.0}}, "steps below the rule": {"integrator": {"steps_per_turn": 3}},
     "mesher that is not installed": {"mesh": {"kind": "structred"}},
     "mesh without a kind has the structured mesher's keys": {"mesh": {"inner_ring": "ring.inp"}},
     "element size of nothing": {"mesh": {"kind": "structured", "element_size": 0.0}},
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", WRONG)

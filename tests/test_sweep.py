@@ -425,15 +425,9 @@ def test_designs_say_what_differs():
 
 def test_warnings_of_points_are_kept_and_summed_up(tmp_path):
     words = [
-        "sweep",
-        ARTICLE,
-        "--set",
-        "integrator.kind=periodic",
-        "--set",
-        "rotor.damping=0",
-        "--grid",
+        "sweep", ARTICLE, "--set", "integrator.kind=periodic", "--set", "rotor.damping=0", "--grid",
         "load.axial=30,60,1000",
-    ]
+    ]  # fmt: skip
     out = tmp_path / "s"
     shown = invoke(*words, "--out", out, "--resume", "--csv")
     assert shown.exit_code == 0 and "holds no sweep to go on with: it is begun anew" in shown.stderr

@@ -102,18 +102,13 @@ def _elastic_row(run: Run) -> Tables:
     known = {"speed_rpm": 12000.0, "equivalent_stiffness": k, "equivalent_damping": c,
              "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)}}  # fmt: skip
     return {
-        "status": "completed",
-        "reason": "",
-        "balls": balls,
+        "status": "completed", "reason": "", "balls": balls,
         "displacement": {"x": 1e-5 * (1.0 - 0.01 * off), "y": 2e-6 if run.radial else 1e-20},
-        "kyy_n_per_m": 2.5e8 * (1.0 + 0.004 * off),
-        "subsurface": [stress] if off else [],
+        "kyy_n_per_m": 2.5e8 * (1.0 + 0.004 * off), "subsurface": [stress] if off else [],
         "identification": None if run.excitation is None else known,
-        "stability": {"energy_drift": 1e-4 if off else None, "status": "completed"},
-        "error": {"transient": 1e-3},
-        "warnings": ["one node"] if off else [],
-        "cost": _cost(run),
-    }
+        "stability": {"energy_drift": 1e-4 if off else None, "status": "completed"}, "error": {"transient": 1e-3},
+        "warnings": ["one node"] if off else [], "cost": _cost(run),
+    }  # fmt: skip
 
 
 def _ball(place: int, load: float, factor: float, points: bool, off: float) -> Tables:

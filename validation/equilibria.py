@@ -115,13 +115,10 @@ def _scene(
     bearing |= {"contact_angle_deg": angle} if clearance is None else {"radial_clearance": clearance}
     c, s = float(np.cos(azimuth)), float(np.sin(azimuth))
     return {
-        "title": "extreme",
-        "bearing": bearing,
-        "supports": {"tilt": tilt},
+        "title": "extreme", "bearing": bearing, "supports": {"tilt": tilt},
         "load": {"axial": axial, "radial": [radial * c, radial * s], "moment": [moment * c, moment * s]},
-        "kinematics": {"spin_speed_rpm": speed},
-        "contact": {"kind": law},
-    }
+        "kinematics": {"spin_speed_rpm": speed}, "contact": {"kind": law},
+    }  # fmt: skip
 
 
 def families(law: str) -> dict[str, Iterator[dict[str, Any]]]:
@@ -146,12 +143,9 @@ def families(law: str) -> dict[str, Iterator[dict[str, Any]]]:
             yield from (s for s in of((1e3,), (0.0,), moment=moment) if s["supports"]["tilt"] != "locked")
 
     return {
-        "1 N axial, to 100 000 r/min": of((1.0,), (0.0, 0.1, 1.0, 5.0)),
-        "1 mN axial": of((1e-3,), (0.0, 1.0, 5.0)),
-        "1 MN axial": of((1e6,), (0.0, 1.0, 5.0)),
-        "conformity 0.501, 0.6, 0.9": narrow_and_wide(),
+        "1 N axial, to 100 000 r/min": of((1.0,), (0.0, 0.1, 1.0, 5.0)), "1 mN axial": of((1e-3,), (0.0, 1.0, 5.0)),
+        "1 MN axial": of((1e6,), (0.0, 1.0, 5.0)), "conformity 0.501, 0.6, 0.9": narrow_and_wide(),
         "negative axial load": of((-1.0, -1e3, -1e5), (0.0, 1.0, 5.0)),
         "no axial load, angular contact": of((0.0,), (1.0, 500.0, 1e5)),
-        "no axial load, deep groove with clearance": grooves(),
-        "moments to 1 kN m": moments(),
-    }
+        "no axial load, deep groove with clearance": grooves(), "moments to 1 kN m": moments(),
+    }  # fmt: skip

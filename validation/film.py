@@ -64,13 +64,8 @@ def rolled(path: float) -> dict[str, Any]:
     speed = 0.5 * (10.0 / 7.0 * 9.81 * path * slope) ** 0.5
     # Theirs is the reduced radius of both directions, half of the ball's.
     told = {
-        "viscous": 0.05 * speed,
-        "modulus": young,
-        "along": radius / 2.0,
-        "across": radius / 2.0,
-        "load": load,
-        "k": 1.0339,
-    }
+        "viscous": 0.05 * speed, "modulus": young, "along": radius / 2.0, "across": radius / 2.0, "load": load, "k": 1.0339,
+    }  # fmt: skip
     return {"alpha": 2.2e-8, **{name: np.array([value]) for name, value in told.items()}}
 
 

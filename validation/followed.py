@@ -82,17 +82,9 @@ def by_integration(point: Point, turns: int = 1, force: float = FORCE) -> tuple[
     system, w = problem.system, problem.speed
     times = 2.0 * np.pi / w * np.arange(181 * turns - turns + 1) / 180
     q, _, flow = trajectory(
-        _ring(system),
-        system.mass,
-        system.load,
-        swinging(force, w),
-        system.free,
-        path.q[0],
-        path.v[0] * w,
-        times,
-        1e-11,
+        _ring(system), system.mass, system.load, swinging(force, w), system.free, path.q[0], path.v[0] * w, times, 1e-11,
         True,
-    )
+    )  # fmt: skip
     last = q[-181:]
     y = 2.0 / 180 * np.exp(-1j * w * times[-181:-1]) @ last[:-1, 1]
     return complex(force / y), np.linalg.eigvals(flow), q[-1] - q[0]
@@ -116,12 +108,9 @@ def beside(fold: Point, count: int = 1) -> list[Point]:
     parameter = parameter_of({**SCENE}, OVER, default_registry())
     symmetry = fold.solved.problem.symmetry
     branch = Branch(
-        lambda p: parameter.problem_at(p, symmetry),
-        2950.0,
-        fold.solved.size,
-        1e-8,
+        lambda p: parameter.problem_at(p, symmetry), 2950.0, fold.solved.size, 1e-8,
         fastest=lambda _: fold.highest * fold.solved.problem.speed,
-    )
+    )  # fmt: skip
     begin = attrs.evolve(fold, tangent=_again(branch, fold))
     found = [begin, begin]
     for _ in range(count):

@@ -46,13 +46,9 @@ def oscillator(damping_ratio: float) -> tuple[System, float, float]:
     }  # fmt: skip
     mass, w0, speed = 2.0, 1.7 * 400.0 * np.pi, 400.0 * np.pi
     system = attrs.evolve(
-        model_of(tables).system,
-        mass=np.eye(5) * mass,
-        damping=np.eye(5) * 2.0 * damping_ratio * w0 * mass,
-        stiffness=np.eye(5) * w0**2 * mass,
-        free=np.array([0.0, 1.0, 0.0, 0.0, 0.0]),
-        load=np.zeros(5),
-    )
+        model_of(tables).system, mass=np.eye(5) * mass, damping=np.eye(5) * 2.0 * damping_ratio * w0 * mass,
+        stiffness=np.eye(5) * w0**2 * mass, free=np.array([0.0, 1.0, 0.0, 0.0, 0.0]), load=np.zeros(5),
+    )  # fmt: skip
     return system, w0, speed
 
 

@@ -38,16 +38,13 @@ def rotating(axial: float, tilt: str, speed_rpm: float, inertia: bool, integrato
         "rotor": {"mass": 2.0},
         "load": {"axial": axial},
         "excitation": {
-            "kind": "bidirectional",
-            "speed_rpm": speed_rpm,
-            "amplitude": "unbalance",
-            "unbalance": UNBALANCE,
+            "kind": "bidirectional", "speed_rpm": speed_rpm, "amplitude": "unbalance", "unbalance": UNBALANCE,
             "load_share": SHARE,
         },
         "contact": {"damping": 0.001},
         "kinematics": {"ball_inertia": inertia},
         "integrator": {"kind": integrator, "turns": 12},
-    }
+    }  # fmt: skip
 
 
 _BALL = 9.525e-3
@@ -60,13 +57,10 @@ def random_tables(rng: np.random.Generator, law: str = "hertz") -> dict[str, Any
     axial = 10.0 ** rng.uniform(0.0, 5.0)
     radial, direction = axial * rng.uniform(0.0, 5.0), rng.uniform(0.0, 2.0 * np.pi)
     bearing: dict[str, Any] = {
-        "ball_diameter": _BALL,
-        "pitch_diameter": float(pitch),
-        "ball_count": count,
-        "conformity_inner": float(rng.uniform(0.505, 0.55)),
-        "conformity_outer": float(rng.uniform(0.505, 0.55)),
+        "ball_diameter": _BALL, "pitch_diameter": float(pitch), "ball_count": count,
+        "conformity_inner": float(rng.uniform(0.505, 0.55)), "conformity_outer": float(rng.uniform(0.505, 0.55)),
         "first_ball_azimuth_deg": float(rng.uniform(0.0, 360.0)),
-    }
+    }  # fmt: skip
     if rng.random() < 0.25:
         bearing["radial_clearance"] = float(rng.uniform(2e-6, 40e-6))
     else:

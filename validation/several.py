@@ -39,14 +39,9 @@ def article(axial: float, **integrator: Any) -> Tables:
     """The article's scene, its force in one direction and the same at every speed, tilt free."""
     force = {"kind": "unidirectional", "speed_rpm": 15000, "amplitude": "constant", "unbalance": 6.39e-4, "load_share": 0.5}
     return {
-        "bearing": {"preset": "B7206C"},
-        "supports": {"tilt": "free"},
-        "rotor": {"mass": 2.0},
-        "load": {"axial": axial},
-        "excitation": {**force, "reference_speed_rpm": 10980.0},
-        "contact": {"damping": 0.0},
-        "integrator": integrator,
-    }
+        "bearing": {"preset": "B7206C"}, "supports": {"tilt": "free"}, "rotor": {"mass": 2.0}, "load": {"axial": axial},
+        "excitation": {**force, "reference_speed_rpm": 10980.0}, "contact": {"damping": 0.0}, "integrator": integrator,
+    }  # fmt: skip
 
 
 def by_integration(result: Result, damping: float = 0.0) -> tuple[complex, float, float]:
@@ -55,16 +50,9 @@ def by_integration(result: Result, damping: float = 0.0) -> tuple[complex, float
     assert simulation is not None and model.excitation is not None
     w = 2.0 * np.pi / model.excitation.period_s
     ring = Damped(
-        9.525e-3,
-        46e-3,
-        12,
-        np.radians(15.0),
-        0.522,
-        0.522,
-        spin_speed=w if model.scene.kinematics.ball_inertia else 0.0,
-        damping=damping,
-        spin=ring_inertia(model.scene)[2] * w,
-    )
+        9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, spin_speed=w if model.scene.kinematics.ball_inertia else 0.0,
+        damping=damping, spin=ring_inertia(model.scene)[2] * w,
+    )  # fmt: skip
     force = (rotating if model.excitation.sense else swinging)(model.excitation.amplitude_n, w)
     times = np.linspace(0.0, 2.0 * np.pi / w, 181)
     mass, load, free = model.system.mass, model.system.load, model.system.free

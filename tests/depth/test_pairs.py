@@ -14,12 +14,8 @@ DISTANCE = 16e-3
 def pair(built, arrangement, preload=290.0, **tables):
     given = {"preload": preload} if arrangement in ("DB", "DF") else {}
     bearing = {
-        "preset": "7206C-NSK",
-        "arrangement": arrangement,
-        "row_distance": DISTANCE,
-        **given,
-        **tables.pop("bearing", {}),
-    }
+        "preset": "7206C-NSK", "arrangement": arrangement, "row_distance": DISTANCE, **given, **tables.pop("bearing", {}),
+    }  # fmt: skip
     return built(bearing=bearing, **{"load": {"axial": 0.0}, **tables})
 
 

@@ -38,15 +38,9 @@ def built(*args, **more):
 
 def ring(angle=25.0, balls=12, spin_rpm=0.0, first=0.0, diameter=9.525e-3):
     return Ring(
-        diameter,
-        46e-3,
-        balls,
-        radians(angle),
-        0.522,
-        0.522,
-        spin_speed=spin_rpm * np.pi / 30.0,
+        diameter, 46e-3, balls, radians(angle), 0.522, 0.522, spin_speed=spin_rpm * np.pi / 30.0,
         first_azimuth=radians(first),
-    )
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

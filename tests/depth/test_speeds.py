@@ -369,20 +369,13 @@ def test_bodies_whose_forces_do_not_follow_are_refused(tables):
 def crossing(duration, **tables):
     """100 kg on 5000 N s/m: through the resonance near 14 300 r/min, whose half bandwidth is 240 r/min."""
     excitation = {
-        "kind": "run_up",
-        "first_speed_rpm": 6000.0,
-        "speed_rpm": 20000.0,
-        "duration_s": duration,
-        "unbalance": 1e-5,
-    }
+        "kind": "run_up", "first_speed_rpm": 6000.0, "speed_rpm": 20000.0, "duration_s": duration, "unbalance": 1e-5,
+    }  # fmt: skip
     rotor = {"mass": 100.0, "damping": 5000.0}
     return b7206c(
-        excitation=excitation,
-        rotor=rotor,
-        identifier={"kind": "order_tracking"},
-        integrator={"steps_per_turn": 120},
+        excitation=excitation, rotor=rotor, identifier={"kind": "order_tracking"}, integrator={"steps_per_turn": 120},
         **tables,
-    )
+    )  # fmt: skip
 
 
 @pytest.mark.slow
@@ -443,18 +436,14 @@ def test_friction_of_a_run_up_sees_the_growth_of_the_ring():
     tables = b7206c(
         load={"axial": 400.0},
         excitation={
-            "kind": "run_up",
-            "first_speed_rpm": 6000.0,
-            "speed_rpm": 12000.0,
-            "duration_s": 0.02,
-            "unbalance": 1e-5,
+            "kind": "run_up", "first_speed_rpm": 6000.0, "speed_rpm": 12000.0, "duration_s": 0.02, "unbalance": 1e-5,
         },
         kinematics={"ring_growth": True},
         mounting={"shaft_interference": 4e-6},
         contact={"friction": 0.03},
         integrator={"turns": 2, "steps_per_turn": 60},
         identifier={"kind": "order_tracking", "window_turns": 2.0},
-    )
+    )  # fmt: skip
     result = run(scene_from_dict(tables))
     spin = result.model.system.spin
     assert spin.grown(np.array([spin.reference])) == pytest.approx(0.0, abs=1e-15)

@@ -286,12 +286,9 @@ def test_growth_that_leaves_no_bearing_is_refused(mounting, kinematics, words):
 
 def test_fits_need_dimensions():
     own = {
-        "ball_diameter": 9.525e-3,
-        "pitch_diameter": 46e-3,
-        "ball_count": 12,
-        "conformity_inner": 0.522,
+        "ball_diameter": 9.525e-3, "pitch_diameter": 46e-3, "ball_count": 12, "conformity_inner": 0.522,
         "conformity_outer": 0.522,
-    }
+    }  # fmt: skip
     one = scene("single", None, bearing={"preset": None, "row_distance": None, **own}, shaft_interference=1e-6)
     with pytest.raises(SceneError, match="mounting.shaft_interference` = 1e-06: needs the bearing's `bore`"):
         make_plan(one)
