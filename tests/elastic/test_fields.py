@@ -48,16 +48,6 @@ def test_stresses_beside_contact_resultants_are_named_structure_only_with_hertz_
 
 
 @pytest.mark.needs("pyvista")
-def test_the_picture_s_title_says_what_stresses_lack(result, tmp_path, monkeypatch):
-    from raceway.studies.view import fields
-
-    titles, blank = [], np.zeros((2, 2, 3), dtype=np.uint8)
-    monkeypatch.setattr(fields, "_section", lambda *arguments: titles.append(arguments[-1]) or blank)
-    write_fields(result, tmp_path)
-    assert titles[0].splitlines()[-1] == contacts_left_out(result)
-
-
-@pytest.mark.needs("pyvista")
 def test_the_files_hold_the_fields(result, tmp_path):
     import pyvista
 

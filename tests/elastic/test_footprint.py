@@ -12,6 +12,7 @@ from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.footprint import Footprint, ellipse, footprint
 from raceway.core.mesh.place import azimuth
 from raceway.core.mesh.ring_shape import ring_shape
+from raceway.testing import b7206c
 
 #: The coarsest meshes in use: a ball of 4 cells across, 36 cells around a ring.
 MESH = {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 36}
@@ -41,15 +42,7 @@ class Place:
 
 @pytest.fixture(scope="module")
 def bearing():
-    scene = scene_from_dict(
-        {
-            "title": "t",
-            "bearing": {"preset": "B7206C", "ball_count": 3},
-            "bodies": {"kind": "elastic"},
-            "mesh": MESH,
-            "load": {"axial": 1e3},
-        }
-    )
+    scene = scene_from_dict(b7206c(bearing={"ball_count": 3}, bodies={"kind": "elastic"}, mesh=MESH))
     return scene.bearing, mesh_scene(scene)
 
 
@@ -97,10 +90,19 @@ def test_the_pressure_on_the_ellipse_falls_as_a_parabola():
     assert weights @ share.sum(axis=1) ** 2 == pytest.approx(1.0 / 6.0, rel=1e-13)
 
 
-def test_a_translation_is_seen_as_it_is(place):
-    assert place.found.weights.sum() == pytest.approx(1.0, rel=1e-13)
-    # The rigid fit and the weights know a translation to rounding.
-    np.testing.assert_allclose(place.found.share.sum(axis=1), np.eye(3), atol=1e-13)
+def test_the_normal_force_presses_with_positive_weights_near_the_contact_and_translations_are_seen(place):
+    """The rigid fit and the weights know a translation to rounding."""
+    found = place.found
+    assert found.weights.sum() == pytest.approx(1.0, rel=1e-13)
+    np.testing.assert_allclose(found.share.sum(axis=1), np.eye(3), atol=1e-13)
+    nodal = np.einsum("akc,a->kc", found.share, place.normal)
+    np.testing.assert_allclose(nodal, found.weights[:, None] * place.normal, atol=1e-13)
+    assert (found.weights >= 0.0).all() and found.weights.max() > 0.1
+    assert len(set(found.nodes.tolist())) == len(found.nodes)
+    # The ellipse's points and the circle of its larger semi-axis, and the cells of up to 4.6 mm diagonal that hold them.
+    pole = place.centre + place.radius * place.normal * (-1.0 if place.normal @ place.arms.mean(axis=0) < 0.0 else 1.0)
+    away = np.linalg.norm(place.facets.points[found.nodes] - pole, axis=1)
+    assert away.max() < WIDE[1] + 4.6e-3
 
 
 def test_turning_about_the_centre_of_curvature_is_not_seen(place):
@@ -124,20 +126,6 @@ def test_the_force_acts_in_the_centre_of_curvature(place):
     across = force - (force @ place.normal) * place.normal
     nodal = np.einsum("akc,a->kc", place.found.share, across)
     np.testing.assert_allclose(np.cross(place.arms, nodal).sum(axis=0) / place.radius, 0.0, atol=1e-13)
-
-
-def test_the_normal_force_presses_with_the_weights(place):
-    nodal = np.einsum("akc,a->kc", place.found.share, place.normal)
-    np.testing.assert_allclose(nodal, place.found.weights[:, None] * place.normal, atol=1e-13)  # rounding
-
-
-def test_nodes_are_near_the_contact_and_no_weight_is_negative(place):
-    assert (place.found.weights >= 0.0).all() and place.found.weights.max() > 0.1
-    assert len(set(place.found.nodes.tolist())) == len(place.found.nodes)
-    # The ellipse's points and the circle of its larger semi-axis, and the cells of up to 4.6 mm diagonal that hold them.
-    pole = place.centre + place.radius * place.normal * (-1.0 if place.normal @ place.arms.mean(axis=0) < 0.0 else 1.0)
-    away = np.linalg.norm(place.facets.points[place.found.nodes] - pole, axis=1)
-    assert away.max() < WIDE[1] + 4.6e-3
 
 
 def test_a_wider_ellipse_spreads_the_force(bearing):

@@ -1,4 +1,4 @@
-"""What a mesh gives way under a contact, split into what depends on its cells and what the body is."""
+"""Compliance of a mesh under a contact, split into what depends on its cells and what the body is; weights of nodes inside."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from raceway.core.contact.half_space import normal_displacement
 from raceway.core.contact.sphere import ball_compliance
 from raceway.core.elastic.contacts.facets import Facets
 from raceway.core.elastic.contacts.footprint import footprint
+from raceway.core.elastic.contacts.interior import locate
 from raceway.core.elastic.contacts.separation import LoadedBody
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.ball_mesh import ball_mesh
@@ -157,3 +158,49 @@ def test_the_springs_that_hold_a_ball_are_too_soft_to_count(monkeypatch):
     softer, contact, normal, _ = ball(4, 0.0)
     # Springs of a twentieth of the ball's own frequency: of the order of (1/20)^2 of the displacement.
     assert softer.replaced(contact, normal, 0.0) == pytest.approx(before, rel=2.5e-3)
+
+
+SIZE = np.array([0.03, 0.02, 0.01])
+
+
+@pytest.fixture(scope="module")
+def distorted():
+    """A block of 120 cells whose inner nodes are moved by up to a tenth of a cell: no cell is a parallelepiped."""
+    points, cells = elastic.block(tuple(SIZE), (6, 5, 4))
+    inside = np.all((points > 1e-9) & (points < SIZE - 1e-9), axis=1)
+    shift = 0.1 * SIZE / (6, 5, 4) * np.random.default_rng(3).uniform(-1.0, 1.0, points.shape)
+    return points + inside[:, None] * shift, cells
+
+
+def places(count: int) -> np.ndarray:
+    return SIZE * np.random.default_rng(4).uniform(0.0, 1.0, (count, 3))
+
+
+def test_linear_functions_are_interpolated_exactly(distorted):
+    points, cells = distorted
+    where = places(200)
+    nodes, weights = locate(points, cells, where)
+    assert nodes.shape == weights.shape == (200, 8)
+    # Newton's method ends at rounding of the coordinates, and the shape functions sum to one.
+    np.testing.assert_allclose(weights.sum(axis=1), 1.0, atol=1e-13)
+    np.testing.assert_allclose(np.einsum("nk,nka->na", weights, points[nodes]), where, atol=1e-13 * SIZE.max())
+    # Inside of the cell that holds the point no weight is negative; the nodes are those of one cell.
+    assert weights.min() > -1e-9
+    assert set(map(tuple, nodes.tolist())) <= set(map(tuple, cells.tolist()))
+    nodes, weights = locate(points, cells, points)
+    own = np.where(nodes == np.arange(len(points))[:, None], weights, 0.0).sum(axis=1)
+    np.testing.assert_allclose(own, 1.0, atol=1e-12)  # Newton's method ends at rounding
+    # Fewer cells than are tried are enough: trilinear shape functions, to rounding.
+    one, cells = elastic.block((1.0, 1.0, 1.0), (1, 1, 1))
+    nodes, weights = locate(one, cells, np.array([[0.25, 0.5, 0.75]]))
+    assert weights[0][(one[nodes[0]] == 1.0).all(axis=1)] == pytest.approx([0.25 * 0.5 * 0.75], rel=1e-12)
+
+
+def test_a_point_slightly_outside_is_extrapolated_from_the_nearest_cell(distorted):
+    points, cells = distorted
+    where = places(40)
+    where[:, 2] = SIZE[2] * 1.02  # a twelfth of a cell above the top
+    nodes, weights = locate(points, cells, where)
+    np.testing.assert_allclose(np.einsum("nk,nka->na", weights, points[nodes]), where, atol=1e-13 * SIZE.max())
+    assert weights.min() < -0.05
+    assert (points[nodes][:, :, 2].max(axis=1) == SIZE[2]).all()  # a cell of the top layer

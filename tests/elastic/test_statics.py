@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.elastic.statics import settle
-from raceway.testing import settle as settle_model
+from raceway.testing import settled
 from tests.test_elastic_scene import TINY
 
 COARSE = {key: TINY[key] for key in ("bearing", "bodies", "mesh")} | {
@@ -19,14 +18,11 @@ COARSE = {key: TINY[key] for key in ("bearing", "bodies", "mesh")} | {
 
 
 def ring_of(axial: float) -> Any:
-    scene = scene_from_dict(COARSE | {"load": {"axial": axial}})
-    model = build_model(scene, make_plan(scene))
-    settle_model(model)
-    return model.system
+    return settled(COARSE | {"load": {"axial": axial}})[0].system
 
 
 @pytest.mark.parametrize("axial", [2300.0, 2500.0, 2700.0, 2950.0])
-def test_an_equilibrium_leads_to_its_neighbour_in_a_few_iterations(axial: float) -> None:
+def test_an_equilibrium_leads_to_its_neighbour_in_a_few_iterations(axial: float):
     """A fifth of the load more, across it: no point opens or closes, and Newton's method converges quadratically."""
     ring = ring_of(axial)
     start = ring.equilibrium
@@ -36,10 +32,7 @@ def test_an_equilibrium_leads_to_its_neighbour_in_a_few_iterations(axial: float)
     # Forth and back: residuals of 1e-7 of the load are 1e-6 of the change, here a hundred times that.
     back, _ = ring.settled(there, ring.load)
     assert np.abs(back[:5] - start[:5]).max() < 1e-4 * np.abs(there[:5] - start[:5]).max()
-
-
-def test_a_start_from_an_equilibrium_is_told_from_undeformed_bodies() -> None:
-    ring = ring_of(2500.0)
+    # A start from an equilibrium is told from undeformed bodies.
     system = ring.bodies.system
     assert not system.undeformed(ring.equilibrium)
     assert system.undeformed(ring._undeformed(ring.surrogate, ring.equilibrium[:5]))
@@ -56,7 +49,7 @@ class Stop:
 
     condensed = None
 
-    def __init__(self, stiff: float, way: float) -> None:
+    def __init__(self, stiff: float, way: float):
         self.load, self.stiff, self.way = np.ones(1), stiff, way
         self.solver, self.tangent, self.evaluations = SimpleNamespace(iterations=0), 1.0, 0
 
@@ -83,7 +76,7 @@ class Stop:
 
 @pytest.mark.parametrize("stiff", [1e2, 1e4, 1e6])
 @pytest.mark.parametrize("way", [0.03, 0.3])
-def test_a_step_past_a_stiff_stop_ends_near_the_minimum_along_it(stiff: float, way: float) -> None:
+def test_a_step_past_a_stiff_stop_ends_near_the_minimum_along_it(stiff: float, way: float):
     """Under the load 1.  A tenth of the step leaves more than 0.9 of the slope: it has to be lengthened, not cut further."""
     system = Stop(stiff, way)
     found = settle(system, np.zeros(1))
