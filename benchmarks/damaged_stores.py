@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.children import in_child
-from benchmarks.sweeps import SCENE, rows_of
 from raceway.errors import RacewayError
 from raceway.studies.sweep import open_store
 from raceway.studies.sweep.store import POINTS, SCHEMA
 from validation import harm
+from validation.sweeps import SCENE, rows_of
 
 #: What is acceptable: rows as undisturbed, or one message.
 EQUAL, TOLD = "the same rows", "one message"

@@ -19,8 +19,8 @@ from typing import Any
 
 import attrs
 
-from benchmarks.sweeps import SCENE, rows_of
 from validation.sessions import left
+from validation.sweeps import SCENE, rows_of
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 _PATIENCE_S = 5.0

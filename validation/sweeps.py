@@ -1,8 +1,7 @@
-"""Sweeps as a user runs them: how long, how much memory, what they survive.  ``python -m benchmarks.sweeps [NAME ...]``."""
+"""Sweeps as a user runs them: how long, how much memory, what they survive."""
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import signal
@@ -259,24 +258,3 @@ def _until(store: Path, process: subprocess.Popen[bytes], wanted: int) -> int:
             except RacewayError:
                 continue  # it is being made
     return done
-
-
-def main(names: list[str]) -> None:
-    """Measure and print as JSON."""
-    every = {
-        "rigid": lambda: timed(1000, "--executor", "joblib", "--workers", "2"),
-        "condensed": lambda: timed(1000, "--executor", "joblib", "--workers", "2", bodies="condensed"),
-        "memory": lambda: {str(n): timed(n)["peak_bytes"] for n in (200, 2000)},
-        "overhead": overhead,
-        "continuation": continuation,
-        "killed": killed,
-        "worker_killed": worker_killed,
-        "interrupted": interrupted,
-        "full_disk": full_disk,
-    }
-    for name in names or every:
-        print(json.dumps({name: every[name](), "load": os.getloadavg()[0]}), flush=True)
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])
