@@ -6,13 +6,59 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+from raceway import ConvergenceError
+from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
+from raceway.core.condensed.structural import RingCompliance
 from raceway.core.ring.energy import energy_balance
+from raceway.core.ring.kernels import STORED
+from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.start import from_orbit, static_orbit
+from raceway.core.ring.system import System
 from raceway.core.schemes.drivers import integrate
 from raceway.core.signatures import Balls, Constants, Contacts, Response
 from raceway.core.stepping.record import Schedule
-from tests.condensed.bodies import ANGLES, BALL, BED, INNER, OPPOSITE, OUTER, elastic
+from raceway.testing import b7206c, model_of
+
+ANGLES = np.linspace(-0.7, 0.7, 13)
+#: Of the inner ring, the outer ring, a ball on itself and from its other contact [m/N]: docs/physics.md, condensed bodies.
+INNER, OUTER, BALL, OPPOSITE = -0.62e-9, -0.64e-9, -0.304e-9, 0.167e-9
+#: Between groove centres on elastic beds of 500 N/mm3, none to six balls further: axial by axial, axial by radial, radial by
+#: radial force [m/N]; a little skewed, as rings of another section have it.
+BED = 1e-9 * np.array([
+    [5.5, -0.6, 5.3], [2.9, -0.25, 0.71], [1.07, -0.09, -0.77], [0.47, -0.02, -0.4], [0.16, 0.0, -0.12], [0.03, 0.0, -0.06],
+    [0.0, 0.0, -0.05],
+])  # fmt: skip
+
+
+def ring(own: float, slope: float = 0.0, balls: int = 12, between: np.ndarray | None = None) -> RingCompliance:
+    """A ring whose own compliance [m/N] changes by ``slope`` [m/N/rad] and as much again by its square.
+
+    between : (7, 3) compliances between groove centres; the first one is added to the ring's own.
+    """
+    values = own + slope * (ANGLES - 0.3) + slope * (ANGLES - 0.3) ** 2
+    table = np.zeros((len(ANGLES), len(ANGLES), balls))
+    if between is not None:
+        sine, cosine = np.sin(ANGLES), np.cos(ANGLES)
+        for k in range(balls):
+            axial, cross, radial = between[min(k, balls - k)]
+            table[:, :, k] = axial * np.outer(sine, sine) + radial * np.outer(cosine, cosine)
+            table[:, :, k] += cross * (np.outer(sine, cosine) + np.outer(cosine, sine))
+        values = values + np.diagonal(table[:, :, 0])
+    return RingCompliance(ANGLES, values, table, 1, np.array([1e-3]), 1e-3)
+
+
+def elastic(
+    system: System, factor: float = 1.0, slope: float = 0.0, bed: bool = False, inner: float = INNER, outer: float = OUTER,
+    rows: int = 1,
+) -> System:  # fmt: skip
+    """A rigid system with chosen compliances, all times ``factor``; with ``bed`` both rings of each row couple their balls."""
+    balls = system.ball_count // rows
+    rings = [ring(factor * own, factor * slope, balls, factor * BED * part if bed else None)
+             for own, part in ((inner, 1.3), (outer, 1.0))]  # fmt: skip
+    bodies = ElasticBodies(rings[0], rings[1], factor * BALL, factor * OPPOSITE)
+    return elastic_system(system, bodies, np.full(system.ball_count, 0.32) if bed else None)
+
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
 #: What ball and contacts can be, each another kernel or branch.
@@ -30,22 +76,26 @@ SCENES = {
 SYMMETRIC = ("weightless", "inertial", "penalty", "damped", "light")
 
 
-def model(built, tilt="free", load=None, **more):
+def model(tilt="free", load=None, **more):
     load = {"axial": 800.0, "radial": [300.0, 100.0], **(load or {})}
     rotor = {"mass": 2.0, "transverse_inertia": 1e-3}
-    return built(load=load, supports={"tilt": tilt}, rotor=rotor, excitation=ROTATING, **more)
+    return model_of(b7206c(load=load, supports={"tilt": tilt}, rotor=rotor, excitation=ROTATING, **more))
+
+
+def rest_of(soft, guess):
+    """Displacements, balls and forces at rest."""
+    q, ball, _ = soft.settle(guess)
+    return q, ball, soft.evaluate(q, ball=ball)
 
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("bed", [False, True])
-def test_without_compliances_it_is_the_rigid_bearing(built, name, bed):
+def test_without_compliances_it_is_the_rigid_bearing(name, bed):
     """To 1e-12: the same kernel finds the same forces, and only rounding is added."""
-    rigid = model(built, **SCENES[name])
-    q, ball, _ = rigid.system.settle(rigid.guess)
-    now = rigid.system.evaluate(q, ball=ball)
+    rigid = model(**SCENES[name])
+    q, _, now = rest_of(rigid.system, rigid.guess)
     soft = elastic(rigid.system, factor=0.0, bed=bed)
-    mine, place, _ = soft.settle(rigid.guess)
-    then = soft.evaluate(mine, ball=place)
+    mine, place, then = rest_of(soft, rigid.guess)
     scale = np.array([1.0, 1.0, 1.0, soft.arm, soft.arm])
     # Both are solved to 1e-11 of the forces.
     assert np.abs((mine - q) * scale).max() < 1e-10 * np.abs(q * scale).max()
@@ -56,11 +106,11 @@ def test_without_compliances_it_is_the_rigid_bearing(built, name, bed):
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("bed", [False, True])
-def test_tangents_are_the_derivatives(built, name, bed):
+def test_tangents_are_the_derivatives(name, bed):
     """Central differences with their own error: 1e-8 of the largest entry; with slip, 1e-6 where a contact turns over."""
-    soft = elastic(model(built, **SCENES[name]).system, slope=1.3e-9, bed=bed)
-    guess = model(built, **SCENES[name]).guess
-    q, ball, _ = soft.settle(guess)
+    rigid = model(**SCENES[name])
+    soft = elastic(rigid.system, slope=1.3e-9, bed=bed)
+    q, ball, _ = soft.settle(rigid.guess)
     random = np.random.default_rng(3)
     q = q * (1.0 + 0.03 * random.standard_normal(5))
     v = np.array([1e-3, 1e-2, 1e-2, 0.1, 0.1]) * random.standard_normal(5) if name == "damped" else np.zeros(5)
@@ -81,24 +131,13 @@ def test_tangents_are_the_derivatives(built, name, bed):
         assert np.abs((now.stiffness - now.stiffness.T) * weight).max() < 1e-12 * largest
 
 
-def test_approach_is_law_and_structure_in_series(built):
-    """At equilibrium w = C Q: checked contact by contact against the matrix that the kernels never form."""
-    rigid = model(built)
-    soft = elastic(rigid.system)
-    q, ball, _ = soft.settle(rigid.guess)
-    force = soft.evaluate(q, ball=ball).contact_force
-    z = soft.ball_count
-    own = np.r_[np.full(z, -0.62e-9 - 0.304e-9), np.full(z, -0.64e-9 - 0.304e-9)]
-    matrix = np.diag(own) + 0.167e-9 * np.kron([[0.0, 1.0], [1.0, 0.0]], np.eye(z))
-    assert soft.structural_approach(ball) == pytest.approx(matrix @ force, rel=1e-9)
-
-
-def test_compliances_follow_the_angle_between_the_table_s_knots(built):
-    """Against scipy's cubic spline without slope at its ends."""
-    rigid, slope = model(built), 1.3e-9
+@pytest.mark.parametrize("slope", [0.0, 1.3e-9])
+def test_compliances_follow_the_angle_between_the_table_s_knots(slope):
+    """Law and structure in series, w = C Q: contact by contact, against scipy's cubic spline without slope at its ends."""
+    rigid = model()
     soft = elastic(rigid.system, slope=slope)
-    q, ball, _ = soft.settle(rigid.guess)
-    force, z = soft.evaluate(q, ball=ball).contact_force, soft.ball_count
+    q, ball, now = rest_of(soft, rigid.guess)
+    force, z = now.contact_force, soft.ball_count
     angle, change = np.arctan2(*soft.centre_vectors(q)[0].T), slope * (ANGLES - 0.3) * (ANGLES + 0.7)
     assert np.ptp(angle) > 0.02
     own = [CubicSpline(ANGLES, ring + BALL + change, bc_type=((1, 0.0), (1, 0.0)))(angle) for ring in (INNER, OUTER)]
@@ -106,12 +145,12 @@ def test_compliances_follow_the_angle_between_the_table_s_knots(built):
     assert soft.structural_approach(ball) == pytest.approx(np.concatenate(own) * force + other, rel=1e-9)
 
 
-def test_groove_centres_move_as_the_loads_of_all_balls_push_them(built):
+def test_groove_centres_move_as_the_loads_of_all_balls_push_them():
     """On beds d = -M F - M_o F_c with the matrices that the kernels never form, F from angles and contact forces."""
-    rigid = model(built)
+    rigid = model()
     soft = elastic(rigid.system, bed=True)
-    q, ball, _ = soft.settle(rigid.guess)
-    force, z = soft.evaluate(q, ball=ball).contact_force, soft.ball_count
+    q, ball, now = rest_of(soft, rigid.guess)
+    force, z = now.contact_force, soft.ball_count
     reach = soft.centre_vectors(q, ball=ball)[0] - ball[:, :2]
     # A contact's own compliance is constant beyond its groove's motion here: no part of the force leans.
     push = force[:z, None] * reach / np.linalg.norm(reach, axis=1)[:, None]
@@ -125,12 +164,9 @@ def test_groove_centres_move_as_the_loads_of_all_balls_push_them(built):
 
 
 @pytest.mark.parametrize("name", ["weightless", "inertial"])
-def test_stored_energy_is_the_work_of_the_force(built, name):
+def test_stored_energy_is_the_work_of_the_force(name):
     """On beds the energy of bodies and contacts between two states is the integral of the force: Gauss' rule, to 1e-9."""
-    from raceway.core.ring.kernels import STORED
-    from raceway.core.ring.kernels.layout import CENTRIFUGAL
-
-    rigid = model(built, **SCENES[name])
+    rigid = model(**SCENES[name])
     soft = elastic(rigid.system, slope=1.3e-9, bed=True)
     q, ball, _ = soft.settle(rigid.guess)
     ahead = q * np.array([1.02, 1.1, 0.9, 1.05, 0.95])
@@ -155,9 +191,9 @@ def test_stored_energy_is_the_work_of_the_force(built, name):
 
 @pytest.mark.parametrize("kind", ["newmark", "generalized_alpha", "central_difference", "quasi_static"])
 @pytest.mark.parametrize("bed", [False, True])
-def test_every_loop_runs_and_keeps_its_energy(built, kind, bed):
+def test_every_loop_runs_and_keeps_its_energy(kind, bed):
     """The drift of the rigid bearing's motion, which belongs to the integrator, may double; equilibria follow the orbit."""
-    case = model(built, tilt="locked", integrator={"kind": kind})
+    case = model(tilt="locked", integrator={"kind": kind})
     method, period = case.scene.integrator.method, case.excitation.period_s
     steps = 1440 if kind == "central_difference" else 360
     schedule = Schedule(period / steps, steps, 2)
@@ -177,12 +213,12 @@ def test_every_loop_runs_and_keeps_its_energy(built, kind, bed):
         assert drift[1] < 2.0 * drift[0] + 1e-9
 
 
-def test_structural_approach_has_a_rate(built):
+def test_structural_approach_has_a_rate():
     """With strong dashpots the elastic ring takes a part of the speed: only with its rate errors fall by 4 a halved step.
 
     3 allows for the third order that is left at these steps.
     """
-    case = model(built, tilt="locked", contact={"damping": 2000.0})
+    case = model(tilt="locked", contact={"damping": 2000.0})
     soft = elastic(case.system, outer=5e-9)
     period = case.excitation.period_s
     q, _, _ = soft.settle(case.guess)
@@ -195,22 +231,20 @@ def test_structural_approach_has_a_rate(built):
     assert np.abs(ends[2] - orbit.displacement[0, 1:3]).max() < 1e-4 * np.abs(orbit.displacement[:, 1:3]).max()
 
 
-def test_a_contact_that_bodies_outdo_is_a_failure_and_no_number(built):
-    from raceway import ConvergenceError
-
-    rigid = model(built)
+def test_a_contact_that_bodies_outdo_is_a_failure_and_no_number():
+    rigid = model()
     with pytest.raises(ConvergenceError):
         elastic(rigid.system, factor=30.0).settle(rigid.guess)
 
 
-def test_a_pair_couples_only_balls_of_one_row(built):
-    case = model(built, bearing={"arrangement": "DB", "preload": 300.0})
+def test_a_pair_couples_only_balls_of_one_row():
+    case = model(bearing={"arrangement": "DB", "preload": 300.0})
     z = case.geometry.ball_count
     soft = elastic(case.system, slope=1.3e-9, bed=True, rows=2)
     both, outer = soft.between_balls()
     assert both.shape == outer.shape == (4 * z, 4 * z)
     assert not both[: 2 * z, 2 * z :].any() and both[: 2 * z, : 2 * z] == pytest.approx(both[2 * z :, 2 * z :])
-    q, ball, _ = soft.settle(case.guess)
-    now, step = soft.evaluate(q, ball=ball), np.array([1.0, -0.6, 0.8, 40.0, 30.0]) * 1e-10
+    q, ball, now = rest_of(soft, case.guess)
+    step = np.array([1.0, -0.6, 0.8, 40.0, 30.0]) * 1e-10
     ahead, behind = (soft.evaluate(q + sign * step, ball=ball).force for sign in (1.0, -1.0))
     assert 0.5 * (ahead - behind) == pytest.approx(now.stiffness @ step, rel=1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import attrs
 import numpy as np
 import pytest
 
@@ -12,6 +13,7 @@ from raceway.core.condensed.modes import first_frequency
 from raceway.core.condensed.structural import reach, ring_compliance
 from raceway.core.contact.sphere import ball_compliance
 from raceway.core.mesh.ring_shape import ring_shape
+from raceway.testing import b7206c
 
 YOUNG, POISSON = 212e9, 0.29
 HALF = 0.82e-3  # semi-major axis of a contact of B7206C at some 300 N [m]
@@ -19,7 +21,7 @@ HALF = 0.82e-3  # semi-major axis of a contact of B7206C at some 300 N [m]
 
 @pytest.fixture(scope="module")
 def bearing():
-    return scene_from_dict({"title": "b", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}).bearing
+    return scene_from_dict(b7206c()).bearing
 
 
 @pytest.fixture(scope="module")
@@ -82,26 +84,15 @@ def test_what_a_contact_feels_of_another_ball_is_a_motion_of_its_groove_centre(b
 def test_compliance_falls_with_young_and_size(bearing):
     """Twice as stiff: half; a bearing twice as large, elements too: half, as 1 / (E L) asks."""
     shape = ring_shape(bearing, True)
-    one = ring_compliance(shape, bearing.ball_diameter, 12, HALF, YOUNG, POISSON, bulk=2e-3, surface=0.8e-3, around=1.6e-3)
-    stiff = ring_compliance(
-        shape, bearing.ball_diameter, 12, HALF, 2.0 * YOUNG, POISSON, bulk=2e-3, surface=0.8e-3, around=1.6e-3
+    sizes = {"bulk": 2e-3, "surface": 0.8e-3, "around": 1.6e-3}
+    one, stiff = (
+        ring_compliance(shape, bearing.ball_diameter, 12, HALF, young, POISSON, **sizes) for young in (YOUNG, 2.0 * YOUNG)
     )
     assert stiff.own == pytest.approx(0.5 * one.own, rel=1e-9)
-    import attrs
-
     lengths = ("bore", "outer_diameter", "width", "ball_diameter", "pitch_diameter", "shoulder_height")
     large = attrs.evolve(bearing, **{k: 2.0 * getattr(bearing, k) for k in lengths if getattr(bearing, k) is not None})
-    twice = ring_compliance(
-        ring_shape(large, True),
-        large.ball_diameter,
-        12,
-        2.0 * HALF,
-        YOUNG,
-        POISSON,
-        bulk=4e-3,
-        surface=1.6e-3,
-        around=3.2e-3,
-    )
+    sizes = {name: 2.0 * size for name, size in sizes.items()}
+    twice = ring_compliance(ring_shape(large, True), large.ball_diameter, 12, 2.0 * HALF, YOUNG, POISSON, **sizes)
     assert reach(ring_shape(large, True), large.ball_diameter) == pytest.approx(2.0 * reach(shape, bearing.ball_diameter))
     assert twice.own == pytest.approx(0.5 * one.own, rel=1e-6)
 
@@ -111,9 +102,7 @@ def test_ball_agrees_with_finite_elements():
     own, opposite = ball_compliance(4.7625e-3, YOUNG, POISSON, HALF, 0.113e-3)
     assert own == pytest.approx(-0.304e-9, abs=0.03e-9)
     assert opposite == pytest.approx(0.167e-9, abs=0.005e-9)
-
-
-def test_ball_scales_with_young_and_radius():
+    # It scales with Young's modulus and radius.
     one = np.array(ball_compliance(4e-3, YOUNG, POISSON, 0.6e-3, 0.1e-3))
     assert np.array(ball_compliance(8e-3, 0.5 * YOUNG, POISSON, 1.2e-3, 0.2e-3)) == pytest.approx(one, rel=1e-12)
 
