@@ -270,6 +270,7 @@ def test_what_ross_2_smooths_is_said_and_can_be_undone():
         ({SPEED: SPEEDS}, None, {"backward_amplitude": lambda at: 3e-8 + 0 * at[SPEED]}, None, "not isotropic: the orbit's counter-rotating part reaches 3.0%"),
         ({SPEED: SPEEDS, DIRECTION: [0, 30, 90]}, scene(excitation={"kind": "unidirectional"}), {}, None, "both columns take 0 and 90"),
         ({SPEED: SPEEDS}, None, {}, "directions", "there is one direction only"),
+        ({SPEED: SPEEDS}, None, {}, "load.axial", "must be one of 'rotating', 'directions', 'tangent'"),
         ({SPEED: SPEEDS, "excitation.kind": ["a", "b"]}, None, {}, None, "choose one with --at excitation.kind=a"),
     ],
 )  # fmt: skip

@@ -19,6 +19,7 @@ import numpy as np
 
 from raceway.commands.screen.damping import dry_damping_words
 from raceway.errors import Mistake, RacewayError, SceneError
+from raceway.framework.doors import member
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
@@ -30,6 +31,8 @@ SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
 ENTRIES = {"yy": (0, 0), "yz": (0, 1), "zy": (1, 0), "zz": (1, 1)}
 LEAST_POINTS = 5
 _RADIANS = np.pi / 30.0
+#: What coefficients are taken from.
+SOURCES = ("rotating", "directions", "tangent")
 
 
 @attrs.frozen(eq=False)
@@ -102,7 +105,7 @@ def coefficients(
     Raises
     ------
     SceneError
-        Axes that are to be chosen first, or too few points on one.
+        Axes that are to be chosen first, too few points on one, or an unknown source.
     RacewayError
         Points without result, or a source that this sweep does not have.
     """
@@ -110,7 +113,7 @@ def coefficients(
         raise SceneError.at("--damping", unresolved, "must be a finite damping of at least 0 N s/m")
     purpose = "and a table of coefficients goes over speed and frequency only"
     only_axes(selection, (SPEED, SPIN, DIRECTION), purpose)
-    source = source or _default_source(selection)
+    source = member("source", source or _default_source(selection), SOURCES)
     if source == "directions":
         selection = _directions_last(selection)
     else:
