@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shlex
@@ -42,6 +41,9 @@ NOT_RUN = {
     "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m pytest --evidence tests/evidence/test_ross.py": "writes a report of this checkout",
     ".venv/bin/python -m benchmarks.documents": "writes documents of this checkout; benchmarks/tests compare them",
     ".venv/bin/python -m pytest --evidence tests/evidence/test_NAME.py": "writes a report of this checkout",
+    "raceway stability --all": "ten minutes; tests/evidence/test_stability.py does it",
+    "raceway study article": "a quarter of an hour; its report does it",
+    "raceway study article --bodies rigid --friction 0": "minutes; the same report",
     "raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000 --bodies rigid --friction 0": "more than "
     "five minutes; tests/test_article_command.py runs the study with options",
     "raceway study article --bodies elastic": "most of an hour and gigabytes; tests/test_article_elastic.py runs it on a tiny mesh",
@@ -54,12 +56,6 @@ NOT_RUN = {
     "python -m benchmarks.against_calculix --scene benchmarks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
     "python -m benchmarks.against_calculix --json": "a minute; tests/evidence/test_elastic.py does it",
     "raceway run benchmarks/b7206_elastic_60k.toml": "a minute; tests/evidence/test_elastic.py does it",
-}
-#: Commands of many minutes whose answer is a report, which names them: run by make evidence.
-BY_EVIDENCE = {
-    "raceway study article": "article",
-    "raceway study article --bodies rigid --friction 0": "article",
-    "raceway stability --all": "stability",
 }
 #: Pages of more than some seconds; their commands run with the slow tests.
 SLOW = {
@@ -113,7 +109,7 @@ def test_commands_and_listings_run_in_their_order(page, folder):
         elif listing.language == "python" and not elsewhere(listing):
             exec(compile(listing.text, f"{page.name}:{listing.line}", "exec"), namespace)
         for command in listing.commands():
-            if command not in NOT_RUN and command not in BY_EVIDENCE:
+            if command not in NOT_RUN:
                 output = run(command)
                 assert "has no effect" not in output, f"{page.name} shows a command that warns: {command}"
 
@@ -145,16 +141,8 @@ def run(command: str) -> str:
 
 
 def test_what_is_not_run_is_listed_and_the_list_holds_nothing_else():
-    assert not [command for command in (*NOT_RUN, *BY_EVIDENCE) if command not in ASKED]
+    assert not [command for command in NOT_RUN if command not in ASKED]
     assert {page.stem for page in PAGES if runs(page)} >= SLOW
-
-
-@pytest.mark.parametrize("command", BY_EVIDENCE)
-def test_commands_of_reports_are_those_that_the_reports_name(command):
-    report = json.loads((ROOT / "docs" / "reports" / f"{BY_EVIDENCE[command]}.json").read_text(encoding="utf-8"))
-    assert command in {row["command"].removesuffix(" --json").removesuffix(" --out DIR") for row in report["rows"]} | {
-        row["command"] for row in report["rows"]
-    }
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

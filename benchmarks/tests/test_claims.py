@@ -46,6 +46,12 @@ def test_a_stated_miss_stays_visible(rows):
     )
 
 
+@pytest.mark.parametrize(("value", "misses"), [(2.0, "Python and its libraries"), (0.5, "")])
+def test_a_value_of_the_machine_misses_or_holds(rows, value, misses):
+    claims_into(rows)("x", value, at_most=1.0, basis="regression", misses="Python and its libraries", machine=True)
+    assert rows[0][1]["misses"] == misses
+
+
 @pytest.mark.parametrize("limits", [{}, {"near": 1.0}, {"near": 1.0, "within": 0.1, "at_most": 2.0}])
 def test_a_claim_has_one_kind_of_limits(limits):
     with pytest.raises(TypeError, match="`near` with `within`"):

@@ -186,7 +186,7 @@ def test_composed_over_hand_fused_loop(claim, words, chosen, limit, misses):
     )
     source = "what one may pay for any law with any integrator"
     why = misses.format("kernels are called by address, where the fused loop has them inlined")
-    claim(quantity, ratio, at_most=limit, basis="own other method", source=source, misses=why)
+    claim(quantity, ratio, at_most=limit, basis="own other method", source=source, misses=why, machine=True)
 
 
 def test_composed_and_hand_fused_loop_compute_the_same(claim):
@@ -264,7 +264,7 @@ def test_predicted_time(claim):
     misses = "how long the search for further steady orbits takes is not known before"
     assert set(beyond) <= {"rigid, periodic, internal resonance"}, times
     limits = {"at_least": plan_time.LEAST, "at_most": plan_time.MOST}
-    claim(quantity, ratio, **limits, basis="regression", source=source, misses=misses if beyond else "")
+    claim(quantity, ratio, **limits, basis="regression", source=source, misses=misses, machine=True)
 
 
 def test_parts_left_out(claim):

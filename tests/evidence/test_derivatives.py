@@ -215,7 +215,7 @@ def test_cost_of_all_derivatives(claim):
             complete = min(seconds(lambda scene=scene: run(scene)) for _ in range(3))
             ratios.append(min(sensitivities(scene).gradients_s for _ in range(3)) / complete)
         quantity, source = f"all derivatives over the run, processor time, {words}: larger", "no dearer than a second run"
-        claim(quantity, max(ratios), at_most=2.0, basis="regression", source=source, misses=misses)
+        claim(quantity, max(ratios), at_most=2.0, basis="regression", source=source, misses=misses, machine=True)
     most = max(map(further_equilibria, static))
     source = "implicit function theorem: nothing is solved again"
     claim(

@@ -97,7 +97,7 @@ def test_calculix(claim):
     other = min((row for row in others if not row["failure"]), key=lambda row: row["cpu_s"])
     name, once = "ball on groove, over CalculiX's quickest deck", {"basis": "other program", "source": "CalculiX, one core"}
     why = "an eighth"
-    claim(f"{name}: CPU time", mine["cpu_s"] / other["cpu_s"], at_most=0.1, **once, misses=why)
+    claim(f"{name}: CPU time", mine["cpu_s"] / other["cpu_s"], at_most=0.1, **once, misses=why, machine=True)
     why = "Python and its libraries are included"
     claim(f"{name}: memory", mine["memory_bytes"] / other["memory_bytes"], at_most=1.0, **once, misses=why)
 
@@ -312,4 +312,4 @@ def test_kernels(claim):
     quantity = "random numbering, renumbered, over ordered"
     claim(f"{quantity}, 1e5 elements", first, at_most=1.2, **once)
     why = "1.3 at ten times the elements"
-    claim(f"{quantity}, 1e6 elements", second, at_most=1.2, **once, misses=why)
+    claim(f"{quantity}, 1e6 elements", second, at_most=1.2, **once, misses=why, machine=True)

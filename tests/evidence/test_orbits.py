@@ -102,6 +102,7 @@ def test_cost(claim):
         basis="regression",
         source="an order of magnitude",
         misses="a transient starts on the orbit too, and with the tilt free the search for it is most of either time",
+        machine=True,
     )
 
 
